@@ -50,6 +50,31 @@ def limited_work(limit: int = sys.maxsize, of: Collection[str] = ()) -> Iterator
         raise TooMuchWork(f"more than {limit} calls were made")
 
 
+class Steps:
+    """The lines that a block has executed so far, one that is a loop each time."""
+
+    steps = 0
+
+
+@contextmanager
+def counted_work() -> Iterator[Steps]:
+    """Count the lines that a block executes: also those of loops in one line, which make no call."""
+    counted = Steps()
+
+    def count(_frame: FrameType, event: str, _argument: Any) -> Any:
+        if event in ("line", "call"):
+            counted.steps += 1
+        return count
+
+    before = sys.gettrace()
+    with _hang_limit():
+        sys.settrace(count)
+        try:
+            yield counted
+        finally:
+            sys.settrace(before)
+
+
 @contextmanager
 def _hang_limit() -> Iterator[None]:
     if not hasattr(signal, "setitimer") or current_thread() is not main_thread():

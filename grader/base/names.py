@@ -2,14 +2,17 @@
 
 import re
 from collections.abc import Iterable
+from functools import lru_cache
 from itertools import islice, product
 
 from grader.base.text import quoted
 
 _MAX_CANDIDATES = 300
 _MAX_KNOWN = 1000
+_MAX_CACHED = 4096  # names whose words are kept
 _LIKENESS, _MARGIN = 0.7, 0.1  # of difflib's ratios
 MAX_LENGTH = 60  # characters of names that are compared
+MAX_GUESSES = 50  # names of one file that are compared, because that takes long
 _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
 _WORD = re.compile(r"\d+|[^\W\d_]+")
 _LETTER_BORDER = re.compile(r"(?<!\d) (?!\d)")
@@ -101,12 +104,17 @@ def closest(
     return candidates[matches[0]] if matches else None
 
 
-def _sides(name: str) -> list[str]:
+def _sides(name: str) -> tuple[str, ...]:
     """Return the numbers and the words of side, place and measure in a name."""
-    return sorted(word for word in _words(name) if word.isdigit() or word in _DISTINCT)
+    return _sides_in(_words(name))
 
 
-def _are_siblings(sides: list[str], others: list[str]) -> bool:
+@lru_cache(maxsize=_MAX_CACHED)
+def _sides_in(words: tuple[str, ...]) -> tuple[str, ...]:
+    return tuple(sorted(word for word in words if word.isdigit() or word in _DISTINCT))
+
+
+def _are_siblings(sides: tuple[str, ...], others: tuple[str, ...]) -> bool:
     """Return whether two names differ in the numbers or sides that both of them have. Numbers of
     another length may be mistyped.
     """
@@ -193,15 +201,27 @@ def are_of_one_side(name: str, other: str) -> bool:
     return _sides(name) == _sides(other) and not is_other
 
 
-def _words(name: str) -> list[str]:
-    return _WORD.findall(_CAMEL.sub(" ", name[: MAX_LENGTH + 1]).casefold())
+def _words(name: str) -> tuple[str, ...]:
+    return _cached_words(name[: MAX_LENGTH + 1])
 
 
-def _distance(name: list[str], known: list[str], suffix: str) -> tuple[int, bool] | None:
+@lru_cache(maxsize=_MAX_CACHED)
+def _cached_words(name: str) -> tuple[str, ...]:
+    return tuple(_WORD.findall(_CAMEL.sub(" ", name).casefold()))
+
+
+@lru_cache(maxsize=_MAX_CACHED)
+def _letters(words: tuple[str, ...]) -> str:
+    return _LETTER_BORDER.sub("", " ".join(words))
+
+
+def _distance(
+    name: tuple[str, ...], known: tuple[str, ...], suffix: str
+) -> tuple[int, bool] | None:
     """Return how many letters differ, and whether the suffix is missing; None for names that are
     not near.
     """
-    texts = [_LETTER_BORDER.sub("", " ".join(words)) for words in (name, known)]
+    texts = [_letters(name), _letters(known)]
     if not all(texts) or max(map(len, texts)) > MAX_LENGTH:
         return None
     if texts[0] == texts[1]:

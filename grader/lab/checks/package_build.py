@@ -8,7 +8,7 @@ from fnmatch import fnmatch
 from typing import Literal
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.names import closest
+from grader.base.names import MAX_GUESSES, closest
 from grader.base.text import enumerated, first_lines
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, judged, passed
@@ -256,11 +256,15 @@ def _stops_at(package: Package, files: Sequence[str], kind: _FileKind | None) ->
     folders = {posixpath.dirname(path) for path in files}
     paths = [stop.path for stop in setup.stops if stop.path]
     if setup.is_cmake and any(
-        closest(path, folders) for path in paths
+        closest(path, folders) for path in paths[:MAX_GUESSES]
     ):  # install(DIRECTORY lunch ...)
         return True
-    owners = ((_kind_of_file(path, package), posixpath.dirname(path)) for path in paths)
-    return any(owner == kind or folder in folders for owner, folder in owners)
+    kinds = _kinds_by_folder(package)
+    for path in paths:
+        folder = posixpath.dirname(path)
+        if folder in folders or (_kind_by_ending(path) or kinds.get(folder)) == kind:
+            return True
+    return False
 
 
 def _why_not_installed(
@@ -296,23 +300,27 @@ def _why_not_installed(
     )
 
 
-def _kind_of_file(path: str, package: Package) -> _FileKind | None:
-    """Return the kind of file that an entry is about, by its ending or by the other files of its
-    folder.
-    """
+def _kind_by_ending(path: str) -> _FileKind | None:
+    """Return the kind of file that an entry is about, by its ending."""
     if ".launch." in path or path.endswith("_launch.py"):
         return "launch"
     for kind, endings in _ENDINGS.items():
         if path.lower().endswith(endings):
             return kind
-    folder = posixpath.dirname(path)
-    beside = [path for path in package.tree.files if folder and posixpath.dirname(path) == folder]
-    endings = (*_ENDINGS["urdf"], *_ENDINGS["rviz"])
-    kinds = {
-        _kind_of_file(path, package)
-        for path in beside
-        if path.endswith(endings) or ".launch." in path
-    }
-    if len(kinds) == 1:
-        return next(iter(kinds))
     return None
+
+
+def _kinds_by_folder(package: Package) -> dict[str, _FileKind]:
+    """Return the kind of the files of each folder that has files of one kind."""
+    kinds: dict[str, set[_FileKind | None]] = {}
+    endings = (*_ENDINGS["urdf"], *_ENDINGS["rviz"])
+    for path in package.tree.files:
+        folder = posixpath.dirname(path)
+        if folder and (path.endswith(endings) or ".launch." in path):
+            kinds.setdefault(folder, set()).add(_kind_by_ending(path))
+    by_folder: dict[str, _FileKind] = {}
+    for folder, found in kinds.items():
+        kind = found.pop()
+        if kind is not None and not found:
+            by_folder[folder] = kind
+    return by_folder

@@ -187,7 +187,9 @@ class Submission(OpenedWorkspace):
     @property
     def is_costly(self) -> bool:
         """Return whether reading it takes so long that no hints are searched."""
-        return self.cost > _MAX_COST or self.budget.used > self.budget.limit // 10
+        work = self.package.work.used if self.package is not None else 0
+        is_much = work > _MAX_COST * _WORK_OF_READING
+        return self.cost > _MAX_COST or is_much or self.budget.used > self.budget.limit // 10
 
     @property
     def has_urdf(self) -> bool:

@@ -5,6 +5,7 @@ list of its files.
 import posixpath
 import re
 import warnings
+from bisect import bisect_left
 from collections.abc import Callable, Iterable, Iterator
 from fnmatch import fnmatchcase, translate
 from functools import lru_cache, partial
@@ -72,6 +73,7 @@ class PackageListing:
         self._children: dict[str, list[str]] = {}
         self._order = order
         paths = [*tree.files, *tree.folders, *tree.unseen]
+        self._file_paths = sorted(tree.files)
         self._paths = sorted([*paths, *(path and f"{path}/" for path in self.folders)])
         for path in sorted(paths):
             folder, _, name = path.rpartition("/")
@@ -103,6 +105,15 @@ class PackageListing:
         found = self._children.get(folder, [])
         self.budget.charge(1 + len(found))
         return found
+
+    def files_below(self, folder: str) -> list[str]:
+        """Return the paths of the files in a folder and in the folders of it."""
+        first, last = 0, len(self._file_paths)
+        if folder:
+            first = bisect_left(self._file_paths, f"{folder}/")
+            last = bisect_left(self._file_paths, f"{folder}0")  # the character after the slash
+        self.budget.charge(1 + 2 * (last - first))
+        return self._file_paths[first:last]
 
     def modules(self) -> frozenset[str]:
         """Return the names of the modules and packages beside setup.py, which are imported before

@@ -55,6 +55,14 @@ class IgnoredArgument(NamedTuple):
         )
 
 
+class KnownPrograms(NamedTuple):
+    """The programs that a build installs: paths below the prefix, and names in setup.py."""
+
+    executed: frozenset[str]  # that Linux may execute
+    targets: frozenset[str]  # of all files
+    listed: frozenset[str] | None  # in console_scripts; None where these are not known
+
+
 class Installation(NamedTuple):
     """The result of a setup.py or CMakeLists.txt. `fault` is set if it cannot be parsed: nothing
     else is known then.
@@ -113,26 +121,28 @@ class Installation(NamedTuple):
             (it for it in self.empty if word is not None and word in it.pattern.lower()), None
         )
 
-    def has_program(self, name: str, package: str) -> bool | None:
+    def has_program(self, name: str, package: str, programs: KnownPrograms) -> bool | None:
         """Return whether a build installs a program where `ros2 run` looks for it; None where this
-        is not known.
+        is not known. `programs` are those of `known_programs`.
         """
         if self.fault is not None:
             return None
         path = f"lib/{package}/{name}"
-        if path in self.programs or path in self.installed():
+        if path in programs.executed or path in programs.targets:
             # CMake takes the right to execute from the files of install(FILES ...) and
             # install(DIRECTORY ...).
-            return path in (*self.programs, *self.scripts) or not self.is_cmake
-        scripts = self.console_scripts
-        if (
-            not isinstance(scripts, list)
-            or not all(isinstance(script, str) for script in scripts)
-            or self.unknown
-        ):
+            return path in programs.executed or not self.is_cmake
+        if programs.listed is None or self.unknown:
             return None
-        is_listed = name in [script.partition("=")[0].strip() for script in scripts]
-        return is_listed and self.scripts_folder == f"lib/{package}"
+        return name in programs.listed and self.scripts_folder == f"lib/{package}"
+
+    def known_programs(self) -> KnownPrograms:
+        """Return the programs that a build installs."""
+        scripts, listed = self.console_scripts, None
+        if isinstance(scripts, list) and all(isinstance(script, str) for script in scripts):
+            listed = frozenset(script.partition("=")[0].strip() for script in scripts)
+        executed = frozenset((*self.programs, *self.scripts))
+        return KnownPrograms(executed, frozenset(copy.target for copy in self.copies), listed)
 
     def location(self, position: Position) -> Location:
         """Return the location of a position in the file."""

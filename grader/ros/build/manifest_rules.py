@@ -108,12 +108,13 @@ def _redundant_dependencies(children: _Children, version: int) -> Iterator[_Refu
         words = 'The test dependency on "{}" is redundant with: {}'
     counts = {tag: Counter(map(_make_key, children.get(tag, ()))) for tag in tags}
     for dependency in children.get(general, ()):
-        same = [tag for tag in tags if counts[tag][_make_key(dependency)]]
+        key = _make_key(dependency)
+        same = [tag for tag in tags if counts[tag][key]]
         if same:
             yield words.format(text_of(dependency), ", ".join(same)), dependency
         if version != 1:
             for tag in tags:
-                counts[tag][_make_key(dependency)] += 1
+                counts[tag][key] += 1
 
 
 def _known_attributes(version: int) -> dict[str, tuple[str, ...]]:

@@ -15,6 +15,7 @@ _LOADER = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
 _MAX_EVENTS = 25_000
 _LIKE_AN_ALIAS = re.compile(r"(?<![\w/*])\*\w")  # not the key /**
 _MAX_ALIASES = 1000
+_MAX_AGAIN = 2_000  # values that a walk looks at again, for which aliases stand
 _MAX_DEPTH = 200  # the parser gets slower with each open bracket
 _TAGS = frozenset(
     f"tag:yaml.org,2002:{name}"
@@ -91,12 +92,13 @@ class YamlNode:
 
     def mapping_of(self, keys: "tuple[str, ...]") -> "YamlNode | None":
         """Return the mapping that has the last of some keys."""
-        if len(keys) == 1:
-            if keys[0] in self.key_marks:
-                return self
-            return None
-        found = (inner.mapping_of(keys[1:]) for key, inner in self.pairs if key == keys[0])
-        return next((it for it in found if it is not None), None)
+        reached: dict[YamlNode, None] = {self: None}
+        for above in keys[:-1]:
+            inside: dict[YamlNode, None] = {}
+            for mapping in reached:
+                inside |= dict.fromkeys(inner for key, inner in mapping.pairs if key == above)
+            reached = inside
+        return next((mapping for mapping in reached if keys[-1] in mapping.key_marks), None)
 
     @property
     def text(self) -> str | None:
@@ -120,6 +122,30 @@ class YamlNode:
         if isinstance(self.value, list):
             return self.value
         return []
+
+
+class Visits:
+    """The lists and mappings that a walk through a file has entered.
+
+    An alias is the same object as its anchor: a file of 2 KB has millions of paths. A walk enters
+    each object once, and again only while what it looks at again is little.
+    """
+
+    def __init__(self) -> None:
+        self._entered: set[YamlNode] = set()
+        self._again = _MAX_AGAIN
+        self.is_complete = True  # whether the walk may enter all of the file
+
+    def enters(self, node: YamlNode) -> bool:
+        """Return whether the walk may look into a list or mapping; a text has nothing in it."""
+        if isinstance(node.value, str):
+            return True
+        if node in self._entered:
+            self._again -= 1 + len(node.value) + len(node.replaced)
+            self.is_complete = self.is_complete and self._again >= 0
+            return self._again >= 0
+        self._entered.add(node)
+        return True
 
 
 def yaml_value(text: str) -> Any:

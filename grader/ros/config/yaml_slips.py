@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from grader.base.slips import Slip
 from grader.base.source import Edit, Location
 from grader.base.text import cut, quoted
-from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import PARAMETERS, is_misspelt_key
 
 _MAX_SLIPS = 5  # in one file
@@ -37,12 +37,14 @@ def yaml_slips(data: bytes, path: str) -> list[Slip]:
         fault = _fault(lines, path)
     if isinstance(fault, YamlFault):
         return []
-    return [*slips, *_misspelt_keys(fault)]
+    return [*slips, *_misspelt_keys(fault, Visits())]
 
 
-def _misspelt_keys(node: YamlNode, depth: int = 0) -> Iterator[Slip]:
+def _misspelt_keys(node: YamlNode, visits: Visits, depth: int = 0) -> Iterator[Slip]:
     """Yield the keys that surely stand for ros__parameters, which rcl refuses."""
-    for key, inner in node.pairs if depth < _MAX_DEPTH else ():
+    if depth == _MAX_DEPTH or not visits.enters(node):
+        return
+    for key, inner in node.pairs:
         if is_misspelt_key(key, inner):
             location = node.key_location(key)
             edit = Edit(location.path, location.line, location.column, key, PARAMETERS)
@@ -50,7 +52,7 @@ def _misspelt_keys(node: YamlNode, depth: int = 0) -> Iterator[Slip]:
             assumption = f"{key} is read as {PARAMETERS}"
             yield Slip((edit,), reaction, assumption, location, is_refused=True)
         else:
-            yield from _misspelt_keys(inner, depth + 1)
+            yield from _misspelt_keys(inner, visits, depth + 1)
 
 
 def _slip(fault: YamlFault, index: int, written: str, new: str, path: str) -> Slip:
@@ -89,13 +91,25 @@ def _meant(fault: YamlFault, lines: list[str], path: str) -> tuple[int, str] | N
     return further
 
 
-def _plain(node: YamlNode) -> object:
-    """Return what a node holds, to compare it."""
-    if isinstance(node.value, str):
-        return node.value
-    if isinstance(node.value, list):
-        return tuple(_plain(item) for item in node.value)
-    return tuple((key, _plain(inner)) for key, inner in node.value.items())
+def _plain(root: YamlNode) -> tuple[object, ...]:
+    """Return what a node holds, to compare it; what an alias stands for is only numbered again."""
+    held: list[object] = []
+    numbers: dict[YamlNode, int] = {}
+    waiting: list[object] = [root]
+    while waiting:
+        part = waiting.pop()
+        if not isinstance(part, YamlNode):
+            held.append(part)
+        elif isinstance(part.value, str):
+            held.append(part.value)
+        elif part in numbers:
+            held.append(numbers[part])
+        else:
+            numbers[part] = len(numbers)
+            held += (type(part.value), len(part.value))
+            waiting += part.value.values() if isinstance(part.value, dict) else part.value
+            waiting += [tuple(part.value)] if isinstance(part.value, dict) else []
+    return tuple(held)
 
 
 def _changes(lines: Sequence[str], index: int) -> Iterator[str]:

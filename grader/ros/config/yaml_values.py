@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from grader.base.names import near
-from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.config.yaml_nodes import Visits, YamlNode
 
 PARAMETERS = "ros__parameters"
 _MAX_DEPTH = 30
@@ -29,51 +29,81 @@ class YamlValue(NamedTuple):
                 yield node.text, node
 
 
-def values_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[YamlValue]:
+def values_in(node: YamlNode) -> Iterator[YamlValue]:
     """Yield the values of a tree of mappings, also of those in lists."""
-    if len(keys) > _MAX_DEPTH:
+    yield from _values_below(node, (), Visits())
+
+
+def _values_below(node: YamlNode, keys: tuple[str, ...], visits: Visits) -> Iterator[YamlValue]:
+    if len(keys) > _MAX_DEPTH or not visits.enters(node):
         return
     if isinstance(node.value, dict):
         for key, inner in node.value.items():
-            yield from values_in(inner, (*keys, key))
+            yield from _values_below(inner, (*keys, key), visits)
     else:
         yield YamlValue(keys, node)
         for number, item in enumerate(node.items):
             if isinstance(item.value, dict):
-                yield from values_in(item, (*keys, str(number)))
+                yield from _values_below(item, (*keys, str(number)), visits)
 
 
-def sections_in(
-    node: YamlNode, keys: tuple[str, ...] = ()
-) -> Iterator[tuple[tuple[str, ...], YamlNode]]:
+_Section = tuple[tuple[str, ...], YamlNode]
+
+
+def sections_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[_Section]:
     """Yield the parameters of each node in a parameter file: the keys of the node, and the mapping
     below.
     """
-    for key, inner in node.pairs if len(keys) <= _MAX_DEPTH else ():
+    yield from _sections_below(node, keys, Visits(), {})
+
+
+def _sections_below(
+    node: YamlNode, keys: tuple[str, ...], visits: Visits, nested: dict[YamlNode, YamlNode]
+) -> Iterator[_Section]:
+    if len(keys) > _MAX_DEPTH or not isinstance(node.value, dict) or not visits.enters(node):
+        return
+    for key, inner in node.pairs:
         if key == PARAMETERS:
-            yield keys, _nested(inner)
+            yield keys, _nested(inner, nested)
         else:
-            yield from sections_in(inner, (*keys, key))
+            yield from _sections_below(inner, (*keys, key), visits, nested)
 
 
-def _nested(node: YamlNode) -> YamlNode:
-    """Return parameters with tables in place of keys with dots, as rcl reads them."""
+def _nested(node: YamlNode, made: dict[YamlNode, YamlNode]) -> YamlNode:
+    """Return parameters with tables in place of keys with dots, as rcl reads them.
+
+    `made` has those that were made before: an alias is the same object as its anchor.
+    """
     if not isinstance(node.value, dict) or not any("." in key for key in node.value):
         return node
-    tables, places = dict[str, YamlNode](), dict[str, Any]()
+    if node in made:
+        return made[node]
+    tables, places = dict[str, list[YamlNode]](), dict[str, Any]()
     for key, inner in node.value.items():
         outer, _, last = key.partition(".")
         if last:
             table = replace(inner, value={last: inner}, key_marks={last: node.key_marks[key]})
         else:
             table = inner
-        before = tables.get(outer)
-        if before is not None and isinstance(before.value, dict) and isinstance(table.value, dict):
-            marks = before.key_marks | table.key_marks
-            table = replace(before, value=before.value | table.value, key_marks=marks)
-        tables[outer] = table
+        tables.setdefault(outer, []).append(table)
         places.setdefault(outer, node.key_marks[key])
-    return replace(node, value={key: _nested(it) for key, it in tables.items()}, key_marks=places)
+    value = {key: _nested(_joined(it), made) for key, it in tables.items()}
+    made[node] = replace(node, value=value, key_marks=places)
+    return made[node]
+
+
+def _joined(tables: list[YamlNode]) -> YamlNode:
+    """Return the tables of one key as one; a value that is no table replaces those before it."""
+    first, value, marks = tables[0], dict[str, YamlNode](), dict[str, Any]()
+    for table in tables:
+        if not isinstance(table.value, dict) or not isinstance(first.value, dict):
+            first, value, marks = table, {}, {}
+        if isinstance(table.value, dict):
+            value |= table.value
+            marks |= table.key_marks
+    if isinstance(first.value, dict) and len(tables) > 1:
+        return replace(first, value=value, key_marks=marks)
+    return first
 
 
 def is_misspelt_key(key: str, node: YamlNode) -> bool:

@@ -154,6 +154,7 @@ def moveit_launches() -> Mapping[str, Any]:
 
 
 @cache
+@cache
 def cmake_words(key: str) -> frozenset[str]:
     """Return the words that are known of CMake, by their key in cmake.toml."""
     return frozenset(str(_read("cmake")[key]).split())

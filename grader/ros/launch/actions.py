@@ -58,6 +58,7 @@ from grader.ros.python.values import (
 )
 
 _MAX_ACTIONS = 5_000
+_OF_ACTION = 100  # parts of the work that a submission may ask for
 _MAX_DEPTH = 40
 _MAX_PERIOD = 60.0  # seconds that a person waits for a timer
 _LATE = (
@@ -133,7 +134,8 @@ class ActionVisitor:
     def visit(self, value: Value, context: Context, when: bool | None, at: Position) -> None:
         """Visit an action."""
         self.steps += 1
-        if self.depth > _MAX_DEPTH or self.steps > _MAX_ACTIONS:
+        is_left = context.budget.take_of_whole(_OF_ACTION)
+        if self.depth > _MAX_DEPTH or self.steps > _MAX_ACTIONS or not is_left:
             self.add_form(
                 Undetermined("a launch file with so many actions is not evaluated"), START, when
             )

@@ -1,7 +1,7 @@
 """The launch files that were read last, each with what it was answered about the machine."""
 
 from operator import methodcaller
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 # Only for types: a rubric makes a cache, and a URDF on its own needs no reader of launch files.
 if TYPE_CHECKING:
@@ -60,6 +60,16 @@ class MachineRecorder:
         return all(question(other) == answer for question, answer in self._answers)
 
 
+class KeptLaunch(NamedTuple):
+    """A launch file that was read, what it was answered about the machine, and the work that it
+    took.
+    """
+
+    machine: MachineRecorder
+    launch: "Launch"
+    cost: int
+
+
 class LaunchCache:
     """The results of the last launch files of a lab.
 
@@ -68,20 +78,18 @@ class LaunchCache:
     """
 
     def __init__(self) -> None:
-        self._kept: dict[LaunchKey, tuple[MachineRecorder, Launch]] = {}
+        self._kept: dict[LaunchKey, KeptLaunch] = {}
 
-    def find(self, key: "LaunchKey", machine: "Machine") -> "Launch | None":
+    def find(self, key: "LaunchKey", machine: "Machine") -> KeptLaunch | None:
         """Return the result of a launch file on a machine that answers alike, if it is kept."""
-        if key not in self._kept:
-            return None
-        recorder, launch = self._kept[key]
-        if recorder.is_equal(machine):
-            return launch
+        kept = self._kept.get(key)
+        if kept is not None and kept.machine.is_equal(machine):
+            return kept
         return None
 
-    def keep(self, key: "LaunchKey", recorder: MachineRecorder, launch: "Launch") -> None:
+    def keep(self, key: "LaunchKey", kept: KeptLaunch) -> None:
         """Keep a result, in place of the oldest one."""
         self._kept.pop(key, None)
         if len(self._kept) >= _MAX_KEPT:
             del self._kept[next(iter(self._kept))]
-        self._kept[key] = (recorder, launch)
+        self._kept[key] = kept

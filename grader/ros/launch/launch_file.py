@@ -29,8 +29,9 @@ from grader.ros.launch.api import (
     is_a,
 )
 from grader.ros.launch.call_arguments import LaunchFunctions, join_path, kind_of
-from grader.ros.launch.launch_cache import LaunchCache, MachineRecorder
+from grader.ros.launch.launch_cache import KeptLaunch, LaunchCache, MachineRecorder
 from grader.ros.launch.launch_model import (
+    MAX_STEPS,
     Contents,
     Context,
     FileText,
@@ -49,8 +50,9 @@ from grader.ros.launch.substitutions import (
     printed_file,
     resolve,
 )
+from grader.ros.python.budget import Budget
 from grader.ros.python.evaluation import Evaluation, record
-from grader.ros.python.interpreter import Interpreter
+from grader.ros.python.interpreter import MAX_FILE_STEPS, Interpreter
 from grader.ros.python.library import standard_functions
 from grader.ros.python.parse import START, Code, Position, SyntaxFault, location_in, parse
 from grader.ros.python.values import (
@@ -95,6 +97,7 @@ def read_launch(
     machine: Machine,
     arguments: Mapping[str, str] = _NO_ARGUMENTS,
     cache: LaunchCache | None = None,
+    work: Budget | None = None,
 ) -> Launch:
     """Read a launch file and evaluate it. Never raises.
 
@@ -105,18 +108,26 @@ def read_launch(
         machine: What is installed besides.
         arguments: The launch arguments that it is given.
         cache: The launch files that were read before.
+        work: The budget of all files of the submission.
     """
+    work = work or Budget()
     key = (data, path, installed, tuple(arguments.items()))
     kept = cache.find(key, machine) if cache is not None else None
-    if kept is not None:
-        return kept
-    recorder = MachineRecorder(machine)
+    if kept is not None and kept.cost <= work.left:
+        work.left -= kept.cost
+        return kept.launch
+    recorder, before = MachineRecorder(machine), work.left
     context = Context(
-        f"{PREFIX}/{installed}", recorder, dict(arguments), given=frozenset(arguments)
+        f"{PREFIX}/{installed}",
+        recorder,
+        dict(arguments),
+        given=frozenset(arguments),
+        budget=Budget(MAX_STEPS, whole=work),
     )
     launch = _LaunchReader().read(data, path, installed, context)
-    if cache is not None:
-        cache.keep(key, recorder, launch)
+    # What other files of a submission leave too little work for is another launch elsewhere.
+    if cache is not None and not work.is_spent:
+        cache.keep(key, KeptLaunch(recorder, launch, before - work.left))
     return launch
 
 
@@ -324,7 +335,11 @@ class _PythonLaunchFile:
             self.moveit = MoveItConfigurations(lambda: self.context, self.reads).functions()
         packages_last = sorted(known.items(), key=lambda it: -it[0].count("."))
         self.interpreter = Interpreter(
-            self._functions(), names, stand_ins=(PREFIX, HOME), exports=dict(packages_last)
+            self._functions(),
+            names,
+            stand_ins=(PREFIX, HOME),
+            exports=dict(packages_last),
+            budget=Budget(MAX_FILE_STEPS, whole=self.context.budget.whole),
         )
         return self.interpreter.run(code).names
 

@@ -21,7 +21,7 @@ from grader.ros.python.values import (
     Value,
 )
 
-_MAX_STEPS = 50_000
+MAX_STEPS = 50_000
 # the launch configuration that has the namespace of what follows, as in launch_ros
 NAMESPACE = "ros_namespace"
 STATE_PUBLISHER = "robot_state_publisher"
@@ -130,7 +130,7 @@ class Context:
         default_factory=list
     )  # that the current action needs
     budget: Budget = field(
-        default_factory=partial(Budget, _MAX_STEPS)
+        default_factory=partial(Budget, MAX_STEPS)
     )  # of all files that are launched
 
     def copy(self) -> "Context":

@@ -7,6 +7,7 @@ line, in order.
 import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import lru_cache
 from itertools import chain, pairwise
 from math import inf, nan
 from pathlib import PurePosixPath
@@ -14,7 +15,7 @@ from typing import Any, NamedTuple
 
 from grader.base.source import Location
 from grader.ros.build.places import PREFIX
-from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
+from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml, yaml_value
 from grader.ros.known.known import spawner_options
 from grader.ros.launch.call_arguments import FILE, SCALARS, TYPED, items_in, kind_of, type_of
 from grader.ros.launch.launch_model import (
@@ -403,6 +404,8 @@ def _read_text(text: str) -> Any:
 def _read_value(node: YamlNode) -> Any:
     """Return the value of a parameter as rcl reads it: a scalar or a list of them; else Unknown."""
     if isinstance(node.value, list):
+        if any(item.text is None for item in node.items):
+            return Unknown("a list of different values", START)
         items = [_read_value(item) for item in node.items]
         kinds = {type(item) for item in items}
         if len(kinds) == 1 and kinds <= {*SCALARS}:
@@ -444,7 +447,51 @@ class NodeParameters(NamedTuple):
     unknown: str = ""  # why there may be more
 
 
-def parameters_of(node: StartedNode, open_file: _OpenFile, name: str = "") -> NodeParameters:
+class _Table(NamedTuple):
+    """What a section of a parameter file, or a launch file, gives the nodes of a key."""
+
+    key: str | None
+    known: Mapping[str, ParameterValue]
+    opened: Mapping[str, Unknown] = {}  # tables that are not known, whose names are not either
+
+
+class FileTables(NamedTuple):
+    """The sections of a parameter file, or why it is not read."""
+
+    tables: tuple[_Table, ...]
+    fault: str = ""
+
+
+_ReadFile = Callable[[bytes, str, bool], FileTables]
+
+
+def read_tables(data: bytes, path: str, is_plain: bool) -> FileTables:
+    """Return the sections of a parameter file; of one that is not plain, launch replaces `$(`."""
+    try:
+        root = read_yaml(data, path)
+    except YamlFault as fault:
+        return FileTables((), f"the file {path} is not readable as YAML: {fault}")
+    visits = Visits()
+    sections = tuple(_sections(root, "", visits, is_plain=is_plain))
+    if not visits.is_complete:
+        return FileTables((), f"the file {path} has too many aliases to read")
+    return FileTables(tuple(_make_table(key, values) for key, values in sections))
+
+
+def _make_table(key: str | None, values: Mapping[str, ParameterValue]) -> _Table:
+    known: dict[str, ParameterValue] = {}
+    opened: dict[str, Unknown] = {}
+    for parameter, row in values.items():
+        if isinstance(row.value, UnknownTable):
+            opened[parameter] = row.value
+        else:
+            known[parameter] = row
+    return _Table(key, known, opened)
+
+
+def parameters_of(
+    node: StartedNode, open_file: _OpenFile, name: str = "", read: _ReadFile = read_tables
+) -> NodeParameters:
     """Return the parameters that a node gets from a launch file, and where each is written.
 
     Later files and tables replace earlier ones. Of the keys of nodes in them (`/**`, `/ns/node`,
@@ -457,6 +504,7 @@ def parameters_of(node: StartedNode, open_file: _OpenFile, name: str = "") -> No
             submission.
         name: The name that the node has in its program if the launch file gives it none; or the
             full name of another node of the same process, such as a controller.
+        read: Returns the sections of a parameter file.
     """
     full = _full_name(node, name)
     by_key: dict[str | None, dict[str, ParameterValue]] = {}
@@ -465,24 +513,17 @@ def parameters_of(node: StartedNode, open_file: _OpenFile, name: str = "") -> No
         return NodeParameters({}, "the parameters of the node are not evaluated")
     for given in node.parameters:
         try:
-            tables = [*_read_tables(given, open_file, _full_name(node, ""))]
+            tables = _read_tables(given, open_file, _full_name(node, ""), read)
         except Undetermined as error:
             reasons.append(str(error))
             doubt = Unknown(str(error), START)
-            for table in by_key.values():
-                table.update({it: row._replace(value=doubt) for it, row in table.items()})
+            for before in by_key.values():
+                before.update({it: row._replace(value=doubt) for it, row in before.items()})
             continue
-        for key, values in tables:
-            known: dict[str, ParameterValue] = {}
-            opened: dict[str, Unknown] = {}
-            for parameter, row in values.items():
-                if isinstance(row.value, UnknownTable):
-                    opened[parameter] = row.value
-                else:
-                    known[parameter] = row
-            reasons += [unknown.reason for unknown in opened.values()]
-            _forget_below(opened, by_key)
-            by_key.setdefault(key, {}).update(known)
+        for table in tables:
+            reasons += [unknown.reason for unknown in table.opened.values()]
+            _forget_below(table.opened, by_key)
+            by_key.setdefault(table.key, {}).update(table.known)
     return NodeParameters(_select_values(by_key, full), "; ".join(dict.fromkeys(reasons)))
 
 
@@ -507,27 +548,25 @@ def _full_name(node: StartedNode, name: str) -> str | None:
 
 
 def _read_tables(
-    given: GivenParameters, open_file: _OpenFile, full_name: str | None
-) -> Iterator[tuple[str | None, Mapping[str, ParameterValue]]]:
-    """Yield the parameters by keys of nodes; `full_name` is the one that the launch file gives.
+    given: GivenParameters, open_file: _OpenFile, full_name: str | None, read: _ReadFile
+) -> Sequence[_Table]:
+    """Return the parameters by keys of nodes; `full_name` is the one that the launch file gives.
     Raises Undetermined.
     """
     if given.unknown:
         raise Undetermined(given.unknown)
     if not given.path:
-        yield _find_key(given, full_name), given.values
-        return
+        return [_make_table(_find_key(given, full_name), given.values)]
     path = posixpath.normpath(given.path)
     file = open_file(path.removeprefix(f"{PREFIX}/")) if path.startswith(f"{PREFIX}/") else None
     if file is None:
         raise Undetermined(
             f"the file {path.removeprefix(PREFIX)} is not read: the submission does not install it"
         )
-    try:
-        root = read_yaml(*file)
-    except YamlFault as fault:
-        raise Undetermined(f"the file {file[1]} is not readable as YAML: {fault}") from None
-    yield from _sections(root, "", is_plain=given.is_plain)
+    found = read(*file, given.is_plain)
+    if found.fault:
+        raise Undetermined(found.fault)
+    return found.tables
 
 
 def _find_key(given: GivenParameters, full_name: str | None) -> str | None:
@@ -542,12 +581,14 @@ def _find_key(given: GivenParameters, full_name: str | None) -> str | None:
 
 
 def _sections(
-    node: YamlNode, key: str, *, is_plain: bool
+    node: YamlNode, key: str, visits: Visits, *, is_plain: bool
 ) -> Iterator[tuple[str, dict[str, ParameterValue]]]:
     """Yield the sections of a parameter file, each with its key, which begins with a slash."""
-    for name, value in node.pairs if key.count("/") < _MAX_DEPTH else ():
+    if key.count("/") >= _MAX_DEPTH or not visits.enters(node):
+        return
+    for name, value in node.pairs:
         if name == _KEY:
-            values = _flat(value, "", 0)
+            values = _flat(value, "", 0, visits)
             yield (
                 key,
                 {
@@ -557,15 +598,15 @@ def _sections(
                 },
             )
         else:
-            yield from _sections(value, f"{key}/{name.strip('/')}", is_plain=is_plain)
+            yield from _sections(value, f"{key}/{name.strip('/')}", visits, is_plain=is_plain)
 
 
-def _flat(node: YamlNode, name: str, depth: int) -> Iterator[tuple[str, YamlNode]]:
+def _flat(node: YamlNode, name: str, depth: int, visits: Visits) -> Iterator[tuple[str, YamlNode]]:
     if not isinstance(node.value, dict) or depth > _MAX_DEPTH:
         yield name, node
-        return
-    for key, value in node.value.items():
-        yield from _flat(value, f"{name}.{key}" if name else key, depth + 1)
+    elif visits.enters(node):
+        for key, value in node.value.items():
+            yield from _flat(value, f"{name}.{key}" if name else key, depth + 1, visits)
 
 
 def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:
@@ -613,10 +654,15 @@ def _matches(key: str | None, full: str) -> bool:
     """Return whether the key of a section names a node: `*` stands for one name, `**` for any
     number of them.
     """
-    if key is None:
-        return False
+    if key is None or "*" not in key:
+        return key == full
+    return _pattern_of(key).fullmatch(full) is not None
+
+
+@lru_cache(maxsize=256)
+def _pattern_of(key: str) -> re.Pattern[str]:
     pattern = re.sub(r"/\\\*(\\\*)?", lambda it: r"(/\w+)*" if it[1] else r"(/\w+)", re.escape(key))
-    return re.fullmatch(pattern, full) is not None
+    return re.compile(pattern)
 
 
 def remap_rules(words: Sequence[str]) -> list[tuple[str, str, str]]:

@@ -33,6 +33,7 @@ from grader.ros.python.values import (
 _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 _OF_CMAKE = b"<build_type>ament_cmake</build_type>"
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
+_TOO_DEEP = "a substitution that is nested so deeply is not evaluated"
 TEXT_PARTS = (str, Call, Unknown)  # of which a text may consist
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", "env", "rviz2"})
@@ -44,9 +45,12 @@ def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Res
 
     Raises EvaluationFails where launch certainly raises an error, Undetermined where it may.
     """
-    context.budget.left -= 1
-    if depth > _MAX_DEPTH or context.budget.left < 0:
-        raise Undetermined("a substitution that is nested so deeply is not evaluated", at)
+    try:
+        context.budget.charge(1)
+    except OutOfBudget:
+        raise Undetermined(_TOO_DEEP, at) from None
+    if depth > _MAX_DEPTH:
+        raise Undetermined(_TOO_DEEP, at)
     match value:
         case FileText(contents=contents):
             context.reads.append((contents, value.at))
@@ -362,7 +366,7 @@ PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
 
 def _expression_text(text: str, at: Position, context: Context) -> str:
     """Return the value of a PythonExpression as a text. Raises EvaluationSignal."""
-    budget = Budget(_WORK)
+    budget = Budget(_WORK, whole=context.budget.whole)
     try:
         return str_of(evaluate(text, _find_name, budget))
     except EvaluationFails as error:

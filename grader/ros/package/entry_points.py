@@ -4,7 +4,8 @@ functions exist.
 
 import ast
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 from grader.base.names import closest, near
@@ -22,6 +23,9 @@ from grader.ros.python.parse import Code, SyntaxFault, bound_in, parse
 _ENTRY = re.compile(
     r"\s*([^=\s]+)\s*=\s*(\w+(?:\.\w+)*)\s*(?::\s*(\w+)(?:\.\w+)*\s*)?(?:\[.*)?", re.ASCII
 )
+
+
+_WRITTEN_NAME = re.compile(r"""(?<=['"])[ \t]*([^'"=\s]+)[ \t]*=""")
 
 
 class _EntryPoint(NamedTuple):
@@ -44,7 +48,8 @@ class _EntryFault(NamedTuple):
     meant: str | None
 
 
-def entry_points(package: Package) -> list[_EntryPoint]:
+@lru_cache(maxsize=4)
+def entry_points(package: Package) -> Sequence[_EntryPoint]:
     """Return the entry points that are known: those of console_scripts in setup.py that are
     written as texts.
     """
@@ -53,24 +58,32 @@ def entry_points(package: Package) -> list[_EntryPoint]:
     if not isinstance(scripts, list | tuple):
         return []
     entries = []
+    places = _places_of_names(package)
     for script in scripts:
         parts = _ENTRY.fullmatch(script) if isinstance(script, str) else None
         if parts is not None:
             name, module, function = parts.groups()
-            location = _locate_name(package, name)
+            location = _locate_name(package, name, places)
             entries.append(_EntryPoint(name, module, function or "", location))
     return entries
 
 
-def _locate_name(package: Package, name: str) -> Location:
+def _places_of_names(package: Package) -> dict[str, int]:
+    """Return where setup.py writes the beginnings of entry points."""
+    setup, places = package.installation, dict[str, int]()
+    for written in _WRITTEN_NAME.finditer(setup.source.text if setup is not None else ""):
+        places.setdefault(written[1], written.start())
+    return places
+
+
+def _locate_name(package: Package, name: str, places: Mapping[str, int]) -> Location:
     """Return where setup.py writes an entry point; where it calls setup() if the text is
     computed.
     """
     setup = package.installation
     assert setup is not None
-    written = re.search(rf"""(?<=['"])[ \t]*{re.escape(name)}[ \t]*=""", setup.source.text)
-    if written:
-        return setup.source.at(written.start())
+    if name in places:
+        return setup.source.at(places[name])
     return setup.location(setup.called_at)
 
 
@@ -91,7 +104,7 @@ def entry_fault(package: Package, name: str) -> _EntryFault | None:
     Its module or the function in it is not there. Modules of other packages are not known, nor is
     what a module does to its own names: a star import, `exec`, `globals()`.
     """
-    setup, named = package.installation, [it for it in entry_points(package) if it.name == name]
+    setup, named = package.installation, _entries_by_name(package).get(name, ())
     if setup is None or len(named) != 1 or package.tree.links or setup.unknown:
         return None
     [entry] = named
@@ -100,8 +113,7 @@ def entry_fault(package: Package, name: str) -> _EntryFault | None:
         if _lacks_module(package, entry.module):
             return _missing_module(package, entry)
         return _misspelt_package(package, entry)
-    code = read_module(package, path)
-    names = _certain_names(code) if code is not None else None
+    code, names = _names_of_module(package, path)
     if not entry.function or names is None or entry.function in names:
         return None
     if code:
@@ -119,6 +131,21 @@ def entry_fault(package: Package, name: str) -> _EntryFault | None:
         [node.name for node in parts],
         only,
     )
+
+
+@lru_cache(maxsize=4)
+def _names_of_module(package: Package, path: str) -> tuple[Code | None, frozenset[str] | None]:
+    """Return a parsed module of a package, and the names that it may bind."""
+    code = read_module(package, path)
+    return code, _certain_names(code) if code is not None else None
+
+
+@lru_cache(maxsize=4)
+def _entries_by_name(package: Package) -> Mapping[str, Sequence[_EntryPoint]]:
+    entries: dict[str, list[_EntryPoint]] = {}
+    for entry in entry_points(package):
+        entries.setdefault(entry.name, []).append(entry)
+    return entries
 
 
 def read_module(package: Package, path: str) -> Code | None:

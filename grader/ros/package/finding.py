@@ -15,10 +15,16 @@ from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
 from grader.ros.package.robot_file import launch_folders
 from grader.ros.package.robots import RobotFile
+from grader.ros.python.budget import whole_budget
 
 # The files that hide a folder, with all that is below, from colcon.
 _IGNORING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 _MAX_PACKAGES = 40
+# Files that are read as texts.
+_TEXTS = (
+    *(".py", ".xml", ".yaml", ".yml", ".urdf", ".xacro", ".launch", ".rviz", ".srdf", ".sdf"),
+    *(".world", ".txt", ".cpp", ".cc", ".hpp", ".h"),
+)
 _MAX_MANIFEST_SIZE = 256 * 1024  # bytes
 _NAMED, _IN_NAMED_FOLDER, _SIMILAR, _OTHER = range(4)  # how well a package has a name
 _CAMEL = re.compile(r"(?<=[^\W\d_A-Z])(?=[A-Z])")
@@ -108,6 +114,7 @@ def read_packages(
     known: dict[str, Package] = {}
     cache = launch_cache if launch_cache is not None else LaunchCache()
     wanted = names or (name,)
+    work = whole_budget(file.size for file in tree.files.values() if file.name.endswith(_TEXTS))
     folders = find_packages(tree, wanted, most)
     packages = []
     for folder in folders:
@@ -127,6 +134,7 @@ def read_packages(
             ignored_by=_find_marker(tree, folder),
             inner=inner,
             launch_cache=cache,
+            work=work,
         )
         packages.append(package)
     packages.sort(

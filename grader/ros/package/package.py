@@ -29,7 +29,7 @@ from grader.ros.python.budget import PYTHON_LIMIT, Budget
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from grader.ros.build.installation import Installation
+    from grader.ros.build.installation import Installation, KnownPrograms
     from grader.ros.build.manifest import Manifest
     from grader.ros.config.rviz import RvizFile
     from grader.ros.launch.launch_model import Launch, NamedFile
@@ -79,11 +79,15 @@ class Package:
     inner: tuple[str, ...] = ()
     launch_cache: LaunchCache = field(default_factory=LaunchCache)
     arguments: "Mapping[str, str]" = field(default_factory=dict)  # that its launch files are given
+    work: Budget = field(default_factory=Budget)  # to read and compare all files of the submission
     # The package without other launch arguments: what a build installs does not depend on them.
     _original: "Package | None" = None
-    budget: Budget = field(default_factory=Budget, init=False)  # of the evaluation of its files
+    budget: Budget = field(init=False)  # of the evaluation of its files
     _launches: "dict[str, Launch]" = field(default_factory=dict, init=False)
     _rviz_files: "dict[str, RvizFile]" = field(default_factory=dict, init=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "budget", Budget(whole=self.work))
 
     def path(self, path: str) -> str:
         """Return a path of the package as one of the submission."""
@@ -265,6 +269,12 @@ class Package:
         return {}
 
     @cached_property
+    def known_programs(self) -> "KnownPrograms":
+        """The programs that a build installs; of a package with a build file."""
+        assert self.installation is not None
+        return self.installation.known_programs()
+
+    @cached_property
     def shadows_ros(self) -> str:
         """The name of a Python package that a build installs and that ros2 launch imports in place
         of its own.
@@ -369,7 +379,9 @@ class Package:
             if data is None:
                 data = self.tree.files[path].read(PYTHON_LIMIT)
             installed = self._installed_path(path)
-            launch = read_launch(data, full, installed, self, self.arguments, self.launch_cache)
+            launch = read_launch(
+                data, full, installed, self, self.arguments, self.launch_cache, self.work
+            )
         except InputError as error:
             launch = Launch(Source(full, ""), unread=str(error))
         if text is None:
@@ -501,7 +513,7 @@ class Package:
         if owner is None:
             return not lacks_program(package, name)
         if owner.installation is not None:
-            return owner.installation.has_program(name, package)
+            return owner.installation.has_program(name, package, owner.known_programs)
         return None
 
     def files_in(self, folder: str) -> "Sequence[str] | None":

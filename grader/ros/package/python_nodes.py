@@ -6,8 +6,8 @@ What is opened under a condition is listed as well; actions and the topics of tf
 """
 
 import ast
-from collections.abc import Collection, Iterator, Sequence
-from functools import partial
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import cached_property, partial
 from typing import Literal, NamedTuple
 
 from grader.base.errors import InputError
@@ -23,6 +23,7 @@ from grader.ros.package.entry_points import (
 from grader.ros.package.node_slips import Program as StartedProgram
 from grader.ros.package.node_slips import node_slips
 from grader.ros.package.package import Package
+from grader.ros.python.budget import Budget
 from grader.ros.python.constants import Constants, constant_in, dotted, offset_of
 from grader.ros.python.evaluation import record
 from grader.ros.python.parse import (
@@ -39,6 +40,8 @@ from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknow
 
 _MAX_SEARCHED = 32 * 1024  # bytes of a program in which slips are searched
 _MAX_MODULES = 100
+_OF_CALL = 4  # parts of a call that leads to a node
+_BYTES_A_PART = 2  # of a program in which slips are searched, charged as one part
 _MAX_FIRST_LINE = 100  # bytes
 _NODES = frozenset(
     f"rclpy.{name}"
@@ -214,18 +217,27 @@ def read_nodes(package: Package) -> PythonNodes:
             unread.add(path)
             doubts.append(_Doubt("the file is not read", Location(package.path(path), 1, 1)))
         else:
-            modules[name] = _Module(code, name, is_package=path.endswith("/__init__.py"))
+            is_package = path.endswith("/__init__.py")
+            modules[name] = _Module(code, name, package.work, is_package=is_package)
     bases = {full: found for module in modules.values() for full, found in module.bases.items()}
-    kinds = set(_NODES)
-    while more := {
-        full for full, found in bases.items() if full not in kinds and kinds.intersection(found)
-    }:
-        kinds |= more
+    derived: dict[str | None, list[str]] = {}  # classes by each of their bases
+    for full, found in bases.items():
+        for base in found:
+            derived.setdefault(base, []).append(full)
+    kinds, reached = set(_NODES), [*_NODES]
+    while reached:
+        more = [full for full in derived.get(reached.pop(), ()) if full not in kinds]
+        kinds.update(more)
+        reached += more
     nodes = [node for module in modules.values() for node in module.read_nodes(kinds)]
     doubts += (doubt for module in modules.values() for doubt in module.doubts)
     programs = []
     for program in _programs(package, modules, nodes):
         slips = _slips_of(package, program)
+        if slips is None:
+            doubts.append(_Doubt("not all programs are read", program.location))
+            programs.append(program._replace(nodes=()))
+            continue
         doubts += [_Doubt(slip.reaction, slip.location) for slip in slips]
         syntax = unreadable_module(package, program.path) if program.path in unread else None
         programs.append(program._replace(nodes=() if slips else program.nodes, syntax=syntax))
@@ -237,13 +249,16 @@ def program_slips(package: Package) -> Iterator[Slip]:
     """Yield the slips for which a program in Python stops, or does nothing."""
     found: dict[Edits, Slip] = {}
     for program in _programs(package, {}, ()):
-        for slip in _slips_of(package, program):
+        for slip in _slips_of(package, program) or ():
             found.setdefault(slip.edits, slip)
     yield from found.values()
 
 
-def _slips_of(package: Package, program: "_Program") -> list[Slip]:
+def _slips_of(package: Package, program: "_Program") -> list[Slip] | None:
+    """Return the slips of a program; None where too many programs are in a file to search each."""
     data = package.tree.read(program.path, _MAX_SEARCHED)
+    if not package.budget.take_of_whole(len(data or b"") // _BYTES_A_PART):
+        return None
     code = parse(data or b"", package.path(program.path))
     if isinstance(code, Code):
         return node_slips(code, StartedProgram(program.name, program.function))
@@ -294,22 +309,33 @@ def _programs(
     package: Package, modules: "dict[str, _Module]", nodes: Sequence[PythonNode]
 ) -> Iterator[_Program]:
     """Yield the entry points, and the files that are programs, with the nodes that they create."""
+    by_key: dict[object, list[PythonNode]] = {}
+    for node in nodes:
+        by_key.setdefault(node.location, []).append(node)
+        by_key.setdefault(node.class_name, []).append(node)
+    created_by = partial(_created_by, package.budget, modules, by_key)
     for entry in entry_points(package):
-        created = _created_by(modules, nodes, entry.module, entry.function)
+        created = created_by(entry.module, entry.function)
         path = module_path(package, entry.module) or ""
         yield _Program(entry.name, created, entry.location, path, entry.function)
     for copy in _scripts(package):
         at = Location(package.path(copy.source), 1, 1)
         name = copy.target.rpartition("/")[2]
-        created = _created_by(modules, nodes, copy.source, "")
+        created = created_by(copy.source, "")
         yield _Program(name, created, at, copy.source, "")
 
 
 def _created_by(
-    modules: "dict[str, _Module]", nodes: Sequence[PythonNode], module: str, function: str
+    budget: Budget,
+    modules: "dict[str, _Module]",
+    nodes: Mapping[object, Sequence[PythonNode]],
+    module: str,
+    function: str,
 ) -> tuple[PythonNode, ...]:
     """Return the nodes that a function creates, also in those that it calls; without a name, the
-    module's body.
+    module's body. None are known where too many functions call others.
+
+    `nodes` are those at a place, and those of a class by its full name.
     """
     found: dict[Location, PythonNode] = {}
     pending, seen = [f"{module}.{function}"], set[str]()
@@ -319,10 +345,11 @@ def _created_by(
         if name in seen or owner is None:
             continue
         seen.add(name)
-        for called, at in owner.calls_in(name.rpartition(".")[2]):
-            found |= {
-                it.location: it for it in nodes if at == it.location or called == it.class_name
-            }
+        calls = owner.calls_in(name.rpartition(".")[2])
+        if not budget.take_of_whole(_OF_CALL * (1 + len(calls))):
+            return ()
+        for called, at in calls:
+            found |= {it.location: it for it in (*nodes.get(at, ()), *nodes.get(called, ()))}
             pending.append(called)
     return tuple(found.values())
 
@@ -347,10 +374,11 @@ class _Module:
     their calls.
     """
 
-    def __init__(self, code: Code, name: str, *, is_package: bool) -> None:
+    def __init__(self, code: Code, name: str, work: Budget, *, is_package: bool) -> None:
         self._code, self._name = code, name
         functions = dict.fromkeys(("rclpy.qos.QoSProfile", *_CREATES), record)
-        self._constants = Constants([*ast.walk(code.tree)], name, functions, is_package=is_package)
+        syntax = [*ast.walk(code.tree)]
+        self._constants = Constants(syntax, name, functions, work, is_package=is_package)
         # Of the classes, by full names; None for a base that is not known.
         self.bases: dict[str, list[str | None]] = {}
         self.doubts: list[_Doubt] = []
@@ -428,7 +456,7 @@ class _Module:
                     facts.append(
                         _Doubt("another node takes the parameters of the process", self._at(call))
                     )
-        if self._constants.budget.left < 0:
+        if self._constants.budget.is_spent:
             self.doubts.append(
                 _Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
             )
@@ -459,13 +487,20 @@ class _Module:
             doubts=tuple(doubts),
         )
 
-    def calls_in(self, function: str) -> Iterator[tuple[str, Location]]:
-        """Yield the full name and place of each call in a function of the module, or in its
+    def calls_in(self, function: str) -> Sequence[tuple[str, Location]]:
+        """Return the full name and place of each call in a function of the module, or in its
         body.
         """
+        return self._calls_by_function.get(function, ())
+
+    @cached_property
+    def _calls_by_function(self) -> Mapping[str, Sequence[tuple[str, Location]]]:
+        calls: dict[str, list[tuple[str, Location]]] = {}
         for part in self._parts:
-            if part.name == function and part.of is None:
-                yield from ((self._called(part, call), self._at(call)) for call in part.calls)
+            if part.of is None:
+                of_part = [(self._called(part, call), self._at(call)) for call in part.calls]
+                calls.setdefault(part.name, []).extend(of_part)
+        return calls
 
     def _called(self, part: _ModulePart, call: ast.Call) -> str:
         first, dot, rest = dotted(call.func).partition(".")

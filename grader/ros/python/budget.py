@@ -2,14 +2,18 @@
 searches.
 """
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable
 from pathlib import PurePosixPath
 
 from grader.ros.python import values as py
 from grader.ros.python.values import parts_of, refuse, too_large
 
 READING = 500_000  # parts that reading one submission may produce or look at: some 0.5 s
+# Parts that reading all files of a submission and comparing their names may take, besides one for
+# each byte of text: what is large is no attack.
+_OF_SUBMISSION = 400_000
 PYTHON_LIMIT = 128 * 1024  # bytes of a file; a syntax tree takes several hundred times as much
+_MAX_TEXT = 512 * 1024  # bytes of a text that count
 CHARACTERS, _BITS = 16, 256  # that count as one part
 _FOLDER = "the name of a folder on the machine is not known"
 
@@ -24,17 +28,28 @@ class Budget:
 
     They are charged before the work, and counted, so that a result is the same on every machine.
     `stand_ins` are the texts that stand for folders that are not known: no value may depend on
-    them.
+    them. `whole` is the budget of all files of a submission, to which all is charged as well.
     """
 
-    def __init__(self, limit: int = READING, stand_ins: Collection[str] = ()) -> None:
+    def __init__(
+        self,
+        limit: int = READING,
+        stand_ins: Collection[str] = (),
+        whole: "Budget | None" = None,
+    ) -> None:
         self.limit = self.left = limit
         self.stand_ins = stand_ins
+        self.whole = whole
 
     @property
     def used(self) -> int:
         """The parts that were charged."""
         return self.limit - self.left
+
+    @property
+    def is_spent(self) -> bool:
+        """Whether nothing more can be charged."""
+        return self.left < 0 or (self.whole is not None and self.whole.left < 0)
 
     def grow(self, limit: int) -> None:
         """Set another limit, from which what was charged is taken."""
@@ -42,11 +57,20 @@ class Budget:
 
     def charge(self, parts: int, characters: int = 0) -> None:
         """Charge parts and characters. Raises OutOfBudget."""
-        self.left -= parts + characters // CHARACTERS
-        if self.left < 0:
+        parts += characters // CHARACTERS
+        self.left -= parts
+        if self.whole is not None:
+            self.whole.left -= parts
+        if self.is_spent:
             raise OutOfBudget(
                 f"reading this takes more work than one submission may use ({self.limit:,} parts)"
             )
+
+    def take_of_whole(self, parts: int) -> bool:
+        """Charge parts to the budget of the submission alone; return whether they were left."""
+        if self.whole is not None:
+            self.whole.left -= parts
+        return not self.is_spent
 
     def measure(self, value: py.Value, kind: str = "plain") -> int:
         """Charge a value and return its size: its parts, each as often as it occurs. Raises
@@ -124,3 +148,8 @@ class Budget:
         ):  # a plain function itself refuses these
             return 0
         return refuse(part, f"values of the type {type(part).__name__} are not supported")
+
+
+def whole_budget(sizes: Iterable[int]) -> Budget:
+    """Return the budget of all files of a submission, of texts of these sizes in bytes."""
+    return Budget(_OF_SUBMISSION + sum(min(size, _MAX_TEXT) for size in sizes))

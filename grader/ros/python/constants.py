@@ -56,10 +56,18 @@ class Constants(Interpreter):
     """
 
     def __init__(
-        self, nodes: Sequence[ast.AST], name: str, functions: FunctionTable, *, is_package: bool
+        self,
+        nodes: Sequence[ast.AST],
+        name: str,
+        functions: FunctionTable,
+        work: Budget,
+        *,
+        is_package: bool,
     ) -> None:
-        """`nodes` are those of the module; of calls, those of the functions are evaluated."""
-        super().__init__(functions, {}, budget=Budget(_MAX_STEPS))
+        """`nodes` are those of the module; of calls, those of the functions are evaluated. `work`
+        is the budget of all files of the submission.
+        """
+        super().__init__(functions, {}, budget=Budget(_MAX_STEPS, whole=work))
         self._full_name, self._is_package, self._is_open = name, is_package, binds_unseen(nodes)
         self._shared: set[str] = set()  # names that functions of the module may bind
         for node in nodes:

@@ -34,7 +34,7 @@ from grader.ros.python.parse import Code, Position, bound_in, own_nodes, positio
 from grader.ros.python.values import call_plain, iterate, known, refuse, str_of
 
 _PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
-_STEPS = 100_000  # what the evaluation of one file may use
+MAX_FILE_STEPS = 100_000  # what the evaluation of one file may use
 _IN_ANNOTATIONS = (
     ast.Attribute,
     ast.Subscript,
@@ -98,7 +98,7 @@ class Interpreter(Evaluation):
         modules, besides those of Python itself; `local_modules` are beside the file, and imported
         before any other.
         """
-        super().__init__(functions, names, budget or Budget(_STEPS))
+        super().__init__(functions, names, budget or Budget(MAX_FILE_STEPS))
         self.budget.stand_ins = stand_ins
         self.exports = exports or {}
         self.local_modules = local_modules

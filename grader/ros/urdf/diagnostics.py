@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable
 from math import nan
 from typing import TypeVar
 
-from grader.base.names import closest, did_you_mean
+from grader.base.names import MAX_GUESSES, closest, did_you_mean
 from grader.base.problems import Effect, Kind, Problem
 from grader.base.source import LazyLocation
 from grader.base.text import cut, quoted
@@ -21,7 +21,6 @@ from grader.ros.xml.xml_problems import RECOVERED
 
 _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")  # %n, %1$n, %hhn
 _MAX_PROBLEMS = 1000
-MAX_GUESSES = 50  # names of one file that are compared, because that takes long
 NO_GUESSES = 0
 _PRINTED = frozenset(
     {"origin", "box", "cylinder", "sphere", "mass"}

@@ -9,13 +9,14 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
+from grader.base.names import MAX_GUESSES
 from grader.base.problems import Effect, Problem, causes, in_order
 from grader.base.source import Source
 from grader.base.text import enumerated, quoted
 from grader.files.limits import ROBOT_ENDINGS
 from grader.files.reading import read_capped
 from grader.ros.urdf import urdf_problems
-from grader.ros.urdf.diagnostics import MAX_GUESSES, NO_GUESSES, Problems
+from grader.ros.urdf.diagnostics import NO_GUESSES, Problems
 from grader.ros.urdf.joint_reader import check_references, read_joint
 from grader.ros.urdf.link_reader import Materials, read_link
 from grader.ros.urdf.link_tree import check_tree

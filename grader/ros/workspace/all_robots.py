@@ -24,7 +24,6 @@ from grader.ros.workspace.opened import OpenedWorkspace
 from grader.ros.workspace.workspace import INCLUDED
 
 _MAX_PACKAGES, _MAX_ROBOTS = 1000, 200
-_MAX_PARTS = 20 * READING  # that all robots together may take
 
 
 def read_workspace(
@@ -68,17 +67,16 @@ def _read_robots(
     found = find_robots(tree, max_size=max_size)
     launched = launched_paths(tree, packages, found)
     included = parts_of(found) | _chosen_parts(tree, found)
-    left = _MAX_PARTS
+    whole = Budget(READING + (packages[0].work.limit if packages else 0))
     robots: list[Read | Unreadable] = []
     parts: list[Read | Unreadable] = []
     for file in _whole(found, launched, included)[:_MAX_ROBOTS]:
-        budget = Budget(min(READING, left))
+        budget = Budget(whole=whole)
         around = package_around(packages, file.path)
         surroundings = Surroundings(
             budget, tree, around, packages, arguments, assumes_defaults=True
         )
         robot = _read(tree, file, max_size, surroundings)
-        left = max(0, left - budget.used)
         is_loaded = file.path in launched and file.path not in included
         is_whole = not _is_empty(robot) and (is_loaded or not _is_part(robot))
         (robots if is_whole else parts).append(robot)

@@ -28,9 +28,7 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
     """
     for package, path, launch in workspace.launches:
         start = Location(package.path(path), 1, 1)
-        for owner, source in package.installed.items():
-            if source != path:
-                continue
+        for owner in workspace.targets_of(package, path):
             for name in launch.declared:
                 yield Definition("launch argument", name, start, owner)
             text = package.tree.files[path].read(_MAX_LAUNCH).decode("utf-8", "replace")

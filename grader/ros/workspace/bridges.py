@@ -13,7 +13,7 @@ from grader.base.text import enumerated, quoted
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode
 from grader.ros.known.known import known
 from grader.ros.workspace.gazebo import BRIDGE, GazeboTopic, gazebo_topics, roots
-from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections
+from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections, cost_of_guess
 from grader.ros.workspace.workspace import Workspace
 
 _TO_ROS, _TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
@@ -58,7 +58,9 @@ class _BridgeRow(NamedTuple):
 def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
     """Yield the rows of bridges in YAML files, and those in the arguments of bridges."""
     for path, tree in workspace.trees:
-        is_used = any(posixpath.basename(path) in text for text in workspace.launch_texts)
+        is_used = any(
+            posixpath.basename(path) in text for text in workspace.searched_launch_texts()
+        )
         for item in tree.items:
             row = _row_in_yaml(item, is_used=is_used)
             if row is not None:
@@ -130,15 +132,19 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
         if node.package == "ros_gz_image":
             bridged |= {(word or "").strip("/") for word in node.arguments or ()}
     unused = [topic for topic in topics if topic.name not in bridged]
+    by_name: dict[str, list[GazeboTopic]] = {}
+    for topic in topics:
+        by_name.setdefault(topic.name, []).append(topic)
     is_known = not _is_open(workspace)
-    are_expanded = any(_EXPANDED in text for text in workspace.launch_texts)
+    are_expanded = any(_EXPANDED in text for text in workspace.searched_launch_texts())
     for row in rows:
         yield Compared("topics")
-        same = [topic for topic in topics if topic.name == row.gz]
+        same = by_name.get(row.gz, [])
         yield from _conversions(row, {f"gz.msgs.{topic.type}" for topic in same})
         if row.gz in named:
             yield from _contradictions(row, same)
         elif not are_expanded and not _COMPUTED.search(row.gz):
+            workspace.charge(len(unused) + cost_of_guess(len(unused)))
             yield from _not_there(row, unused, is_known=is_known)
     yield from _clocks(workspace, rows)
 

@@ -12,7 +12,7 @@ from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
-from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections
+from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections, cost_of_guess
 from grader.ros.workspace.workspace import Workspace
 
 _FIND = re.compile(r"\$\(find ([\w-]+)\)|package://([\w-]+)/")
@@ -41,6 +41,7 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
         for name, at in used.items():
             if name in declared:
                 continue
+            workspace.charge(cost_of_guess(len(declared)))
             meant = near(name, declared)
             guess = f"; did you mean {meant!r}?" if meant is not None else ""
             message = (
@@ -71,6 +72,7 @@ def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Locatio
     for source in workspace.sources_of(package, (".xacro", ".urdf")):
         for match in _FIND.finditer(source.text):
             name = match[1] or match[2]
+            workspace.charge(cost_of_guess(len(names)))
             # A misspelt own package is a mistake of files.
             if name in names or package.depends_on(name) or near(name, names) is None:
                 yield name, source.at(match.start())

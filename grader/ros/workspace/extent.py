@@ -52,7 +52,7 @@ def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) 
     """Return what of a workspace was read; `unread_robots` are not even opened."""
     nodes = [node for found in workspace.python_nodes.values() for node in found.nodes]
     unread = set()
-    for _, node in workspace.nodes:
+    for node in [node for _, launch in workspace.roots for node in launch.nodes]:
         owner = workspace.package_of(node)
         if owner is None or workspace.python_node(node) is not None:
             continue

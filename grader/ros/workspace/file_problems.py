@@ -4,6 +4,7 @@ launch file, and RViz files.
 
 from collections.abc import Iterator
 
+from grader.base.errors import NotDecided
 from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.base.text import counted
@@ -69,7 +70,11 @@ def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
     and without those of arguments that a stated release has.
     """
     name = path.rpartition("/")[2]
-    is_named = sum(name in text for text in workspace.launch_texts) > (name in launch.source.text)
+    try:
+        count = sum(name in text for text in workspace.searched_launch_texts())
+        is_named = count > (name in launch.source.text)
+    except NotDecided:
+        is_named = True
     is_closed = not is_named and not any(it.unknown for _, _, it in workspace.launches)
     faults = []
     for fault in launch.faults:

@@ -20,7 +20,15 @@ from grader.ros.package.installed_files import (
     similar_file,
 )
 from grader.ros.package.package import Package
-from grader.ros.workspace.names import Compared, Correction, Fact, Mismatch, Undecided, corrections
+from grader.ros.workspace.names import (
+    Compared,
+    Correction,
+    Fact,
+    Mismatch,
+    Undecided,
+    corrections,
+    cost_of_guess,
+)
 from grader.ros.workspace.workspace import Workspace
 
 # A path ends at a quote, a tag or a space, in YAML's flow style and in a substitution also at a
@@ -101,8 +109,7 @@ def _is_unused_property(workspace: Workspace, source: Source, at: int) -> bool:
     name = _PROPERTY.match(tag)
     if name is None:
         return False
-    used = re.compile(rf"\$\{{[^{{}}]*\b{re.escape(name[1])}\b")
-    return not any(used.search(other.text) for other in workspace.xacro_sources)
+    return name[1] not in workspace.words_in_expressions
 
 
 class _Text(NamedTuple):
@@ -144,6 +151,7 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
     name, rest = share_parts(named.path)
     owner = package.find(name)
     if owner is None:
+        workspace.charge(cost_of_guess(len(workspace.packages)))
         meant = near(name, [other.name for other in workspace.packages])
         if meant is not None and not package.depends_on(name):
             message = f"there is no package {name!r}; did you mean {meant!r}?"
@@ -152,6 +160,7 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
     target = f"share/{name}/{rest}"
     if not rest or rest in known()["written"] or target in owner.installed:
         return
+    workspace.charge(len(owner.installed) // 8)
     if any(path.startswith(f"{target}/") for path in owner.installed):
         return
     if not workspace.means_one(package, name):
@@ -161,6 +170,7 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
         yield Undecided("files", f"whether a build installs {target} is not evaluated")
         return
     inside = target.removeprefix(owner.share)
+    workspace.charge(2 * cost_of_guess(len(owner.tree.files)) + len(owner.tree.files))
     if inside in owner.tree.folders:
         yield from _no_folder(owner, inside, f"a build installs no {target}", at)
     else:
@@ -246,6 +256,7 @@ def _map_images(workspace: Workspace) -> Iterator[Fact]:
         wanted = posixpath.normpath(posixpath.join(posixpath.dirname(path), image.text))
         if image.text.startswith("/") or wanted in files:
             continue
+        workspace.charge(len(files) + cost_of_guess(len(files)))
         folder, name = posixpath.split(wanted)
         beside = [it for it in files if posixpath.dirname(it) == folder and it != path]
         meant = closest(name, map(posixpath.basename, beside))
@@ -268,6 +279,7 @@ def _models(workspace: Workspace) -> Iterator[Fact]:
             name = text.removeprefix("model://").partition("/")[0]
             if not text.startswith("model://") or name in models:
                 continue
+            workspace.charge(cost_of_guess(len(models)))
             meant = near(name, models)
             if meant is not None:
                 at = file.location(element)

@@ -75,7 +75,7 @@ def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
     worlds: dict[str, XmlFile] = {}  # those that launch files name
     for file in workspace.sdf_files:
         name = file.source.path.rpartition("/")[2]
-        if any(name in text for text in workspace.launch_texts):
+        if any(name in text for text in workspace.searched_launch_texts()):
             for world in file.root.iterchildren("world"):
                 worlds[world.get("name", "")] = file
                 yield from _missing_systems(workspace, file, world)

@@ -24,6 +24,7 @@ _NO_DEPENDENCY = _warning("REF008", "Package that package.xml does not declare")
 _SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
 _UNUSED = _warning("REF010", "File that no other file names")
 OTHER_RELEASE = _warning("REF011", "Name of another release of ROS 2")
+UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
 
 _KINDS: Mapping[Family, Kind] = {
     "files": _NO_FILE,

@@ -2,7 +2,7 @@
 somewhere.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
 from typing import Literal, NamedTuple, get_args
 
@@ -44,6 +44,9 @@ FAMILY_OF: Mapping[_Kind, Family] = {
     **dict.fromkeys(("topic", "Gazebo topic"), "topics"),
     "node": "programs",
 }
+
+
+_MAX_NEAR, _MAX_SIMILAR = 1000, 300  # known names that are compared in either way
 
 
 class Definition(NamedTuple):
@@ -164,8 +167,19 @@ class Agreement(NamedTuple):
         return family in self.families and family not in self.undecided and not is_wrong
 
 
-def agreement(facts: Iterable[Fact]) -> Agreement:
-    """Return which of the names that are used are not defined, in the order of their places."""
+def uncompared(facts: Iterable[Fact], reason: str) -> Agreement:
+    """Return the mismatches among facts that are not all known, and for each family why nothing
+    else is compared.
+    """
+    found = [fact for fact in facts if isinstance(fact, Mismatch)]
+    families = frozenset(fact.family for fact in found)
+    return Agreement(_in_order(found), dict.fromkeys(FAMILIES, reason), families, frozenset(), {})
+
+
+def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: None) -> Agreement:
+    """Return which of the names that are used are not defined, in the order of their places. The
+    work of comparing names is charged.
+    """
     every = [*facts]
     known: dict[tuple[_Kind, str], dict[str, Location]] = {}
     for fact in every:
@@ -185,26 +199,41 @@ def agreement(facts: Iterable[Fact]) -> Agreement:
         is_defined = use.name in known.get(key, {})
         if is_defined or not (use.optional or key in opened):
             compared.add(FAMILY_OF[use.kind])
+        charge(1 + len(patterns))
         if is_defined or _may_be_defined(use, patterns):
             continue
+        charge(cost_of_guess(len(known.get(key, ()))))
         mismatch = _mismatch(use, known.get(key, {}), is_open=key in opened)
         if mismatch is not None:
             found.append(mismatch)
         if opened.get(key):
             undecided.setdefault(FAMILY_OF[use.kind], opened[key])
-    order = sorted(
-        dict.fromkeys(found),
-        key=lambda it: (it.location.path, it.location.line, it.location.column),
-    )
     compared |= {fact.family for fact in every if isinstance(fact, Compared | Mismatch)}
     files = frozenset(fact.name for fact in every if isinstance(fact, Compared) and fact.name)
-    return Agreement(tuple(order), undecided, frozenset(compared), files, counts)
+    return Agreement(_in_order(found), undecided, frozenset(compared), files, counts)
+
+
+def _in_order(found: Iterable[Mismatch]) -> tuple[Mismatch, ...]:
+    """Return mismatches, each once, in the order of their places."""
+    return tuple(
+        sorted(
+            dict.fromkeys(found),
+            key=lambda it: (it.location.path, it.location.line, it.location.column),
+        )
+    )
 
 
 def _may_be_defined(use: Use, patterns: Sequence[Pattern]) -> bool:
     """Return whether a name is computed, or one that may be defined."""
     possible = (it.pattern for it in patterns if it.kind == use.kind)
     return "$" in use.name or any(fnmatchcase(use.name, pattern) for pattern in possible)
+
+
+def cost_of_guess(known: int) -> int:
+    """Return the parts of comparing a name with as many known ones; the most similar text is
+    searched among the first of them.
+    """
+    return 3 * min(known, _MAX_NEAR) + 20 * min(known, _MAX_SIMILAR)
 
 
 def _undecided(facts: Sequence[Fact], counts: Iterable[Counted]) -> dict[Family, str]:

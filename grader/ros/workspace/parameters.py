@@ -5,13 +5,12 @@ nodes declare them.
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
-from functools import partial
 from itertools import chain
 from typing import Any
 
 from grader.base.names import closest, near
 from grader.base.source import Location
-from grader.ros.config.yaml_nodes import YamlFault, YamlNode, first_alias
+from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, first_alias
 from grader.ros.config.yaml_values import (
     PARAMETERS,
     is_misspelt_key,
@@ -22,7 +21,6 @@ from grader.ros.config.yaml_values import (
 from grader.ros.known.known import known
 from grader.ros.known.releases import RELEASES, Release, releases_with
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
-from grader.ros.launch.node_parameters import parameters_of
 from grader.ros.package.mesh_content import LFS_POINTER
 from grader.ros.package.package import Package
 from grader.ros.package.python_nodes import PythonNode
@@ -38,6 +36,7 @@ from grader.ros.workspace.names import (
     Undecided,
     Use,
     corrections,
+    cost_of_guess,
 )
 from grader.ros.workspace.workspace import MANAGER, Workspace
 
@@ -61,6 +60,7 @@ _GENERATED_TYPES = {
 _OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
 _INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
+_WILDCARD = re.compile(r"[*?\[]")
 _SEPARATORS = re.compile(r"[:/]+")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
 _LISTS = ("plugins", "navigators", "observation_sources", "filters", "controller_names")
@@ -116,12 +116,17 @@ def _plugins(workspace: Workspace) -> Iterator[Fact]:
         yield from _plugin_names(tree, workspace.releases)
 
 
-def _sections(node: YamlNode, above: str = "") -> Iterator[tuple[str, str]]:
+def _sections(node: YamlNode) -> Iterator[tuple[str, str]]:
     """Yield the names of the mappings in a file, each with the keys above it."""
-    for key, inner in node.value.items() if isinstance(node.value, dict) else ():
-        if isinstance(inner.value, dict):
-            yield above, key
-            yield from _sections(inner, f"{above}/{key.strip('/')}")
+    waiting, visits = [("", node)], Visits()
+    while waiting:
+        above, mapping = waiting.pop()
+        if not isinstance(mapping.value, dict) or not visits.enters(mapping):
+            continue
+        for key, inner in mapping.value.items():
+            if isinstance(inner.value, dict):
+                yield above, key
+                waiting.append((f"{above}/{key.strip('/')}", inner))
 
 
 def _is_given_alone(workspace: Workspace, path: str) -> bool:
@@ -150,14 +155,17 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
     if len(known_names) < len(nodes):
         return  # any section may be theirs
     unread = _unread_sections(workspace, sections, known_names)
+    patterns = [key for key in sections if _WILDCARD.search(key)]
+    workspace.charge(len(known_names) * (1 + len(patterns)))
     lacking = set()
     for name in known_names:
-        if not any(fnmatchcase(name, key) for key in sections):
+        if name not in sections and not any(fnmatchcase(name, key) for key in patterns):
             lacking.add(name)
     if not lacking or not unread:
         return
     is_passed = _is_passed_to_include(workspace, path)
     for node, name in zip(nodes, known_names, strict=True):
+        workspace.charge(cost_of_guess(len(unread)))
         meant = near(name, unread)
         is_known = (
             workspace.package_of(node) is not None or node.package in known()["without_frames"]
@@ -181,11 +189,14 @@ def _unread_sections(
 ) -> list[str]:
     """Return the keys of sections that neither the nodes of these names nor their children read."""
     children: set[str] = set()
-    for name in names:
+    for name in set(names):
         children |= workspace.children_of(name)
-    unread = []
+    unread, known_names = [], set(names)
     for key in sections:
-        is_read = key in children or any(fnmatchcase(name, key) for name in names)
+        is_read = key in children or key in known_names
+        if not is_read and _WILDCARD.search(key):
+            workspace.charge(len(known_names))
+            is_read = any(fnmatchcase(name, key) for name in known_names)
         if not is_read:
             unread.append(key)
     return unread
@@ -222,8 +233,11 @@ def _misplaced(tree: YamlNode) -> Iterator[Fact]:
             at,
         )
     waiting: list[tuple[str, YamlNode, bool]] = [("", tree, False)]
+    visits = {True: Visits(), False: Visits()}  # by whether it is below a key ros__parameters
     while waiting:
         name, node, is_below = waiting.pop()
+        if not visits[is_below].enters(node):
+            continue
         if isinstance(node.value, dict) and node.value:
             for key, inner in node.value.items():
                 if key == PARAMETERS and is_below:
@@ -271,8 +285,7 @@ def _given(
 ) -> Iterator[Fact]:
     """Yield the parameters that a node of the workspace is given."""
     owner = f"{node.package}/{node.executable}"
-    opened = partial(workspace.open_given, package)
-    given = parameters_of(node, opened, python_node.name or "")
+    given = workspace.read_given(package, node, python_node.name or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
     # What a file gives to every node need not be declared by this one.
@@ -435,10 +448,10 @@ def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Ite
     """Yield the entries of lists of plugins that have no section beside them, and none at the same
     place elsewhere.
     """
-    waiting = [("", tree)]
+    waiting, visits = [("", tree)], Visits()
     while waiting:
         above, node = waiting.pop()
-        if not isinstance(node.value, dict):
+        if not isinstance(node.value, dict) or not visits.enters(node):
             continue
         sections: dict[str, Location] = {}
         for key, inner in node.value.items():

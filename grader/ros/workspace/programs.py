@@ -12,7 +12,7 @@ from grader.base.source import Location
 from grader.ros.known.known import compared_programs, known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import parameters_of
-from grader.ros.package.entry_points import entry_fault, entry_points
+from grader.ros.package.entry_points import entry_fault, entry_points, module_path
 from grader.ros.package.package import CMAKE, SETUP, Package
 from grader.ros.workspace.names import (
     Compared,
@@ -27,6 +27,8 @@ from grader.ros.workspace.names import (
 from grader.ros.workspace.workspace import Workspace
 
 _MAX_FIRST_LINE = 100  # bytes
+_BYTES_A_PART = 4  # of a module whose functions are compared with the one that is missing
+_OF_MISSING = 5_000  # parts: similar names are searched among all programs
 
 
 def program_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -34,27 +36,28 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
     starts.
     """
     for package in workspace.packages:
-        yield from _entry_points(package)
+        yield from _entry_points(workspace, package)
     for package, node in workspace.nodes:
         if not workspace.means_one(package, node.package):
             yield Undecided("programs", f"several packages are named {node.package!r}")
             continue
         owner = package.find(node.package)
         if owner is not None:
-            yield from _own_program(owner, node)
+            yield from _own_program(workspace, owner, node)
             continue
         programs = compared_programs(node.package)
         if programs is None:
             continue
         yield Compared("programs")
         if node.executable not in programs:
+            workspace.charge(_OF_MISSING)
             missing = _missing_program(node.package, node.executable, programs)
             either = corrections(node.executable, node.location, missing.meant)
             yield Mismatch("programs", missing.message, node.location, corrections=either)
     yield from _lifecycle(workspace)
 
 
-def _own_program(owner: Package, node: StartedNode) -> Iterator[Fact]:
+def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Iterator[Fact]:
     """Yield that a package of the workspace does not have the program of a node, or that Linux
     cannot execute it.
     """
@@ -62,6 +65,7 @@ def _own_program(owner: Package, node: StartedNode) -> Iterator[Fact]:
     if owner.installation is not None and owner.installation.unread:
         yield Undecided("programs", owner.installation.unread)
     if owner.has_program(node.package, node.executable) is False:
+        workspace.charge(_OF_MISSING + len(owner.tree.files))
         missing = _why_no_program(owner, node.executable)
         start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
         either = corrections(node.executable, node.location, missing.meant, start)
@@ -70,10 +74,13 @@ def _own_program(owner: Package, node: StartedNode) -> Iterator[Fact]:
         yield from _not_executed(owner, node)
 
 
-def _entry_points(package: Package) -> Iterator[Fact]:
+def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
     """Yield the entry points of a package that name no function."""
     for entry in entry_points(package):
         yield Compared("programs")
+        path = module_path(package, entry.module)
+        size = package.tree.files[path].size if path is not None else 0
+        workspace.charge(len(package.tree.files) + size // _BYTES_A_PART)
         fault = entry_fault(package, entry.name)
         if fault is not None:
             message = f"the entry point of {entry.name!r} names no function: {fault.message}"
@@ -86,20 +93,19 @@ def _not_executed(package: Package, node: StartedNode) -> Iterator[Mismatch]:
     without CR.
     """
     target = f"lib/{package.name}/{node.executable}"
-    for copy in package.installation.copies if package.installation is not None else ():
-        if copy.target != target or not copy.source.endswith(".py"):
-            continue
+    source = package.installed.get(target, "")
+    if source.endswith(".py"):
         with suppress(InputError):
-            start = package.tree.files[copy.source].read(_MAX_FIRST_LINE, first=True)
+            start = package.tree.files[source].read(_MAX_FIRST_LINE, first=True)
             line = start.partition(b"\n")[0]
             if not line.startswith(b"#!"):
                 wrong = "is not #!/usr/bin/env python3"
             elif line.endswith(b"\r"):
                 wrong = "ends as on Windows, with CR LF"
             else:
-                continue
+                return
             message = f"Linux cannot execute {node.executable}: its first line {wrong}"
-            at = Location(package.path(copy.source), 1, 1)
+            at = Location(package.path(source), 1, 1)
             yield Mismatch("programs", message, at, node.location)
 
 
@@ -153,6 +159,7 @@ def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
         yield from _started(workspace)
     for package, manager in managers:
         given = parameters_of(manager, package.open_installed, "lifecycle_manager")
+        workspace.charge(len(given.values))
         names = given.values.get("node_names")
         if given.unknown and names is None:
             yield Undecided("programs", given.unknown)

@@ -4,6 +4,7 @@ from collections.abc import Collection, Iterator
 from functools import lru_cache
 from itertools import chain
 
+from grader.base.errors import NotDecided
 from grader.ros.package.package import Package
 from grader.ros.workspace.arguments import argument_facts
 from grader.ros.workspace.bridges import bridge_facts
@@ -22,6 +23,7 @@ from grader.ros.workspace.names import (
     Mismatch,
     Use,
     agreement,
+    uncompared,
 )
 from grader.ros.workspace.parameters import parameter_facts
 from grader.ros.workspace.programs import program_facts
@@ -48,13 +50,26 @@ _READERS = (
 )
 
 
+# The parts of a fact, and of a mismatch, for which similar names are searched.
+_OF_FACT, _OF_MISMATCH = 3, 1_000
+
+
 @lru_cache(maxsize=2)
 def read_agreement(workspace: Workspace) -> Agreement:
-    """Return what does not agree in a workspace."""
-    found = agreement(read_facts(workspace))
+    """Return what does not agree in a workspace; what is found before the budget of the submission
+    is spent, and that the rest is not compared.
+    """
+    facts: list[Fact] = []
+    try:
+        facts += read_facts(workspace)
+        found = agreement(facts, workspace.charge)
+        unused = tuple(unused_files(workspace))
+    except NotDecided as error:
+        found = uncompared(facts, str(error))
+        unused = ()
     # names_agree needs a package.
     families = found.families if workspace.packages else frozenset[Family]()
-    return found._replace(families=families, unused=tuple(unused_files(workspace)))
+    return found._replace(families=families, unused=unused)
 
 
 def wrong_names(
@@ -70,8 +85,12 @@ def wrong_names(
 
 
 def read_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield what the files of a workspace define and use."""
-    return chain.from_iterable(reader(workspace) for reader in _READERS)
+    """Yield what the files of a workspace define and use. Raises NotDecided where this takes too
+    much work.
+    """
+    for fact in chain.from_iterable(reader(workspace) for reader in _READERS):
+        workspace.charge(_OF_MISMATCH if isinstance(fact, Mismatch) else _OF_FACT)
+        yield fact
 
 
 def compared_facts(

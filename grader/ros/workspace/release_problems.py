@@ -3,15 +3,16 @@
 import re
 from collections.abc import Iterator
 
+from grader.base.errors import NotDecided
 from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.releases import RELEASES, NameKind, other_name
 from grader.ros.workspace.controllers import defined_controllers
-from grader.ros.workspace.name_problems import OTHER_RELEASE, name_problems
+from grader.ros.workspace.name_problems import OTHER_RELEASE, UNCOMPARED, name_problems
 from grader.ros.workspace.names import Agreement
 from grader.ros.workspace.reading import read_agreement
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.workspace import TOO_MUCH, Workspace
 
 _DISTRO = "ROS_DISTRO"
 _DEPENDENCY = re.compile(r"<\w*depend>\s*([\w-]+)\s*</")
@@ -24,7 +25,13 @@ def compared_names(workspace: Workspace) -> Iterator[Problem]:
     """
     agreement = read_agreement(workspace)
     yield from name_problems(agreement)
-    yield from _release_problems(workspace, agreement)
+    try:
+        yield from _release_problems(workspace, agreement)
+    except NotDecided:
+        assert workspace.is_spent
+    if workspace.is_spent:
+        start = Location(next(iter(workspace.tree.files), ""), 1, 1)
+        yield Problem(UNCOMPARED, f"not all names are compared: {TOO_MUCH}", start)
 
 
 def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Problem]:

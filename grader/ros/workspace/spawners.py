@@ -4,15 +4,13 @@ controller is started.
 
 import re
 from collections.abc import Iterator, Sequence
-from functools import partial
 from itertools import pairwise
 
 from grader.base.names import near
 from grader.base.text import enumerated, quoted
 from grader.ros.config.yaml_nodes import YamlFault
 from grader.ros.launch.launch_model import Launch, StartedNode
-from grader.ros.launch.node_parameters import controllers_of, parameters_of
-from grader.ros.package.installed_files import open_meant
+from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.package.package import Package
 from grader.ros.workspace.controllers import Controller, defined_controllers
 from grader.ros.workspace.names import Fact, Mismatch, Open, Use, corrections
@@ -116,7 +114,7 @@ def _without_type(
         if not _is_spawner(spawner) or not spawner.when or not is_plain:
             continue
         for controller in controllers_of(spawner) or ():
-            own = parameters_of(controller, partial(open_meant, package))
+            own = workspace.read_parameters(package, controller, "")
             has_type = "type" in own.values or f"{controller.node_name}.type" in given.values
             lacks_type[controller.node_name] = not own.unknown and not has_type
     files = [workspace.source_of(each.path) for each in manager.parameters or () if each.path]

@@ -62,21 +62,37 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
             opened.append(_OpenedTopic(topic, endpoint, launch, node))
         for topic, endpoint in _endpoints(workspace, node):
             opened.append(_OpenedTopic(topic, endpoint, launch, node))
-        yield from _remappings(workspace, node)
-    publishers = _opened_as("publisher", opened)
-    for subscription in _opened_as("subscription", opened):
-        for publisher in publishers:
-            if publisher.topic != subscription.topic:
-                continue
+    yield from _all_remappings(workspace)
+    distinct = _distinct(opened)
+    publishers = _by_topic(_opened_as("publisher", distinct))
+    for subscription in _opened_as("subscription", distinct):
+        for publisher in publishers.get(subscription.topic, ()):
             yield Compared("topics")
             are_started = subscription.is_started and publisher.is_started
             is_certain = are_started and subscription.launch == publisher.launch
             for mismatch in _differences(subscription, publisher):
                 yield mismatch._replace(is_certain=is_certain)
-    yield from _bridged_types(workspace, opened)
-    yield from _unconnected(workspace, opened)
-    yield from _unheard(workspace, opened)
+    yield from _bridged_types(workspace, distinct)
+    yield from _unconnected(workspace, distinct)
+    yield from _unheard(workspace, distinct)
     yield _count(workspace, opened)
+
+
+def _distinct(opened: Iterable[_OpenedTopic]) -> list[_OpenedTopic]:
+    """Return what differs: a loop starts a program often, with the same topics."""
+    found: dict[object, _OpenedTopic] = {}
+    for each in opened:
+        node = each.node
+        of_node = (node.executable, node.when, node.namespace, node.remaps)
+        found.setdefault((each.topic, each.endpoint, each.launch, of_node), each)
+    return list(found.values())
+
+
+def _by_topic(opened: Iterable[_OpenedTopic]) -> dict[str, list[_OpenedTopic]]:
+    by_topic: dict[str, list[_OpenedTopic]] = {}
+    for each in opened:
+        by_topic.setdefault(each.topic, []).append(each)
+    return by_topic
 
 
 def _count(workspace: Workspace, opened: Iterable[_OpenedTopic]) -> Counted:
@@ -115,7 +131,9 @@ def _count(workspace: Workspace, opened: Iterable[_OpenedTopic]) -> Counted:
 def _endpoints(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str, Endpoint]]:
     """Yield the publishers and subscriptions of an own Python node, with the names of topics."""
     python_node = workspace.python_node(node)
-    for endpoint in python_node.endpoints if python_node is not None else ():
+    endpoints = python_node.endpoints if python_node is not None else ()
+    workspace.charge(len(endpoints) * (1 + len(node.remaps or ())))
+    for endpoint in endpoints:
         # What begins with ~ is below the name of the node.
         is_plain = endpoint.name is not None and not endpoint.name.startswith("~")
         topic = node.topic(endpoint.name or "") if is_plain else None
@@ -164,10 +182,10 @@ def _bridged_types(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator
     is_plain = all(node.remaps == () and node.namespace in ("", "/") for node in bridges)
     if not bridges or not is_plain:
         return
+    by_topic = _by_topic(each for each in opened if not each.is_of_controller)
     for row in bridge_rows(workspace):
-        for each in opened:
-            if each.topic != f"/{row.ros}" or each.is_of_controller:
-                continue
+        for each in by_topic.get(f"/{row.ros}", ()):
+            workspace.charge(1)
             kind, at = each.endpoint.type, each.endpoint.location
             is_met = row.is_published if each.endpoint.kind == "subscription" else row.is_read
             if is_met and kind is not None and kind != row.ros_type:
@@ -180,8 +198,28 @@ def _bridged_types(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator
                 yield Mismatch("topics", message, at, row.location, is_certain, is_of_type=True)
 
 
-def _remappings(workspace: Workspace, node: StartedNode) -> Iterator[Fact]:
-    """Yield the names that a node has, and those that remappings of it alone replace."""
+def _all_remappings(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the names that nodes have, and those that remappings of one node alone replace."""
+    owners: dict[tuple[str, ...], list[StartedNode]] = {}  # of each rule the first nodes with it
+    for _, node in workspace.nodes:
+        for rule in node.remaps or ():
+            of_rule = owners.setdefault(rule, [])
+            if len(of_rule) < 2 and not any(node is it for it in of_rule):
+                of_rule.append(node)
+    said: set[object] = set()
+    for _, node in workspace.launched:
+        key = (node.package, node.executable, node.location, node.remaps)
+        if node.when is False or key in said:
+            continue
+        said.add(key)
+        own = [rule for rule in node.remaps or () if len(owners[rule]) == 1]
+        yield from _remappings(workspace, node, own)
+
+
+def _remappings(
+    workspace: Workspace, node: StartedNode, rules: Iterable[tuple[str, ...]]
+) -> Iterator[Fact]:
+    """Yield the names that a node has, and those that these remappings, of it alone, replace."""
     python_node = workspace.python_node(node)
     if python_node is None or node.remaps is None:
         return
@@ -191,13 +229,9 @@ def _remappings(workspace: Workspace, node: StartedNode) -> Iterator[Fact]:
     for endpoint in python_node.endpoints:
         if endpoint.name is not None:
             yield Definition("topic", _bare(endpoint.name), endpoint.location, owner)
-    shared: list[tuple[str, ...]] = []
-    for _, other in workspace.nodes:
-        if other is not node:
-            shared += other.remaps or ()
-    for rule in node.remaps:
+    for rule in rules:
         name = _bare(rule[0])
-        if rule not in shared and not name.startswith("__") and ":" not in name:
+        if not name.startswith("__") and ":" not in name:
             # Actions and what rclpy itself opens, such as /tf, are not listed.
             said = f"the remapping of {node.executable}"
             yield Use("topic", name, node.location, said, owner, optional=True)
@@ -216,6 +250,9 @@ def _unconnected(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[F
     subscriptions = _opened_as("subscription", opened)
     subscribed = {subscription.topic for subscription in subscriptions}
     unused = [offer for offer in offers if offer.topic not in subscribed]
+    by_type: dict[str | None, list[_Offer]] = {}
+    for offer in unused:
+        by_type.setdefault(offer.type, []).append(offer)
     yield Open("topic")
     for offer in unused:
         yield Definition("topic", offer.topic, offer.location)
@@ -223,7 +260,8 @@ def _unconnected(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[F
         topic, endpoint, node = subscription.topic, subscription.endpoint, subscription.node
         if topic in offered or subscription.is_of_controller:
             continue
-        alike = [offer for offer in unused if offer.type == endpoint.type]
+        alike = by_type.get(endpoint.type, [])
+        workspace.charge(len(alike))
         alike = [offer for offer in alike if subscription.launch in offer.launches]
         names = {offer.topic for offer in alike}
         is_one = len(names) == 1 and closest(topic, names)
@@ -252,6 +290,7 @@ def _unheard(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[Misma
         if not waiting.is_of_controller or waiting.topic in published:
             continue
         kind, place = waiting.endpoint.type, waiting.endpoint.location
+        workspace.charge(len(unheard))
         fitting = [publisher for publisher in unheard if publisher.launch == waiting.launch]
         fitting = [publisher for publisher in fitting if publisher.endpoint.type == kind]
         for publisher in fitting:

@@ -4,12 +4,13 @@ the robot, nodes.
 
 import posixpath
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property, partial
+from functools import cache, cached_property, partial
 
-from grader.base.errors import InputError
+from grader.base.errors import InputError, NotDecided
 from grader.base.source import LazyLocation, Location, Source
 from grader.files.tree import Tree, parents
 from grader.ros.build.places import (
@@ -26,9 +27,11 @@ from grader.ros.known.known import known
 from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import GivenParameters, Launch, ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import (
+    FileTables,
     NodeParameters,
     controllers_of,
     parameters_of,
+    read_tables,
     value_in_file,
 )
 from grader.ros.package.finding import is_backup
@@ -36,6 +39,7 @@ from grader.ros.package.installed_files import are_installs_known, open_meant
 from grader.ros.package.package import Package
 from grader.ros.package.python_nodes import PythonNode, PythonNodes, read_nodes
 from grader.ros.package.robot_file import Read
+from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.urdf.model import Robot
 from grader.ros.xml.elements import readable
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile
@@ -46,8 +50,14 @@ _NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
 _CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
 _PACKAGE_IN = re.compile("the package '([\\w-]+)'")  # in the reason why a path is not known
 INCLUDED = re.compile(r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"']")
+_EXPRESSION, _WORD = re.compile(r"\$\{([^{}]*)"), re.compile(r"\w+")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 _MAX_FILES = 60  # of one kind in a package
+# What is charged as one part: names of files that are compared, bytes of a file that a node is
+# given, and characters of a text in which something is searched.
+_FILES_A_PART, _BYTES_A_PART, _SEARCHED_A_PART = 8, 64, 512
+_CAUSE = "not all names are compared"
+TOO_MUCH = "comparing them takes more work than one submission may use"
 _MAX_YAML = 512 * 1024  # bytes
 _TEXTS = (".yaml", ".yml", ".urdf", ".xacro", ".srdf", ".sdf", ".world", ".rviz", ".py", ".xml")
 _OWN_FOLDERS = frozenset({"config", "launch", "maps", "params", "rviz", "urdf", "worlds"})
@@ -107,6 +117,24 @@ class Workspace:
     releases: tuple[Release, ...] = ()  # in one of which names should be; () for any
 
     @cached_property
+    def _work(self) -> Budget:
+        for package in self.found_packages:
+            return package.work
+        return Budget()
+
+    @property
+    def is_spent(self) -> bool:
+        """Whether more is left to read and compare than a submission may ask for."""
+        return self._work.is_spent
+
+    def charge(self, parts: int) -> None:
+        """Charge the work of comparing names to the budget of the submission. Raises NotDecided."""
+        try:
+            self._work.charge(parts)
+        except OutOfBudget:
+            raise NotDecided(f"not all names are compared: {TOO_MUCH}", _CAUSE) from None
+
+    @cached_property
     def packages(self) -> tuple[Package, ...]:
         """The packages that a build of the workspace has: the best of each name, without those
         that colcon ignores.
@@ -122,10 +150,13 @@ class Workspace:
         """Return whether a name in a file of a package certainly means one package: its own, or
         the only one.
         """
-        if name in package.names:
-            return True
-        named = [other for other in self.found_packages if other.name == name]
-        return sum(not other.ignored_by and not is_backup(other.folder) for other in named) < 2
+        return name in package.names or self._counts[name] < 2
+
+    @cached_property
+    def _counts(self) -> Counter[str]:
+        """How many packages have a name, without those that are ignored and backups."""
+        used = [it for it in self.found_packages if not it.ignored_by and not is_backup(it.folder)]
+        return Counter(package.name for package in used)
 
     @cached_property
     def launches(self) -> tuple[tuple[Package, str, Launch], ...]:
@@ -155,11 +186,16 @@ class Workspace:
             if of_ros1:
                 yield package, of_ros1
 
-    @cached_property
+    @property
     def nodes(self) -> tuple[tuple[Package, StartedNode], ...]:
         """The nodes that launch files start, or may start: those that no other launch file
-        includes.
+        includes. Raises NotDecided.
         """
+        self.charge(1 + len(self._nodes))
+        return self._nodes
+
+    @cached_property
+    def _nodes(self) -> tuple[tuple[Package, StartedNode], ...]:
         return tuple((package, node) for package, launch in self.roots for node in launch.nodes)
 
     @cached_property
@@ -170,15 +206,29 @@ class Workspace:
             included |= {passed.path for passed in launch.passed}
         found = []
         for package, path, launch in self.launches:
-            targets = [target for target, source in package.installed.items() if source == path]
-            if included.isdisjoint(targets):
+            if included.isdisjoint(self.targets_of(package, path)):
                 found.append((package, launch))
         return tuple(found)
+
+    def targets_of(self, package: Package, source: str) -> Sequence[str]:
+        """Return the paths below the prefix at which a build installs a file of a package."""
+        if package not in self._targets:
+            targets: dict[str, list[str]] = {}
+            for target, path in package.installed.items():
+                targets.setdefault(path, []).append(target)
+            self._targets[package] = targets
+        return self._targets[package].get(source, ())
+
+    @cached_property
+    def _targets(self) -> dict[Package, dict[str, list[str]]]:
+        """The paths at which builds install files, by packages and the paths of files in them."""
+        return {}
 
     @property
     def launched(self) -> Iterator[tuple[int, StartedNode]]:
         """The nodes, each with the number of the launch file that starts it on its own."""
         for number, (_, launch) in enumerate(self.roots):
+            self.charge(1 + len(launch.nodes))
             for node in launch.nodes:
                 yield (number, node)
 
@@ -204,6 +254,7 @@ class Workspace:
     @property
     def trees(self) -> Iterator[tuple[str, YamlNode]]:
         """The YAML files that are read, with their paths."""
+        self.charge(1 + len(self.yaml_files))
         for path, node in self.yaml_files.items():
             if isinstance(node, YamlNode):
                 yield (path, node)
@@ -302,11 +353,20 @@ class Workspace:
         owner = self.package_of(node)
         if owner is None or owner.name not in self.python_nodes:
             return None
-        programs = self.python_nodes[owner.name].programs
-        started = [program for program in programs if program.name == node.executable]
-        if len(started) == 1 and len(started[0].nodes) == 1:
-            return started[0].nodes[0]
-        return None
+        return self._python_nodes_by_program.get((owner.name, node.executable))
+
+    @cached_property
+    def _python_nodes_by_program(self) -> Mapping[tuple[str, str], PythonNode]:
+        """The Python nodes by their packages and programs, of programs with one node."""
+        programs: dict[tuple[str, str], list[Sequence[PythonNode]]] = {}
+        for package, found in self.python_nodes.items():
+            for program in found.programs:
+                programs.setdefault((package, program.name), []).append(program.nodes)
+        nodes: dict[tuple[str, str], PythonNode] = {}
+        for key, of_programs in programs.items():
+            if len(of_programs) == 1 and len(of_programs[0]) == 1:
+                nodes[key] = of_programs[0][0]
+        return nodes
 
     def package_of(self, node: StartedNode) -> Package | None:
         """Return the package of the workspace whose program a node is."""
@@ -354,7 +414,7 @@ class Workspace:
 
     def has_file(self, path: str) -> bool:
         """Return whether a build of the workspace installs a file at a path below the prefix."""
-        return any(path in package.installed for package in self.packages)
+        return path in self._sources_of_installed
 
     def installed_yaml(self, path: str) -> YamlNode | None:
         """Return the YAML file that is installed at a path, which begins with the prefix's
@@ -368,10 +428,16 @@ class Workspace:
         prefix's stand-in.
         """
         inside = posixpath.normpath(path).removeprefix(f"{PREFIX}/")
+        return self._sources_of_installed.get(inside)
+
+    @cached_property
+    def _sources_of_installed(self) -> Mapping[str, str]:
+        """The files of the submission, by the paths below the prefix where they are installed."""
+        sources: dict[str, str] = {}
         for package in self.packages:
-            if inside in package.installed:
-                return package.path(package.installed[inside])
-        return None
+            for target, source in package.installed.items():
+                sources.setdefault(target, package.path(source))
+        return sources
 
     @cached_property
     def parameter_files(self) -> Mapping[str, list[StartedNode]]:
@@ -393,7 +459,6 @@ class Workspace:
         """
         owners: dict[str, list[NodeParameters]] = {}
         for package, launch in self.roots:
-            opened = partial(self.open_given, package)
             # What a controller manager and Gazebo are given, its controllers get too.
             shared: list[GivenParameters] = []
             for node in launch.nodes:
@@ -403,12 +468,12 @@ class Workspace:
             for node in launch.nodes:
                 name = self.name_of(node)
                 if name == MANAGER or (name is not None and node.package != MANAGER):
-                    given = parameters_of(node, opened, name)
+                    given = self.read_given(package, node, name)
                     owners.setdefault(name, []).append(given)
                 for controller in _spawned_by(node):
                     files = (*shared, *(controller.parameters or ()))
                     started = controller._replace(parameters=files)
-                    given = parameters_of(started, opened)
+                    given = self.read_given(package, started, "")
                     owners.setdefault(controller.node_name or "", []).append(given)
         return owners
 
@@ -449,13 +514,50 @@ class Workspace:
 
     def parameters_given(self, package: Package, node: StartedNode) -> NodeParameters:
         """Return the parameters that a node gets, whose launch file is in a package."""
-        opened = partial(open_meant, package)
-        return parameters_of(node, opened, self.name_of(node) or "")
+        return self.read_parameters(package, node, self.name_of(node) or "")
+
+    def read_parameters(self, package: Package, node: StartedNode, name: str) -> NodeParameters:
+        """Return the parameters that a node gets that is called so in its program. Raises
+        NotDecided.
+        """
+        return parameters_of(node, partial(self.open, package), name, self._read_tables)
+
+    def read_given(self, package: Package, node: StartedNode, name: str) -> NodeParameters:
+        """Return the same, where a file that surely is nowhere gives nothing. Raises NotDecided."""
+        return parameters_of(node, partial(self.open_given, package), name, self._read_tables)
+
+    @cached_property
+    def _read_tables(self) -> Callable[[bytes, str, bool], FileTables]:
+        """A reader of parameter files that reads each once."""
+        return cache(read_tables)
+
+    def open(self, package: Package, path: str) -> tuple[bytes, str] | None:
+        """Return a parameter file, as `open_meant` does. Raises NotDecided."""
+        return self._open_once(partial(open_meant, package, path), package, path)
+
+    def _open_once(
+        self, find: Callable[[], tuple[bytes, str] | None], *key: object
+    ) -> tuple[bytes, str] | None:
+        """Return a file that is searched once, and charge what a node is given."""
+        if key not in self._opened:
+            self.charge(len(self.tree.files) // _FILES_A_PART)
+            self._opened[key] = find()
+        found = self._opened[key]
+        self.charge(1 + len(found[0] if found is not None else b"") // _BYTES_A_PART)
+        return found
+
+    @cached_property
+    def _opened(self) -> dict[tuple[object, ...], tuple[bytes, str] | None]:
+        """The parameter files that were searched."""
+        return {}
 
     def open_given(self, package: Package, path: str) -> tuple[bytes, str] | None:
         """Return a parameter file that a launch file of a package gives, as `open_meant` does, and
-        nothing in one that surely is nowhere.
+        nothing in one that surely is nowhere. Raises NotDecided.
         """
+        return self._open_once(partial(self._find_given, package, path), package, path, "given")
+
+    def _find_given(self, package: Package, path: str) -> tuple[bytes, str] | None:
         found = open_meant(package, path, absent_are_empty=True)
         owner = package.find(share_parts(f"{PREFIX}/{path}")[0])
         if found is None and owner is not None and are_installs_known(owner):
@@ -471,6 +573,7 @@ class Workspace:
         if not target.endswith(_TEXTS) or self.tree.ignored or owner.tree.links:
             return False
         for folder in parents(target.removeprefix(owner.share)):
+            self.charge(len(owner.tree.files) // _FILES_A_PART)
             is_empty = not any(path.startswith(f"{folder}/") for path in owner.tree.files)
             is_submodule = is_empty and posixpath.basename(folder) not in _OWN_FOLDERS
             if folder in owner.tree.folders and is_submodule:
@@ -495,10 +598,15 @@ class Workspace:
         places: set[Location] = set()
         for given in node.parameters or ():
             tree = self.installed_yaml(given.path) if given.path else None
-            for keys, section in sections_in(tree) if tree is not None else ():
-                if not keys or any(key.strip("/") in ("*", "**") for key in keys):
-                    places |= {value.node.location for value in values_in(section)}
+            if tree is not None:
+                places |= self._wildcard_places_in(tree)
+        self.charge(len(places))
         return frozenset(places)
+
+    @cached_property
+    def _wildcard_places_in(self) -> Callable[[YamlNode], frozenset[Location]]:
+        """The places in a file of the parameters that it gives to every node, found once."""
+        return cache(_wildcard_places_in)
 
     @cached_property
     def absent_submodules(self) -> tuple[str, ...]:
@@ -524,8 +632,15 @@ class Workspace:
 
     def sources_of(self, package: Package, endings: tuple[str, ...]) -> Iterator[Source]:
         """Yield the texts of the files of a package with these endings, without those of tests."""
-        paths = [path for path in package.tree.files if path.endswith(endings)]
-        return self._sources(package, paths)
+        key = (package, endings)
+        if key not in self._paths:
+            self._paths[key] = [path for path in package.tree.files if path.endswith(endings)]
+        return self._sources(package, self._paths[key])
+
+    @cached_property
+    def _paths(self) -> dict[tuple[Package, tuple[str, ...]], list[str]]:
+        """The paths of the files of packages, by their endings."""
+        return {}
 
     def _sources(self, package: Package, paths: Iterable[str]) -> Iterator[Source]:
         for path in _read_paths(package, paths):
@@ -533,6 +648,7 @@ class Workspace:
                 self._texts[package, path] = _without_comments(package, path)
             source = self._texts[package, path]
             if source is not None:
+                self.charge(1 + len(source.text) // _SEARCHED_A_PART)
                 yield source
 
     @cached_property
@@ -567,6 +683,20 @@ class Workspace:
         return tuple(sources)
 
     @cached_property
+    def words_in_expressions(self) -> frozenset[str]:
+        """The words in the expressions of the xacro files."""
+        words: set[str] = set()
+        for source in self.xacro_sources:
+            for expression in _EXPRESSION.findall(source.text):
+                words.update(_WORD.findall(expression))
+        return frozenset(words)
+
+    def searched_launch_texts(self) -> tuple[str, ...]:
+        """Return the texts of the launch files, to search something in each. Raises NotDecided."""
+        self.charge(1 + sum(map(len, self.launch_texts)) // _SEARCHED_A_PART)
+        return self.launch_texts
+
+    @cached_property
     def launch_texts(self) -> tuple[str, ...]:
         """The texts of the launch files, of those of ROS 1 too."""
         sources: list[Source] = []
@@ -583,6 +713,14 @@ class Workspace:
         for package in self.packages:
             sources += self.sources_of(package, (".py",))
         return tuple(source.text for source in sources)
+
+
+def _wildcard_places_in(tree: YamlNode) -> frozenset[Location]:
+    places: set[Location] = set()
+    for keys, section in sections_in(tree):
+        if not keys or any(key.strip("/") in ("*", "**") for key in keys):
+            places |= {value.node.location for value in values_in(section)}
+    return frozenset(places)
 
 
 def _without_comments(package: Package, path: str) -> Source | None:

@@ -2,12 +2,12 @@
 
 import posixpath
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fnmatch import translate
 from itertools import pairwise, takewhile
 
-from grader.base.names import did_you_mean, near
+from grader.base.names import MAX_GUESSES, did_you_mean, near
 from grader.base.source import Source
 from grader.files.limits import ignored_part
 from grader.ros.build.cmake.cmake_values import ROOT, Text, Values
@@ -41,6 +41,7 @@ class Build:
         self.last = START
         self._package_at: Position | None = None  # where ament_package() is called
         self._automatic: list[str] = []  # targets that ament_auto_package() installs
+        self._guesses = 0
 
     def result(self, source: Source) -> Installation:
         """Return what is known at the end."""
@@ -78,6 +79,13 @@ class Build:
             self.doubts.append(self.values.uncertain)
         else:
             self.stops.append(InstallError(path, reason, at, hint, by="install()"))
+
+    def _guess(self, name: str, known: Collection[str]) -> str:
+        """Return which name may be meant, for the end of a message; of the first missing names
+        only, because comparing names takes long.
+        """
+        self._guesses += 1
+        return did_you_mean(name, known) if self._guesses <= MAX_GUESSES else ""
 
     # --- Files
     # ----------------------------------------------------------------------
@@ -131,7 +139,9 @@ class Build:
             if not paths:
                 self.listing.empty[EmptyGlob(pattern, at)] = None
             found.update(paths)
-        return ";".join(f"{start}{path}" for path in sorted(found))
+        text = ";".join(f"{start}{path}" for path in sorted(found))
+        self.listing.budget.charge(1, len(text))
+        return text
 
     def _matching(self, pattern: str, *, recursive: bool) -> list[str]:
         """Return the files that a pattern of CMake matches; without `recursive` the folders,
@@ -143,9 +153,7 @@ class Build:
             return []
         folder, _, name = pattern.rpartition("/")
         matches = re.compile(translate(name)).match
-        below = (
-            path for path in self.listing.files if path.startswith(f"{folder}/" if folder else "")
-        )
+        below = self.listing.files_below(folder)
         return [path for path in below if matches(posixpath.basename(path))]
 
     # --- Targets
@@ -174,7 +182,7 @@ class Build:
                 self._stop_missing(command, path)
 
     def _stop_missing(self, command: Command, path: str) -> None:
-        hint = did_you_mean(path, self.listing.files)
+        hint = self._guess(path, self.listing.files)
         self.stop(
             f"{command.name}() lists {path!r}, but there is no such file", command.at, hint=hint
         )
@@ -191,6 +199,7 @@ class Build:
         for text in rest if command.name == "ament_target_dependencies" else ():
             if not isinstance(text, str) or not text.islower() or text in (reached or found):
                 continue
+            self.listing.budget.charge(len(found))
             # What is found may export the package, unless it is surely misspelt.
             if reached is not None or near(text, found) is not None:
                 self.stop(
@@ -199,7 +208,7 @@ class Build:
                 )
 
     def _stop_target(self, command: Command, name: str) -> None:
-        hint = did_you_mean(name, self.targets)
+        hint = self._guess(name, self.targets)
         self.stop(
             f"{command.name}() names the target {name!r}, which is not defined",
             command.at,
@@ -392,7 +401,7 @@ class Build:
                     reason = "it is a folder: write install(DIRECTORY ...)"
                 else:
                     reason = "there is no such file"
-                hint = "" if state else did_you_mean(path or "", self.listing.files)
+                hint = "" if state else self._guess(path or "", self.listing.files)
                 self.stop(reason, command.at, path or text, hint)
 
     def _copy_folder(self, text: str, target: str, command: Command, groups: _Groups) -> None:
@@ -413,7 +422,7 @@ class Build:
                 "there is no such folder",
                 command.at,
                 path,
-                did_you_mean(path, self.listing.folders),
+                self._guess(path, self.listing.folders),
             )
         else:
             if text.endswith("/"):
@@ -430,9 +439,9 @@ class Build:
     def _below(self, folder: str, patterns: "_Patterns") -> Iterator[str]:
         """Yield the paths of the files below a folder, as seen from it."""
         start = f"{folder}/" if folder else ""
-        for file in self.listing.files:
-            self.listing.budget.charge(1)
-            if file.startswith(start) and patterns.include(folder, file[len(start) :]):
+        for file in self.listing.files_below(folder):
+            self.listing.budget.charge(patterns.count * (1 + file.count("/")), len(file))
+            if patterns.include(folder, file[len(start) :]):
                 yield file[len(start) :]
 
     def _copy(self, path: str, target: str, at: Position) -> None:
@@ -460,6 +469,7 @@ class _Patterns:
         self.is_limited = "FILES_MATCHING" in keywords
         self._excluded: list[re.Pattern[str]] = []
         self._included: list[re.Pattern[str]] = []
+        self.count = sum(keyword == "PATTERN" for keyword in keywords)
         for (keyword, values), after in zip(groups, [*keywords[1:], ""], strict=True):
             if keyword == "PATTERN" and values:
                 glob = translate(values[0]).replace(".*", "[^/]*")

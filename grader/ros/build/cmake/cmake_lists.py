@@ -85,8 +85,8 @@ class _Evaluation:
             return
         default = "ament_cmake" if command.name.startswith("ament_") else None
         provider = str(cmake_table("providers").get(command.name, default) or "")
-        reached = self.values.reached_packages()
-        if not provider or reached is None or provider in reached:
+        reached = self.values.reached_packages() if provider else None
+        if reached is None or provider in reached:
             return
         needed = provider
         if provider in str(cmake_table("exports")["ament_cmake"]).split():
@@ -189,18 +189,17 @@ class _Evaluation:
         own.
         """
         definition, values = self.own.pop(command.name), self.values  # so that none calls itself
-        texts, outside = values.texts(command.arguments), dict(values.variables)
+        texts = values.texts(command.arguments)
         names = [str(text) for text in values.texts(definition.arguments[1:])]
-        values.variables |= dict(zip(names, texts, strict=False))
-        values.variables |= {
-            "ARGV": joined(texts, ";"),
-            "ARGN": joined(texts[len(names) :], ";"),
-            "ARGC": str(len(texts)),
-        }
+        if definition.name == "function":
+            values.enter_function()
+        values.assign_all(dict(zip(names, texts, strict=False)))
+        given = {"ARGV": joined(texts, ";"), "ARGN": joined(texts[len(names) :], ";")}
+        values.assign_all({**given, "ARGC": str(len(texts))})
         with suppress(_Returns):
             self.run(definition.body)
         if definition.name == "function":
-            values.variables = {**outside, **self._for_outside}
+            values.leave_function(self._for_outside)
         self._for_outside = {}
         self.own[command.name] = definition
 
@@ -255,9 +254,8 @@ class _Evaluation:
         """Set what a well-known module does; another one may do anything."""
         name = self.values.first(command)
         if name == "GNUInstallDirs":
-            self.values.variables |= {
-                key: str(value) for key, value in cmake_table("install_dirs").items()
-            }
+            folders = cmake_table("install_dirs")
+            self.values.assign_all({key: str(value) for key, value in folders.items()})
         elif name not in cmake_words("modules"):
             self.build.give_up("include() is not evaluated", command.at)
 

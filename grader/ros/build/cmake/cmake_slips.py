@@ -3,10 +3,10 @@ elsewhere.
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from itertools import chain
 
-from grader.base.names import near
+from grader.base.names import MAX_GUESSES, near
 from grader.base.slips import Slip
 from grader.base.source import Source
 from grader.base.text import quoted
@@ -63,6 +63,7 @@ class _CMakeSlips:
         self._source, self._tree = source, tree
         self._name, self._dependencies = name, dependencies
         self._variables = {"PROJECT_NAME"}
+        self._guesses = 0
         self._commands: set[str] = set(known_commands())
 
     def found(self, commands: Iterable[Command]) -> Iterator[Slip]:
@@ -75,9 +76,16 @@ class _CMakeSlips:
         for command in every_command:
             yield from self._of_command(command)
 
+    def _near(self, name: str, known: Collection[str]) -> str | None:
+        """Return the name that surely is meant; of the first misspelt ones only, because comparing
+        names takes long.
+        """
+        self._guesses += 1
+        return near(name, known) if self._guesses <= MAX_GUESSES else None
+
     def _of_command(self, command: Command) -> Iterator[Slip]:
         if command.name not in self._commands:
-            meant = near(command.name, self._commands)
+            meant = self._near(command.name, self._commands)
             if meant is None:
                 return
             start = self._offset(command.at)
@@ -133,7 +141,7 @@ class _CMakeSlips:
         if not path or path in known:
             return
         folder = path.rpartition("/")[0]
-        meant = near(path, [it for it in known if it.rpartition("/")[0] == folder])
+        meant = self._near(path, [it for it in known if it.rpartition("/")[0] == folder])
         if meant is not None:
             new = argument.text.replace(path, meant)
             yield self._of_argument(argument, new, f"the package has no {argument.text}")
@@ -141,7 +149,7 @@ class _CMakeSlips:
     def _of_variables(self, argument: Argument) -> Iterator[Slip]:
         for used in _VARIABLE.finditer(argument.text):
             name = used[1]
-            meant = near(name, self._variables) if name not in self._variables else None
+            meant = self._near(name, self._variables) if name not in self._variables else None
             if meant is not None:
                 new = argument.text.replace(used[0], f"${{{meant}}}")
                 reaction = f"no variable {name} is set, so that it is empty"

@@ -1,7 +1,7 @@
 """The variables of a CMakeLists.txt, and the texts that its arguments stand for."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from grader.ros.build.cmake.language import Argument, Command
 from grader.ros.build.places import PREFIX
@@ -38,14 +38,25 @@ class Values:
         # why it is not known whether the current command is run
         self.uncertain: Unknown | None = None
         self.is_opaque = False  # whether something that is not evaluated may have set any variable
+        # What variables were outside of the functions that are called; None for unset ones.
+        self._outside: list[dict[str, Text | None]] = []
+        self._reached: tuple[tuple[int, str], set[str] | None] | None = None
 
     def reached_packages(self) -> set[str] | None:
         """Return the packages that were found, with those that they export; None where it is not
         known which these are.
         """
+        if self.is_opaque:
+            return None
+        key = (len(self.packages), str(self.variables.get("PROJECT_NAME")).lower())
+        if self._reached is None or self._reached[0] != key:
+            self._reached = (key, self._reach(self.packages - {key[1]}))
+        return self._reached[1]
+
+    def _reach(self, found: set[str]) -> set[str] | None:
         exports = cmake_table("exports")
-        found = self.packages - {str(self.variables.get("PROJECT_NAME")).lower()}
-        if self.is_opaque or not found.issubset(exports):
+        self.budget.charge(len(found))
+        if not found.issubset(exports):
             return None
         pending, reached = [*found], set[str]()
         while pending:
@@ -106,21 +117,43 @@ class Values:
         """Return the value of a variable: an empty text if it is certainly not set."""
         if name in self.variables:
             return self.variables[name]
-        of_packages = (f"{package}_" for package in self.packages)
-        is_foreign = name.lower().startswith((*cmake_words("foreign"), *of_packages))
-        if self.is_opaque or is_foreign:
+        lower = name.lower()
+        ends = [index for index, letter in enumerate(lower) if letter == "_"]
+        self.budget.charge(1, len(ends) * len(name))
+        is_of_package = any(lower[:end] in self.packages for end in ends)
+        is_foreign = lower.startswith((*cmake_words("foreign"),))
+        if self.is_opaque or is_of_package or is_foreign:
             return Unknown(f"the value of {name} is not known", at)
         return ""
 
     def assign(self, name: str, value: Text) -> None:
         """Set a variable; to what is not known if the command may not run."""
-        self.variables[name] = self.uncertain or value
+        self.assign_all({name: self.uncertain or value})
+
+    def assign_all(self, values: Mapping[str, Text]) -> None:
+        """Set variables, in the function that is called."""
+        if self._outside:
+            for name in values:
+                self._outside[-1].setdefault(name, self.variables.get(name))
+        self.variables |= values
+
+    def enter_function(self) -> None:
+        """Begin a function, whose variables are its own."""
+        self._outside.append({})
+
+    def leave_function(self, kept: Mapping[str, Text]) -> None:
+        """End a function, which sets these variables outside of it."""
+        for name, value in self._outside.pop().items():
+            if value is None:
+                self.variables.pop(name, None)
+            else:
+                self.variables[name] = value
+        self.assign_all(kept)
 
     def forget(self, names: Iterable[Text], reason: str, at: Position) -> None:
         """Set variables to a value that is not known."""
-        self.variables |= dict.fromkeys(
-            (name for name in names if isinstance(name, str)), Unknown(reason, at)
-        )
+        texts = [name for name in names if isinstance(name, str)]
+        self.assign_all(dict.fromkeys(texts, Unknown(reason, at)))
 
 
 def split_list(text: str) -> list[str]:

@@ -105,7 +105,7 @@ def _opened(commands: list[Command], start: int, depth: int) -> tuple[Command, i
 
 def _commands(source: Source) -> Iterator[Command]:
     """Yield the commands of a file, without blocks. Raises CMakeFault."""
-    text = source.text
+    text, places = source.text, _Places(source)
     offset = len("\ufeff") if text.startswith("\ufeff") else 0  # CMake takes a byte order mark
     while (offset := _skip(text, offset)) < len(text):
         name = _NAME.match(text, offset)
@@ -113,16 +113,17 @@ def _commands(source: Source) -> Iterator[Command]:
             word = re.match(r"\S{1,30}", text[offset:])
             raise CMakeFault(
                 f"CMake expects a command such as install(...), not {word and word[0]!r}",
-                _position(source, offset),
+                places.at(offset),
             )
-        arguments, end = _arguments(source, name.end())
-        yield Command(name[1].lower(), arguments, _position(source, offset))
+        at = places.at(offset)
+        arguments, end = _arguments(text, name.end(), places)
+        yield Command(name[1].lower(), arguments, at)
         offset = end
 
 
-def _arguments(source: Source, offset: int) -> tuple[tuple[Argument, ...], int]:
+def _arguments(text: str, offset: int, places: "_Places") -> tuple[tuple[Argument, ...], int]:
     """Return the arguments of a command and where it ends. Raises CMakeFault."""
-    text, start, depth = source.text, offset, 0
+    start, depth = offset, 0
     found: list[Argument] = []
     while True:
         offset = _skip(text, offset)
@@ -132,7 +133,7 @@ def _arguments(source: Source, offset: int) -> tuple[tuple[Argument, ...], int]:
                 reason = "a quote is not closed"
             else:
                 reason = "a parenthesis is not closed"
-            raise CMakeFault(reason, _position(source, start))
+            raise CMakeFault(reason, places.at(start))
         offset = match.end()
         kind: Literal["paren", "bracket", "quoted", "unquoted"] = match.lastgroup  # type: ignore[assignment]
         if match["paren"]:
@@ -140,7 +141,7 @@ def _arguments(source: Source, offset: int) -> tuple[tuple[Argument, ...], int]:
             if depth < 0:
                 return tuple(found), offset
         content = match[4] if kind == "bracket" else match[kind]
-        found.append(Argument(content, kind, _position(source, match.start())))
+        found.append(Argument(content, kind, places.at(match.start())))
 
 
 def _skip(text: str, offset: int) -> int:
@@ -149,9 +150,23 @@ def _skip(text: str, offset: int) -> int:
     return found.end() if found is not None else offset
 
 
-def _position(source: Source, offset: int) -> Position:
-    """Return the position of an offset, whose column counts bytes, as Python counts them."""
-    at = source.at(offset)
-    return Position(
-        at.line, len(source.line(at.line)[: at.column - 1].encode("utf-8", "surrogateescape")) + 1
-    )
+class _Places:
+    """The positions of offsets in a text, whose columns count bytes, as Python counts them.
+
+    Offsets grow, and a line may have many arguments: a column is counted from the one before.
+    """
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self._line, self._offset, self._column = 0, 0, 1
+
+    def at(self, offset: int) -> Position:
+        """Return the position of an offset."""
+        at = self._source.at(offset)
+        start = offset - at.column + 1
+        if self._line != at.line or offset < self._offset:
+            self._line, self._offset, self._column = at.line, start, 1
+        between = self._source.text[self._offset : offset]
+        self._column += len(between.encode("utf-8", "surrogateescape"))
+        self._offset = offset
+        return Position(at.line, self._column)

@@ -1,0 +1,550 @@
+"""Inputs by their size n: what grows with n, and with what it is joined, is in the name.
+
+Each has a few bytes for each n; a reader that compares all with all takes n * n.
+"""
+
+from collections.abc import Callable
+
+from tests.bombs.files import (
+    URDF,
+    Files,
+    cmake,
+    launched,
+    lines,
+    package,
+    program,
+    robot,
+    started,
+    word,
+)
+
+Bomb = Callable[[int], Files]
+BOMBS: dict[str, Bomb] = {}
+
+
+def _bomb(build: Bomb) -> Bomb:
+    BOMBS[build.__name__] = build
+    return build
+
+
+# --- YAML and parameters
+# ----------------------------------------------------------------------
+
+
+@_bomb
+def yaml_aliases(n: int) -> Files:
+    levels = lines(n, lambda i: f"a{i + 1}: &a{i + 1} {{a: *a{i}, b: *a{i}, c: *a{i}}}")
+    text = f"a0: &a0 {{x: 1, y: 2}}\n{levels}\nn0:\n  ros__parameters: *a{n}\n"
+    return {**launched(started(1, "P + 'p.yaml'")), "config/p.yaml": text}
+
+
+@_bomb
+def yaml_aliases_of_lists(n: int) -> Files:
+    levels = lines(n, lambda i: f"a{i + 1}: &a{i + 1} [*a{i}, {{k: *a{i}}}]")
+    text = f"a0: &a0 [{{plugin: a}}]\n{levels}\nn0:\n  ros__parameters: {{p: *a{n}}}\n"
+    return {**launched(started(1, "P + 'p.yaml'")), "config/p.yaml": text}
+
+
+@_bomb
+def nodes_with_one_file(n: int) -> Files:
+    values = lines(n, lambda i: f"    p{i}: {i}")
+    text = f"/**:\n  ros__parameters:\n{values}\n"
+    return {**launched(started(n, "P + 'p.yaml'")), "config/p.yaml": text}
+
+
+@_bomb
+def nodes_with_many_files(n: int) -> Files:
+    files = ", ".join(f"P + 'p{i}.yaml'" for i in range(20))
+    texts = {
+        f"config/p{k}.yaml": lines(n // 20, lambda i: f"n{i}:\n  ros__parameters: {{p: {i}}}")
+        for k in range(20)
+    }
+    return {**launched(started(n, files)), **texts}
+
+
+@_bomb
+def own_nodes_with_files(n: int) -> Files:
+    code = program(f"self.declare_parameter('p{i}', {i})" for i in range(n))
+    text = f"/**:\n  ros__parameters:\n{lines(n, lambda i: f'    p{i}: {i}')}\n"
+    files = launched(started(n, "P + 'p.yaml'"), programs="'x = my_robot.x:main'")
+    return {**files, "my_robot/x.py": code, "config/p.yaml": text}
+
+
+@_bomb
+def sections_with_wildcards(n: int) -> Files:
+    text = lines(n, lambda i: f"n*{i}*x:\n  ros__parameters: {{p: 1}}")
+    return {**launched(started(n, "P + 'p.yaml'")), "config/p.yaml": text}
+
+
+@_bomb
+def sections_of_other_names(n: int) -> Files:
+    text = lines(n, lambda i: f"node_of_robot_{i}_x:\n  ros__parameters: {{p: 1}}")
+    more = ", namespace='node_of_robot_%d_y' % i"
+    files = launched(started(n, "P + 'p.yaml'", more=more).replace("'n%d'", "'node_of_robot_%d_y'"))
+    return {**files, "config/p.yaml": text}
+
+
+@_bomb
+def keys_with_dots(n: int) -> Files:
+    text = "n0:\n  ros__parameters:\n" + lines(n, lambda i: f"    a.b{i}.c: {i}")
+    return {**launched(started(1, "P + 'p.yaml'")), "config/p.yaml": text}
+
+
+@_bomb
+def parameters_in_words(n: int) -> Files:
+    words = ", ".join(f"'-p', 'p{i}:={i}'" for i in range(n))
+    more = f", arguments=['--ros-args', {words}]"
+    return launched(started(20, more=more))
+
+
+@_bomb
+def plugin_lists(n: int) -> Files:
+    files = {}
+    for k in range(n // 10):
+        names = ", ".join(f"a{i}" for i in range(10))
+        sections = lines(10, lambda i: f"    b{i}: {{plugin: x}}")
+        files[f"config/p{k}.yaml"] = (
+            f"m{k}:\n  ros__parameters:\n    filter_plugins: [{names}]\n{sections}\n"
+        )
+    return {**package(), **files}
+
+
+@_bomb
+def aliases_to_misspelt_keys(n: int) -> Files:
+    text = lines(n, lambda i: f"n{i}:\n  ros__parametersx{i}: {{p: 1}}")
+    return {**launched(started(1, "P + 'p.yaml'")), "config/p.yaml": text}
+
+
+# --- Topics and nodes
+# ----------------------------------------------------------------------
+
+
+@_bomb
+def topics_of_one_name(n: int) -> Files:
+    code = program(
+        f"self.create_{kind}(String, 't', {last})"
+        for kind, last in (("publisher", "10"), ("subscription", "self.c, 10"))
+        for _ in range(n)
+    )
+    files = launched(started(1), programs="'x = my_robot.x:main'")
+    return {**files, "my_robot/x.py": code}
+
+
+@_bomb
+def topics_of_similar_names(n: int) -> Files:
+    code = program(
+        line
+        for i in range(n)
+        for line in (
+            f"self.create_publisher(String, 'topic_of_robot_{word(i)}_a', 10)",
+            f"self.create_subscription(String, 'topic_of_robot_{word(i)}_b', self.c, 10)",
+        )
+    )
+    files = launched(started(1), programs="'x = my_robot.x:main'")
+    return {**files, "my_robot/x.py": code}
+
+
+@_bomb
+def node_started_often(n: int) -> Files:
+    code = program(
+        line
+        for i in range(n // 4)
+        for line in (
+            f"self.create_publisher(String, 'a{i}', 10)",
+            f"self.create_subscription(String, 'b{i}', self.c, 10)",
+        )
+    )
+    files = launched(started(n), programs="'x = my_robot.x:main'")
+    return {**files, "my_robot/x.py": code}
+
+
+@_bomb
+def remappings(n: int) -> Files:
+    code = program(f"self.create_publisher(String, 'a{i}', 10)" for i in range(n))
+    rules = ", ".join(f"('a{i}', 'b{i}')" for i in range(n))
+    files = launched(started(10, more=f", remappings=[{rules}]"), programs="'x = my_robot.x:main'")
+    return {**files, "my_robot/x.py": code}
+
+
+@_bomb
+def nodes_without_program(n: int) -> Files:
+    programs = ", ".join(f"'program_{word(i)}_of_robot = my_robot.x:main'" for i in range(n))
+    files = launched(started(n, program="'program_%d_of_robat' % i"), programs=programs)
+    return {**files, "my_robot/x.py": program(["pass"])}
+
+
+@_bomb
+def launches_of_one_node(n: int) -> Files:
+    text = launched(started(2))["launch/a.launch.py"]
+    files = {}
+    for k in range(n // 20):
+        files |= {f"p{k}/{path}": data for path, data in package(f"p{k}").items()}
+        files |= {f"p{k}/launch/a{i}.launch.py": text for i in range(20)}
+    return files
+
+
+@_bomb
+def lifecycle_names(n: int) -> Files:
+    names = ", ".join(f"node_{word(i)}_of_robat" for i in range(n))
+    text = f"lifecycle_manager:\n  ros__parameters:\n    node_names: [{names}]\n"
+    manager = (
+        "Node(package='nav2_lifecycle_manager', executable='lifecycle_manager', "
+        "name='lifecycle_manager', parameters=[P + 'p.yaml'])"
+    )
+    nodes = started(n).replace("'n%d'", "'node_%d_of_robot'")
+    return {**launched(f"[{manager}] + {nodes}"), "config/p.yaml": text}
+
+
+@_bomb
+def modules_that_import(n: int) -> Files:
+    files = launched(started(1), programs="'x = my_robot.m0:main'")
+    for i in range(n):
+        imports = lines(3, lambda j, i=i: f"from my_robot.m{(i + j + 1) % n} import N as N{j}")
+        files[f"my_robot/m{i}.py"] = f"{imports}\n{program(['pass'])}"
+    return files
+
+
+# --- Robots, SRDF, controllers and Gazebo
+# ----------------------------------------------------------------------
+
+
+@_bomb
+def frames_of_similar_names(n: int) -> Files:
+    text = "n0:\n  ros__parameters:\n" + lines(
+        n, lambda i: f"    a{i}: {{base_frame: link_{word(i)}}}"
+    )
+    return {**package(urdf=robot(n)), "config/p.yaml": text}
+
+
+@_bomb
+def joints_of_controllers(n: int) -> Files:
+    joints = ", ".join(f"joint_{word(i)}" for i in range(n))
+    text = (
+        "controller_manager:\n  ros__parameters:\n    a: {type: "
+        "joint_trajectory_controller/JointTrajectoryController}\n"
+        f"a:\n  ros__parameters:\n    joints: [{joints}]\n    command_interfaces: [position]\n"
+    )
+    system = lines(
+        n, lambda i: f'<joint name="joint_{i}"><command_interface name="velocity"/></joint>'
+    )
+    urdf = robot(n, f'<ros2_control name="s" type="system">{system}</ros2_control>')
+    return {**package(urdf=urdf), "config/p.yaml": text}
+
+
+@_bomb
+def controllers_and_spawners(n: int) -> Files:
+    types = lines(
+        n,
+        lambda i: f"    c{i}: {{type: diff_drive_controller/DiffDriveController{word(i)}}}",
+    )
+    sections = lines(n, lambda i: f"c{word(i)}:\n  ros__parameters: {{left_wheel_names: [a]}}")
+    text = f"controller_manager:\n  ros__parameters:\n{types}\n{sections}\n"
+    manager = (
+        "Node(package='controller_manager', executable='ros2_control_node', "
+        "parameters=[P + 'p.yaml'])"
+    )
+    spawner = "Node(package='controller_manager', executable='spawner', arguments=['c%d' % i])"
+    actions = f"[{manager}] + [{spawner} for i in range({n})]"
+    return {**launched(actions), "config/p.yaml": text}
+
+
+@_bomb
+def srdf_links(n: int) -> Files:
+    pairs = lines(
+        n,
+        lambda i: (
+            f'<disable_collisions link1="link_{word(i)}" link2="link_{word(i + 1)}" reason="Never"/>'
+        ),
+    )
+    groups = lines(n, lambda i: f'<group name="g{i}"><joint name="joint_{word(i)}"/></group>')
+    text = f'<robot name="my_robot">\n{groups}\n{pairs}\n</robot>'
+    return {**package(urdf=robot(n)), "config/my_robot.srdf": text}
+
+
+@_bomb
+def static_transforms(n: int) -> Files:
+    words = "['--frame-id', 'link_x%d' % i, '--child-frame-id', 'link_%d_a' % i]"
+    node = f"Node(package='tf2_ros', executable='static_transform_publisher', arguments={words})"
+    return launched(f"[{node} for i in range({n})]", urdf=robot(n))
+
+
+@_bomb
+def bridges_and_sensors(n: int) -> Files:
+    sensors = lines(
+        n,
+        lambda i: f'<sensor name="s{i}" type="imu"><topic>imu/{word(i)}/of/robot</topic></sensor>',
+    )
+    urdf = robot(1, f'<gazebo reference="link_aaaaa_a">{sensors}</gazebo>')
+    rows = lines(
+        n,
+        lambda i: (
+            f"- ros_topic_name: a{i}\n  gz_topic_name: imu/{word(i)}/of/robat\n"
+            "  ros_type_name: sensor_msgs/msg/Imu\n  gz_type_name: gz.msgs.IMU\n"
+            "  direction: GZ_TO_ROS"
+        ),
+    )
+    return {**package(urdf=urdf), "config/bridge.yaml": rows}
+
+
+@_bomb
+def models_of_a_world(n: int) -> Files:
+    uris = lines(n, lambda i: f"<include><uri>model://model_of_raam_{word(i)}</uri></include>")
+    world = f'<sdf version="1.9"><world name="w">\n{uris}\n</world></sdf>'
+    models = {f"models/model_of_room_{word(i)}/model.sdf": "<sdf/>" for i in range(n)}
+    return {**package(), "worlds/w.sdf": world, **models}
+
+
+@_bomb
+def arguments_of_xacro(n: int) -> Files:
+    macros = lines(
+        n,
+        lambda i: (
+            f'<xacro:property name="p{i}" value="${{p{i + 1}}}"/>'
+            f'<xacro:if value="$(arg a)"><link name="${{p{i}}}_x"/></xacro:if>'
+        ),
+    )
+    text = (
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base_link"/>'
+        f'<xacro:arg name="a" default="0"/>\n{macros}\n</robot>'
+    )
+    return {**package(), "urdf/other.urdf.xacro": text}
+
+
+@_bomb
+def paths_in_xacro(n: int) -> Files:
+    properties = lines(
+        n, lambda i: f'<xacro:property name="p{i}" value="$(find my_robot)/meshes/m{i}.stl"/>'
+    )
+    text = (
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base_link"/>\n'
+        f"{properties}\n</robot>"
+    )
+    meshes = {f"meshes/m{i}x.stl": "" for i in range(n)}
+    return {**package(), "urdf/other.urdf.xacro": text, **meshes}
+
+
+@_bomb
+def robots_of_xacro(n: int) -> Files:
+    loop = '<xacro:macro name="m" params="n"><xacro:if value="${n}"><xacro:m n="${n - 1}"/></xacro:if></xacro:macro>'
+    calls = '<xacro:m n="60"/>' * 40
+    text = (
+        '<robot name="r" xmlns:xacro="http://www.ros.org/wiki/xacro"><link name="base_link"/>'
+        f"{loop}{calls}</robot>"
+    )
+    return {**package(), **{f"urdf/r{i}.urdf.xacro": text for i in range(n // 10)}}
+
+
+@_bomb
+def paths_that_are_absent(n: int) -> Files:
+    text = "n0:\n  ros__parameters:\n" + lines(
+        n, lambda i: f"    a{i}: $(find-pkg-share my_robot)/config/file_of_robot_{word(i)}.yaml"
+    )
+    others = {f"config/file_of_robat_{word(i)}.yaml": "a: 1" for i in range(n // 4)}
+    return {**launched(started(1, "P + 'p.yaml'")), "config/p.yaml": text, **others}
+
+
+@_bomb
+def maps_without_image(n: int) -> Files:
+    maps = {f"maps/m{i}.yaml": f"image: room_{word(i)}.pgm\nresolution: 0.05\n" for i in range(60)}
+    images = {f"maps/rooms_{word(i)}.pgm": "" for i in range(n)}
+    return {**package(), **maps, **images}
+
+
+@_bomb
+def displays_of_rviz(n: int) -> Files:
+    displays = lines(n, lambda i: f"    - {{Class: rviz/TF{i}, Name: d{i}, Enabled: true}}")
+    text = f"Visualization Manager:\n  Displays:\n{displays}\n"
+    return {**package(), "rviz/a.rviz": text}
+
+
+@_bomb
+def dependencies(n: int) -> Files:
+    more = lines(n, lambda i: f"<depend>package_of_robot_{word(i)}</depend>")
+    finds = lines(n, lambda i: f'<mesh filename="package://package_of_robat_{word(i)}/a.stl"/>')
+    urdf = f'<robot name="my_robot"><link name="base_link"><visual><geometry>{finds}</geometry></visual></link></robot>'
+    return package(more=more, urdf=urdf)
+
+
+@_bomb
+def packages_that_depend(n: int) -> Files:
+    files = {}
+    for k in range(n // 10):
+        more = lines(15, lambda i: f"<depend>p{i}</depend>")
+        files |= {f"p{k}/{path}": data for path, data in package(f"p{k}", more).items()}
+    return files
+
+
+# --- Launch files
+# ----------------------------------------------------------------------
+
+
+@_bomb
+def launch_files_with_loops(n: int) -> Files:
+    loop = "def f():\n    x = 0\n    for a in range(100):\n        for b in range(100):\n            x = x + 1\nf()\n"
+    text = launched(started(1))["launch/a.launch.py"]
+    return {**package(), **{f"launch/a{i}.launch.py": loop + text for i in range(n)}}
+
+
+@_bomb
+def launch_files_in_xml(n: int) -> Files:
+    groups = lines(
+        n,
+        lambda i: (
+            f'<arg name="a{i}" default="$(var a{max(i - 1, 0)})"/>'
+            f'<node pkg="my_robot" exec="x" name="n{i}" if="$(eval \'1 + 1\')"/>'
+        ),
+    )
+    return {**package(), "launch/a.launch.xml": f"<launch>\n{groups}\n</launch>"}
+
+
+@_bomb
+def launch_files_in_yaml(n: int) -> Files:
+    nodes = lines(n, lambda i: f"- node: {{pkg: my_robot, exec: x, name: n{i}}}")
+    return {**package(), "launch/a.launch.yaml": f"launch:\n{nodes}\n"}
+
+
+@_bomb
+def includes_with_arguments(n: int) -> Files:
+    passed = lines(n, lambda i: f'<arg name="argument_{word(i)}_x" value="1"/>')
+    declared = lines(n, lambda i: f'<arg name="argument_{word(i)}" default="1"/>')
+    include = '<include file="$(find-pkg-share my_robot)/launch/b.launch.xml">'
+    return {
+        **package(),
+        "launch/a.launch.xml": f"<launch>{include}\n{passed}\n</include></launch>",
+        "launch/b.launch.xml": f"<launch>\n{declared}\n</launch>",
+    }
+
+
+@_bomb
+def includes_of_includes(n: int) -> Files:
+    include = '<include file="$(find-pkg-share my_robot)/launch/a{}.launch.xml"/>'
+    files = {
+        f"launch/a{i}.launch.xml": f"<launch>{include.format(i + 1) * 3}</launch>"
+        for i in range(n // 10)
+    }
+    nodes = lines(n, lambda i: f'<node pkg="my_robot" exec="x" name="n{i}"/>')
+    last = {f"launch/a{n // 10}.launch.xml": f"<launch>{nodes}</launch>"}
+    return {**package(), **files, **last}
+
+
+# --- Builds
+# ----------------------------------------------------------------------
+
+
+@_bomb
+def cmake_targets(n: int) -> Files:
+    targets = lines(n, lambda i: f"add_library(library_of_robot_{word(i)} INTERFACE)")
+    links = lines(n, lambda i: f"target_link_libraries(library_of_robat_{word(i)} a)")
+    return cmake(f"{targets}\n{links}")
+
+
+@_bomb
+def cmake_unset_variables(n: int) -> Files:
+    found = lines(n, lambda i: f"find_package(p{i})")
+    return cmake(f"{found}\n{lines(n, lambda i: f'set(x ${{z{i}}})')}")
+
+
+@_bomb
+def cmake_missing_files(n: int) -> Files:
+    names = " ".join(f"config/file_{word(i)}_x.yaml" for i in range(n))
+    text = f"install(FILES {names} DESTINATION share/my_robot)"
+    return cmake(text, (f"config/file_{word(i)}_y.yaml" for i in range(n)))
+
+
+@_bomb
+def cmake_calls(n: int) -> Files:
+    variables = lines(n, lambda i: f"set(v{i} 1)")
+    calls = lines(n, lambda _: "f()")
+    return cmake(f"{variables}\nfunction(f)\nendfunction()\n{calls}")
+
+
+@_bomb
+def cmake_globs(n: int) -> Files:
+    globs = lines(n, lambda i: f"file(GLOB_RECURSE g{i} config/*{i}*a*b.yaml)")
+    return cmake(globs, (f"config/f{i}.yaml" for i in range(n)))
+
+
+@_bomb
+def cmake_patterns(n: int) -> Files:
+    patterns = " ".join(f"PATTERN *a{i}*b EXCLUDE" for i in range(n))
+    text = f"install(DIRECTORY config DESTINATION share/my_robot {patterns})"
+    return cmake(text, (f"config/f{i}.yaml" for i in range(n)))
+
+
+@_bomb
+def cmake_folders(n: int) -> Files:
+    names = " ".join("config" for _ in range(n))
+    text = f"install(DIRECTORY {names} DESTINATION share/my_robot)"
+    return cmake(text, (f"config/f{i}.yaml" for i in range(n)))
+
+
+@_bomb
+def cmake_lists(n: int) -> Files:
+    return cmake(lines(n, lambda i: f"list(APPEND L item_{i})\nset(x ${{L}})"))
+
+
+@_bomb
+def cmake_packages(n: int) -> Files:
+    found = lines(n, lambda i: f"find_package(package_of_robot_{word(i)} REQUIRED)")
+    names = " ".join(f"package_of_robat_{word(i)}" for i in range(n))
+    return cmake(f"{found}\nadd_library(a INTERFACE)\nament_target_dependencies(a {names})")
+
+
+@_bomb
+def cmake_conditions(n: int) -> Files:
+    words = " OR ".join(f'EXISTS "${{CMAKE_SOURCE_DIR}}/a{i}"' for i in range(n))
+    return cmake(f"if({words})\nendif()", (f"b/c{i}" for i in range(n)))
+
+
+@_bomb
+def setup_globs(n: int) -> Files:
+    globs = ", ".join(f"('share/my_robot/g{i}', glob('config/*{i}*x'))" for i in range(n))
+    files = package()
+    files["setup.py"] = files["setup.py"].replace("data_files=[", f"data_files=[{globs},")
+    return {**files, **{f"config/f{i}.yaml": "" for i in range(n)}}
+
+
+@_bomb
+def setup_missing_files(n: int) -> Files:
+    names = ", ".join(f"'config/file_{word(i)}_x.yaml'" for i in range(n))
+    files = package()
+    files["setup.py"] = files["setup.py"].replace(
+        "data_files=[", f"data_files=[('share/my_robot', [{names}]),"
+    )
+    return {**files, **{f"config/file_{word(i)}_y.yaml": "" for i in range(n)}}
+
+
+@_bomb
+def entry_points(n: int) -> Files:
+    programs = ", ".join(f"'x{i} = my_robot.x:function_{word(i)}_x'" for i in range(n))
+    code = lines(n, lambda i: f"def function_{word(i)}(): pass")
+    return {**package(programs=programs), "my_robot/x.py": code}
+
+
+@_bomb
+def meshes_that_are_absent(n: int) -> Files:
+    visuals = lines(
+        n,
+        lambda i: (
+            f'<visual><geometry><mesh filename="package://my_robot/meshes/part_{word(i)}_x.stl"/>'
+            "</geometry></visual>"
+        ),
+    )
+    urdf = f'<robot name="my_robot"><link name="base_link">{visuals}</link></robot>'
+    return {**package(urdf=urdf), **{f"meshes/part_{word(i)}_y.stl": "" for i in range(n)}}
+
+
+@_bomb
+def ignored_files(n: int) -> Files:
+    rules = lines(n, lambda i: f"*a{i}*b*c")
+    return {**package(), ".gitignore": rules, **{f"config/f{i}.yaml": "" for i in range(n)}}
+
+
+@_bomb
+def names_in_documents(n: int) -> Files:
+    return {**package(), "README.md": "ROS 2 humble " * n, "Dockerfile": "FROM ros:humble\n" * n}
+
+
+@_bomb
+def loose_robots(n: int) -> Files:
+    return {**package(), **{f"robots/r{i}.urdf": URDF for i in range(n)}}

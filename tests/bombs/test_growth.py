@@ -1,0 +1,61 @@
+"""What asks for more work than its size: the work of each reader and each join grows as its input, or ends at the budget."""
+
+from collections.abc import Callable
+from math import log2
+from pathlib import Path
+
+import pytest
+
+from grader.files.reading import URDF_LIMIT
+from grader.lab.grading.grade import grade
+from grader.lab.rubric.rubric import load_rubric
+from grader.lab.submission.opening import open_submission, open_workspace
+from grader.ros.python import budget
+from tests.bombs.files import Files, package
+from tests.bombs.generators import BOMBS, Bomb
+from tests.work import counted_work
+
+_SIZE = 150
+_MOST = 1.2  # the power of the size with which the work may grow
+_TINY = 5_000  # parts, in place of those that each submission may use whatever its size
+_RUBRIC = "diffdrive"
+
+
+def _written(folder: Path, files: Files) -> str:
+    for path, text in files.items():
+        (folder / path).parent.mkdir(parents=True, exist_ok=True)
+        (folder / path).write_text(text)
+    return str(folder)
+
+
+def _inspect(folder: str) -> None:
+    opened = open_workspace(folder, URDF_LIMIT, {}).of_release(None, "")
+    opened.package_problems()
+    opened.extent()
+
+
+def _grade(folder: str) -> None:
+    rubric = load_rubric(_RUBRIC)
+    grade(rubric, open_submission(folder, rubric.lab))
+
+
+@pytest.mark.parametrize("read", [_inspect, _grade])
+@pytest.mark.parametrize("bomb", BOMBS.values(), ids=BOMBS)
+def test_work_grows_as_the_input(
+    bomb: Bomb,
+    read: Callable[[str], None],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Twice the input takes at most 2.3 times the work, beyond that of an empty package."""
+    monkeypatch.setattr(budget, "_OF_SUBMISSION", _TINY)
+    inputs = {"empty": package(), "one": bomb(_SIZE), "two": bomb(2 * _SIZE)}
+    folders = {name: _written(tmp_path / name, files) for name, files in inputs.items()}
+    read(folders["empty"])  # what is loaded once
+    work = {}
+    for name, folder in folders.items():
+        with counted_work() as counted:
+            read(folder)
+        work[name] = counted.steps
+    one, two = (work[name] - work["empty"] for name in ("one", "two"))
+    assert log2(max(two, 1) / max(one, work["empty"])) < _MOST
