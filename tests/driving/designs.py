@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from math import pi, radians, tan
 from random import Random
+from typing import Any
 
 WHEELS = ["left_wheel", "right_wheel"]
 Change = Callable[["Design", Random], "Design"]
@@ -167,6 +168,7 @@ def correct(random: Random) -> Design:
     radius = random.uniform(0.03, 0.15)
     length = random.uniform(3.0, 6.0) * radius
     clearance = random.uniform(0.3, 1.0) * radius
+    casters: tuple[float, ...]
     has_two = random.random() < 0.25
     if has_two:
         axle, casters = 0.0, (0.4 * length, -0.4 * length)
@@ -210,7 +212,7 @@ def _one_side(change: Callable[[Design, Side, Random], Side]) -> Change:
     return changed
 
 
-def _both_sides(**values: float) -> Change:
+def _both_sides(**values: Any) -> Change:
     return lambda design, _: replace(
         design, left=replace(design.left, **values), right=replace(design.right, **values)
     )

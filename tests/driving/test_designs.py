@@ -1,5 +1,6 @@
 """A correct design raises no alarm, and each fault is found by the check that is for it."""
 
+from collections.abc import Callable
 from random import Random
 
 from grader.base.errors import MissingElement
@@ -19,21 +20,22 @@ def failures(design: Design) -> dict[str, str]:
     assert robot is not None
     configuration = Configuration(robot)
     on = design.supports
-    found = {}
-    for name, ask in {
+    asked: dict[str, Callable[[], Outcome]] = {
         "stands_level": lambda: stands_level(configuration, on=on),
         "drives_straight": lambda: drives_straight(configuration, wheels=WHEELS),
         "turns_in_place": lambda: turns_in_place(configuration, wheels=WHEELS),
         "does_not_tip": lambda: does_not_tip(configuration, on=on, acceleration=_BEARABLE),
-    }.items():
+    }
+    messages = {}
+    for name, ask in asked.items():
         try:
-            outcome: Outcome = ask()
+            outcome = ask()
         except MissingElement as missing:
-            found[name] = str(missing)
-            continue
-        if outcome.status != "passed":
-            found[name] = outcome.message
-    return found
+            messages[name] = str(missing)
+        else:
+            if outcome.status != "passed":
+                messages[name] = outcome.message
+    return messages
 
 
 def test_correct_designs() -> None:

@@ -16,11 +16,11 @@ from grader.lab.checks.outcome import (
     in_degrees,
     in_millimetres,
     judged,
+    place,
 )
 from grader.lab.checks.toml_types import Direction, NonNegative
 from grader.lab.checks.visuals import axis_place, origin_place
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Joint
 from grader.ros.urdf.standing_robot import StandingRobot
 
 ABOUT = {
@@ -115,6 +115,7 @@ def drives_straight(
     angle: NonNegative = 2.0,
     turn: NonNegative = 2.0,
     rollers: list[float] | None = None,
+    level: bool = False,
 ) -> Outcome:
     """With its wheels turning at one positive rate, the base drives forward and straight, and no
     wheel slips.
@@ -131,8 +132,10 @@ def drives_straight(
         turn: How far the base may turn, in degrees for each metre.
         rollers: The angles in degrees from the axis of each wheel to that of its roller that
             touches the ground: 90 for an omni wheel, 45 or -45 for a mecanum wheel.
+        level: Whether the robot is judged with its base level and all wheels on the ground, however
+            it stands.
     """
-    standing = StandingRobot(robot, wheels, base)
+    standing = StandingRobot(robot, wheels, base, is_level=level)
     driven = _Driven(standing, rollers)
     message = "with its wheels turning forward, it drives straight ahead"
     faults = driven.find_idle_wheels()
@@ -146,7 +149,12 @@ def drives_straight(
 
 
 def turns_in_place(
-    robot: Configuration, *, wheels: list[str], base: str = "", rollers: list[float] | None = None
+    robot: Configuration,
+    *,
+    wheels: list[str],
+    base: str = "",
+    rollers: list[float] | None = None,
+    level: bool = False,
 ) -> Outcome:
     """With the right wheels turning forward and the left ones backward, the base turns to the left,
     about the middle between the wheels.
@@ -159,8 +167,10 @@ def turns_in_place(
         base: The link that turns; default: the nearest one above all wheels that has a shape.
         rollers: The angles in degrees from the axis of each wheel to that of its roller that
             touches the ground: 90 for an omni wheel, 45 or -45 for a mecanum wheel.
+        level: Whether the robot is judged with its base level and all wheels on the ground, however
+            it stands.
     """
-    standing = StandingRobot(robot, wheels, base)
+    standing = StandingRobot(robot, wheels, base, is_level=level)
     driven = _Driven(standing, rollers)
     faults = driven.find_idle_wheels()
     if not faults:
@@ -289,24 +299,25 @@ class _Driven:
         """
         rates = [1.0] * len(self._wheels)
         course = self._standing.drive(self._wheels, rates, forward)
+        at = axis_place(self._wheels[0].joint)
         faults = []
         if course.speed > _SLOW * course.rim_speed:
             off, turned = course.off, degrees(course.turn) / course.speed
             if abs(off) > _BACKWARD:
-                faults.append(_RobotFault("it drives backward", off, angle, "deg"))
+                faults.append(_RobotFault("it drives backward", off, angle, "deg", at))
             elif not abs(off) <= angle + SLACK:
                 text = f"it drives {in_degrees(abs(off))} to the {_side(off)} of straight ahead"
-                faults.append(_RobotFault(text, off, angle, "deg"))
+                faults.append(_RobotFault(text, off, angle, "deg", at))
             if not abs(turned) <= turn + SLACK:
                 radius = course.speed / abs(course.turn)
                 text = f"it drives a circle of radius {radius:.2g} m to the {_side(turned)}"
-                faults.append(_RobotFault(text, turned, turn, "deg/m"))
+                faults.append(_RobotFault(text, turned, turn, "deg/m", at))
         else:
             text = "it does not drive"
             reach = max(map(abs, course.sides))
             if abs(course.turn) * reach > _SLOW * course.rim_speed:
                 text = f"it turns on the spot to the {_side(course.turn)}"
-            faults.append(_RobotFault(text, course.speed, None, "m/s"))
+            faults.append(_RobotFault(text, course.speed, None, "m/s", at))
         slips: dict[str, float] = {}
         for wheel, slip in zip(self._wheels, course.slips, strict=True):
             if slip > (_MAX_SLIP + SLACK) * wheel.radius:
@@ -315,7 +326,7 @@ class _Driven:
             share = 100.0 * max(slips.values())
             verb = "slips" if len(slips) == 1 else "slip"
             text = f"{_in_quotes([*slips])} {verb} by {share:.3g} % of the speed of the rim"
-            faults.append(_RobotFault(text, share, 100.0 * _MAX_SLIP, "%"))
+            faults.append(_RobotFault(text, share, 100.0 * _MAX_SLIP, "%", at))
         return self._with_culprits(faults, forward)
 
     def find_turning_faults(self) -> list[_RobotFault]:
@@ -328,20 +339,21 @@ class _Driven:
         width, rim_speed = max(sides) - min(sides), course.rim_speed
         if not width > _OFF_CENTRE * rim_speed:
             return [_RobotFault("its wheels are not on two sides, so it cannot turn")]
+        at = axis_place(self._wheels[0].joint)
         faults = []
         if abs(course.turn) * width / 2.0 <= _SLOW * rim_speed:
             text = "it does not turn"
             if course.speed > _SLOW * rim_speed:
                 text = "it drives and does not turn"
-            faults.append(_RobotFault(text, course.turn, None, "rad/s"))
+            faults.append(_RobotFault(text, course.turn, None, "rad/s", at))
         elif course.turn < 0.0:
             text = "it turns to the right; it should turn to the left"
-            faults.append(_RobotFault(text, course.turn, None, "rad/s"))
+            faults.append(_RobotFault(text, course.turn, None, "rad/s", at))
         elif course.speed / course.turn > _OFF_CENTRE * width + SLACK:
             away = course.speed / course.turn
             far = in_millimetres(away)
             text = f"it turns about a point {far} from the middle between its wheels"
-            faults.append(_RobotFault(text, away, _OFF_CENTRE * width, "m"))
+            faults.append(_RobotFault(text, away, _OFF_CENTRE * width, "m", at))
         return self._with_culprits(faults, X_AXIS)
 
     def _with_culprits(self, faults: list[_RobotFault], forward: Vector) -> list[_RobotFault]:
@@ -349,27 +361,28 @@ class _Driven:
         culprits = [] if self._has_rollers or not faults else self._find_culprits(forward)
         if not culprits:
             return faults
-        causes = enumerated([f"{link!r} {how}" for _, link, how in culprits])
-        joint, *_ = culprits[0]
-        first = faults[0]._replace(text=f"{faults[0].text}: {causes}", at=axis_place(joint))
+        causes = enumerated([f"{link!r} {how}" for link, how, _ in culprits])
+        *_, at = culprits[0]
+        first = faults[0]._replace(text=f"{faults[0].text}: {causes}", at=at)
         return [first, *faults[1:]]
 
-    def _find_culprits(self, forward: Vector) -> list[tuple[Joint, str, str]]:
-        """Return the wheels that do not drive as the others, each with its joint and how it
-        differs.
+    def _find_culprits(self, forward: Vector) -> list[tuple[str, str, LazyLocation | None]]:
+        """Return the links of the wheels that do not drive as the others, each with how it
+        differs, and where to look.
         """
         rates = [1.0] * len(self._wheels)
         headings = self._standing.drive(self._wheels, rates, forward).headings
-        culprits = []
+        culprits: list[tuple[str, str, LazyLocation | None]] = []
         if any(abs(heading) > _ANGLE for heading in headings):
             if max(headings) - min(headings) <= _ANGLE:  # all alike
                 return []
             for wheel, off in zip(self._wheels, headings, strict=True):
+                at = axis_place(wheel.joint)
                 if abs(off) > 90.0:
-                    culprits.append((wheel.joint, wheel.link, "drives it backward"))
+                    culprits.append((wheel.link, "drives it backward", at))
                 elif abs(off) > _ANGLE:
                     how = f"points {in_degrees(abs(off))} to the {_side(off)}"
-                    culprits.append((wheel.joint, wheel.link, how))
+                    culprits.append((wheel.link, how, at))
             return culprits
         radii = sorted(wheel.radius for wheel in self._wheels)
         usual = radii[len(radii) // 2]
@@ -378,7 +391,11 @@ class _Driven:
             if abs(share) > _OTHER_SIZE:
                 size = "larger" if share > 0.0 else "smaller"
                 how = f"is {abs(share) * 100.0:.3g} % {size}"
-                culprits.append((wheel.joint, wheel.link, how))
+                link = self._standing.robot.link(wheel.link)
+                at = axis_place(wheel.joint)
+                for element in link.collisions or link.visuals:
+                    at = place(element.geometry.location)
+                culprits.append((wheel.link, how, at))
         return culprits
 
 

@@ -35,6 +35,7 @@ CHECKS = (
     "contact.stands_on",
     "contact.clear_of",
     "heights.under_the_base",
+    "heights.above_others",
     "motion.rolls_forward",
     "motion.axis_along",
     "motion.turns_about_itself",

@@ -78,6 +78,10 @@ class Rest(NamedTuple):
     heights: dict[str, float]
     contacts: dict[str, list[Vector]]
 
+    def leveled(self, links: Sequence[str]) -> "Rest":
+        """Return how it would stand with its base level and these links on the ground."""
+        return self._replace(up=Z_AXIS, heights={**self.heights, **dict.fromkeys(links, 0.0)})
+
     @property
     def tilt(self) -> float:
         """The angle in degrees by which the base leans."""

@@ -30,10 +30,18 @@ class StandingRobot:
     It is made of the links that are meant, which are supports or wheels, and of the base, by
     default the nearest link above all of them that has a shape. What is fixed to one of these links
     counts as that link. Raises NotDecided, MissingElement or UnknownShape where it cannot be
-    determined how it stands.
+    determined how it stands. With `is_level`, its base is level and these links touch the ground,
+    however it stands.
     """
 
-    def __init__(self, robot: Configuration, named: Sequence[str], base: str = "") -> None:
+    def __init__(
+        self,
+        robot: Configuration,
+        named: Sequence[str],
+        base: str = "",
+        *,
+        is_level: bool = False,
+    ) -> None:
         self.robot, self.named = robot, named
         for link in named:
             robot.link(link)
@@ -49,6 +57,8 @@ class StandingRobot:
             robot.pose(link, relative_to=self.base)
         self.body = body_of(robot, self.base)
         self.rest: Rest = find_rest(self.body)
+        if is_level:
+            self.rest = self.rest.leveled(self.named)
 
     def _find_base(self) -> str:
         """Return the nearest link with a shape above all links that are named."""
