@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from math import degrees
 from typing import NamedTuple
 
-from grader.base.errors import NotDecided, RubricError
+from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.source import LazyLocation
 from grader.base.text import enumerated
 from grader.base.transforms import X_AXIS, Vector, degrees_between
@@ -21,6 +21,7 @@ from grader.lab.checks.outcome import (
 from grader.lab.checks.toml_types import Direction, NonNegative
 from grader.lab.checks.visuals import axis_place, origin_place
 from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.shapes import UnknownShape
 from grader.ros.urdf.standing_robot import StandingRobot
 
 ABOUT = {
@@ -42,6 +43,27 @@ _MAX_SLOPE = 45.0  # degrees between the axis of a wheel and the level
 _CROSSED = 30.0  # degrees between the axes of wheels that can only be omni wheels
 _LEVEL = 1e-4  # metres by which a link that is level with others may be off
 _MOST = 100.0  # m/s^2; nothing is said of more
+
+
+def describe_driving(robot: Configuration, wheels: Sequence[str]) -> str:
+    """Return in one line how a robot stands, and where these links drive it; empty where it cannot
+    be determined.
+    """
+    try:
+        standing = StandingRobot(robot, wheels)
+        drives = drives_straight(robot, wheels=[*wheels])
+    except (MissingElement, NotDecided, UnknownShape):
+        return ""
+    rest = standing.rest
+    if rest.has_fallen:
+        return "on level ground, it tips over"
+    stands = "stands level"
+    if rest.tilt > 1.0:
+        stands = f"leans by {in_degrees(rest.tilt)}"
+    message = drives.message
+    if drives.status != "passed":
+        message = f"when its wheels turn forward: {message}"
+    return f"on level ground, it {stands} on {_in_quotes(standing.touching)}; {message}"
 
 
 class _RobotFault(NamedTuple):
