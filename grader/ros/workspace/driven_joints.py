@@ -18,10 +18,10 @@ def joints_of_plugins(robot: Read) -> list[str]:
     if root is None:
         return []
     for plugin in root.iter("plugin"):
-        for tags in _PLUGIN_TAGS:
-            sides = [[child.text or "" for child in plugin.iterchildren(tag)] for tag in tags]
-            if all(sides):
-                return [name.strip() for side in sides for name in side]
+        for left_tag, right_tag in _PLUGIN_TAGS:
+            left, right = [*plugin.iterchildren(left_tag)], [*plugin.iterchildren(right_tag)]
+            if left and right:
+                return [(child.text or "").strip() for child in (*left, *right)]
     return []
 
 
