@@ -66,8 +66,8 @@ def test_the_code_knows_no_lab() -> None:
     assert found == [("grader.lab.rubric.rubric_files", DEFAULT_RUBRIC)]
 
 
-# An example with a mistake for each family of names; what its robot may be is that of the other labs.
-_FEWER = {"diffdrive": (1, 13)}
+# An example with a mistake for each family of names, whose robot may be what those of the other labs are; a lab with few criteria.
+_FEWER = {"diffdrive": (1, 13), "rover": (8, 10)}
 
 
 @every_rubric

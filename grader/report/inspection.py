@@ -45,6 +45,7 @@ class InspectedRobot:
     configuration: Configuration | None = None
     relative_to: str | None = None
     hidden: frozenset[Problem] = frozenset()  # its problems that are ignored
+    driving: str = ""  # how it stands and drives, if a controller or a plugin names its wheels
 
     @property
     def verdict(self) -> str:

@@ -49,7 +49,9 @@ def test_a_link_that_is_missing_is_named(case: Case[Scene]) -> None:
     for argument in set(NAMING) & set(case.arguments):
         if (case.name, argument) in OPTIONAL:
             continue
-        error = missing(case.check, case.passing, **{**case.arguments, argument: "nowhere"})
+        is_list = isinstance(case.arguments[argument], list)
+        nowhere = ["nowhere"] if is_list else "nowhere"
+        error = missing(case.check, case.passing, **{**case.arguments, argument: nowhere})
         assert (error.kind, error.name, error.known) == ("link", "nowhere", case.passing.links)
         assert "'nowhere'" in str(error)
     for argument in set(LISTING) & set(case.arguments) if case.name != "counts" else ():

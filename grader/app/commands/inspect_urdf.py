@@ -204,7 +204,17 @@ def _inspected(
         known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
     reading = urdf.loaded._replace(problems=opened.problems_of(urdf))
-    return InspectedRobot(urdf.path, reading, robot, relative_to)
+    driving = _describe_driving(robot, opened.driven_joints(urdf)) if robot is not None else ""
+    return InspectedRobot(urdf.path, reading, robot, relative_to, driving=driving)
+
+
+def _describe_driving(robot: Configuration, joints: Sequence[str]) -> str:
+    """Return how a robot stands and drives on the wheels of these joints; empty without any."""
+    if not joints or not all(robot.robot.has_joint(joint) for joint in joints):
+        return ""
+    from grader.lab.checks.driving import describe_driving  # late: few robots name their wheels
+
+    return describe_driving(robot, [robot.robot.joint(joint).child for joint in joints])
 
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:

@@ -1,6 +1,7 @@
 """Checks of heights: the lowest points of links, and a footprint level with them."""
 
 from collections.abc import Callable, Sequence
+from math import inf
 
 from grader.base.errors import MissingElement
 from grader.base.source import LazyLocation
@@ -12,6 +13,7 @@ from grader.lab.checks.outcome import (
     Outcome,
     difference,
     in_degrees,
+    in_millimetres,
     judged,
     measured,
     place,
@@ -34,6 +36,7 @@ ABOUT = {
     "bottom_at_height": About(("visual/origin",), picture="outline"),
     "bottoms_at_height": About(picture="outline"),
     "under_the_base": About(picture="frame"),
+    "above_others": About(picture="outline"),
 }
 
 
@@ -146,6 +149,38 @@ def under_the_base(
     ):  # the frame is where it should be, and some wheel is not
         at = origin_place(robot, next(iter(off), base))
     return judged(not faults, message, actual, 0.0, tolerance, "m", at=at)
+
+
+def above_others(
+    robot: Configuration, *, link: str, relative_to: str, tolerance: NonNegative
+) -> Outcome:
+    """The visuals of a link are above those of all other links of its tree, along the z axis of
+    another link's frame.
+
+    Args:
+        link: The link that is examined.
+        relative_to: The link along whose z axis the heights are measured.
+        tolerance: How far another link may reach above the lowest point of this one, in metres.
+    """
+    bottom, _ = span(robot, link, relative_to, Z_AXIS)
+    highest, top = "", -inf
+    root = robot.root_of(link)
+    for other in robot.robot.links:
+        if other.name == link or robot.root_of(other.name) != root or not other.visuals:
+            continue
+        _, height = span(robot, other.name, relative_to, Z_AXIS)
+        if height > top:
+            highest, top = other.name, height
+    at = origin_place(robot, link)
+    above = top - bottom
+    fine = not above > tolerance + SLACK
+    message = f"{link!r} is above all other links"
+    if not fine:
+        message = (
+            f"{highest!r} reaches {in_millimetres(above)} above the bottom of {link!r}; {link!r} "
+            "should be above all other links"
+        )
+    return judged(fine, message, max(above, 0.0), 0.0, tolerance, "m", at=at)
 
 
 def _measure_each(

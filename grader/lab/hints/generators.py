@@ -21,6 +21,7 @@ from grader.lab.hints.robot_draft import Draft, Set
 from grader.lab.hints.robot_variants import (
     exchanges,
     in_another_unit,
+    leveled_supports,
     of_own,
     of_siblings,
     reversed_joints,
@@ -172,6 +173,10 @@ def _own_number_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Pr
         of_robot = [criterion for criterion in lost if criterion.check.subject == "robot"]
         links = _links_of(of_robot, situation.difference)
         yield _proposals(situation, of_own(situation.difference, links or ()))
+        for criterion in of_robot:
+            if criterion.check.name == "stands_level":
+                on, base = criterion.arguments["on"], criterion.arguments.get("base", "")
+                yield _proposals(situation, leveled_supports(situation.difference, on, base))
 
 
 def _whole_link_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:

@@ -10,7 +10,9 @@ from itertools import chain, combinations
 from math import inf
 
 from grader.base.element_edits import format_number, format_numbers
+from grader.base.errors import MissingElement, NotDecided
 from grader.base.source import Edits
+from grader.base.transforms import Z_AXIS
 from grader.lab.hints.robot_difference import (
     OWN,
     SIBLING,
@@ -21,6 +23,9 @@ from grader.lab.hints.robot_difference import (
 )
 from grader.lab.hints.robot_draft import Draft, Set, child_of, end_of
 from grader.lab.hints.robot_numbers import LARGE, Values, plausible, values_of
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.shapes import UnknownShape
+from grader.ros.urdf.standing_robot import StandingRobot
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import TAGS
 
@@ -248,6 +253,29 @@ def _exchange_ends(draft: Draft, *ends: tuple[Element, str]) -> Edits:
 def _other_side(link: str) -> str:
     """Return the name of the link at the other side; the same name if it has no side."""
     return _WORD.sub(lambda word: _SIDES.get(word[0], word[0]), link)
+
+
+def leveled_supports(
+    difference: RobotDifference, links: Sequence[str], base: str
+) -> Iterator[Piece]:
+    """Yield the height at which the support that is above or below the others is level with
+    them.
+    """
+    robot = Configuration(difference.draft.robot)
+    try:
+        standing = StandingRobot(robot, links, base)
+        link, height = standing.find_odd_height()
+        joint = robot.parent_joints[link]
+        up = robot.pose(standing.base, relative_to=joint.parent).rotate(Z_AXIS)
+    except (KeyError, MissingElement, NotDecided, UnknownShape):
+        return
+    element = difference.draft.joint_of(link)
+    origin = child_of(element, "origin") if element is not None else None
+    if origin is None or joint.origin is None or not height:
+        return
+    moved = [old - height * part for old, part in zip(joint.origin.xyz, up, strict=True)]
+    xyz = format_numbers(tuple(round(number, 6) for number in moved))
+    yield difference.piece_of_sets([Set(origin, "", "xyz", xyz)], OWN)
 
 
 def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:

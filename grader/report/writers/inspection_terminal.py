@@ -31,6 +31,8 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     page.inset(Text.assemble((printable(path), "bold"), ": ", verdict, name), indent=0)
     if inspection.extent is not None:
         page.inset(Text(inspection.extent.words, "dim"), indent=0)
+    if shown is not None and shown.driving:
+        page.inset(Text(printable(shown.driving), "dim"), indent=0)
     if inspection.ignored:
         page.inset(Text(f"{inspection.ignored} ignored", "dim"), indent=0)
     if len(inspection.robots) > 1:

@@ -74,6 +74,18 @@ class OpenedWorkspace:
 
         return problems_of_robot(robot, (*self.packages, *self.ros1_packages), self.whole_tree)
 
+    def driven_joints(self, robot: Read) -> list[str]:
+        """Return the joints of the wheels that a plugin in a robot, or else a controller, drives;
+        of a URDF on its own, only a plugin.
+        """
+        # Late: few commands ask for wheels.
+        from grader.ros.workspace.driven_joints import joints_of_controllers, joints_of_plugins
+
+        joints = joints_of_plugins(robot)
+        if joints or self.is_single:
+            return joints
+        return joints_of_controllers(self.workspace)
+
     def package_problems(self) -> list[Problem]:
         """Return what is wrong in its packages: in their files, then names that do not agree."""
         # Late: most commands list no problems of a workspace.

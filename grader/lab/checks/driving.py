@@ -1,0 +1,429 @@
+"""Checks of a robot as a whole: how it stands on level ground, and where its wheels drive it."""
+
+from collections.abc import Sequence
+from math import degrees
+from typing import NamedTuple
+
+from grader.base.errors import MissingElement, NotDecided, RubricError
+from grader.base.source import LazyLocation
+from grader.base.text import enumerated
+from grader.base.transforms import X_AXIS, Vector, degrees_between
+from grader.lab.checks.check import About
+from grader.lab.checks.outcome import (
+    SLACK,
+    Outcome,
+    difference,
+    in_degrees,
+    in_millimetres,
+    judged,
+    place,
+)
+from grader.lab.checks.toml_types import Direction, NonNegative
+from grader.lab.checks.visuals import axis_place, origin_place
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.shapes import UnknownShape
+from grader.ros.urdf.standing_robot import StandingRobot
+
+ABOUT = {
+    "stands_level": About(picture="outline"),
+    "drives_straight": About(picture="wheel"),
+    "turns_in_place": About(picture="wheel"),
+    "does_not_tip": About(picture="outline"),
+}
+
+_HANGING = 0.002  # metres above the ground from which on a wheel has no grip
+_ROUND = 0.002  # metres by which the lowest point of a wheel may rise and fall
+_MAX_SLIP = 0.05  # of the speed of the rim
+_SLOW = 0.05  # of the speed of the rims: a robot that is slower does not drive
+_OFF_CENTRE = 0.1  # of the distance between the wheels: how far the middle of a turn may be off
+_OTHER_SIZE = 0.01  # of the radius from which on a wheel is said to be of another size
+_ANGLE = 1.0  # degrees from which on a wheel is said to point elsewhere
+_BACKWARD = 135.0  # degrees off forward from which on a robot is said to drive backward
+_MAX_SLOPE = 45.0  # degrees between the axis of a wheel and the level
+_CROSSED = 30.0  # degrees between the axes of wheels that can only be omni wheels
+_LEVEL = 1e-4  # metres by which a link that is level with others may be off
+_MOST = 100.0  # m/s^2; nothing is said of more
+
+
+def describe_driving(robot: Configuration, wheels: Sequence[str]) -> str:
+    """Return in one line how a robot stands, and where these links drive it; empty where it cannot
+    be determined.
+    """
+    try:
+        standing = StandingRobot(robot, wheels)
+        drives = drives_straight(robot, wheels=[*wheels])
+    except (MissingElement, NotDecided, UnknownShape):
+        return ""
+    rest = standing.rest
+    if rest.has_fallen:
+        return "on level ground, it tips over"
+    stands = "stands level"
+    if rest.tilt > 1.0:
+        stands = f"leans by {in_degrees(rest.tilt)}"
+    message = drives.message
+    if drives.status != "passed":
+        message = f"when its wheels turn forward: {message}"
+    return f"on level ground, it {stands} on {_in_quotes(standing.touching)}; {message}"
+
+
+class _RobotFault(NamedTuple):
+    """What a person would see, what was measured of it, what is allowed, and where to look."""
+
+    text: str
+    measured: float | None = None
+    tolerance: float | None = None
+    unit: str | None = None
+    at: LazyLocation | None = None
+
+
+def stands_level(
+    robot: Configuration,
+    *,
+    on: list[str],
+    base: str = "",
+    tilt: NonNegative = 1.0,
+    tolerance: NonNegative = 0.002,
+) -> Outcome:
+    """Set down upright on level ground, the robot rests on these links and on no other, and its
+    base is level.
+
+    It comes to rest where its centre of mass is at a local minimum of height; a robot that balances
+    falls. The shapes of a link are its collision shapes, else its visuals, and a mesh needs manual
+    grading. If any link has a mass, the others weigh nothing; otherwise all shapes have the same
+    density. What is fixed to a link of `on` counts as that link.
+
+    Args:
+        on: The links on which the robot rests.
+        base: The link that should be level; default: the nearest one above all of `on` that has a
+            shape.
+        tilt: How far the base may lean, in degrees.
+        tolerance: How far above the ground a link of `on` may be, in metres.
+    """
+    standing = StandingRobot(robot, on, base)
+    rest = standing.rest
+    faults: list[_RobotFault] = []
+    hanging: list[_RobotFault] = []
+    for link in on:
+        height = standing.height(link)
+        if not height <= tolerance + SLACK:
+            text = f"{link!r} is {in_millimetres(height)} above the ground"
+            hanging.append(_RobotFault(text, height, tolerance, "m", origin_place(robot, link)))
+    others = [link for link in standing.touching if link not in on]
+    if rest.has_fallen:
+        faults.append(_RobotFault("it tips over"))
+    elif not rest.tilt <= tilt + SLACK:
+        leaning = f"it leans by {in_degrees(rest.tilt)}, on {_in_quotes(standing.touching)}"
+        odd, height = standing.find_odd_height()
+        if not hanging and abs(height) > _LEVEL:
+            side = difference(height, "above", "below")
+            leaning += f": with its base level, {odd!r} is {side} the others"
+        at = hanging[0].at if hanging else origin_place(robot, odd)
+        faults += [_RobotFault(leaning, rest.tilt, tilt, "deg", at), *hanging]
+    else:
+        faults += hanging
+        if others:
+            text = f"it rests on {_in_quotes(others)}"
+            faults.append(_RobotFault(text, at=origin_place(robot, others[0])))
+    message = f"it stands level on {_in_quotes(on)}"
+    return _judge(standing, faults, message, _RobotFault("", rest.tilt, tilt, "deg"))
+
+
+def drives_straight(
+    robot: Configuration,
+    *,
+    wheels: list[str],
+    base: str = "",
+    forward: Direction = (1.0, 0.0, 0.0),
+    angle: NonNegative = 2.0,
+    turn: NonNegative = 2.0,
+    rollers: list[float] | None = None,
+    level: bool = False,
+) -> Outcome:
+    """With its wheels turning at one positive rate, the base drives forward and straight, and no
+    wheel slips.
+
+    The robot is judged as it stands, as `stands_level` computes it. Each wheel must touch the
+    ground, be round about its joint (2 mm in one turn), and slip by at most 5 % of the speed of its
+    rim. Everything else slides. More than two wheels whose axes cross need `rollers`.
+
+    Args:
+        wheels: The links of the wheels that are driven.
+        base: The link that drives; default: the nearest one above all wheels that has a shape.
+        forward: The direction in which the base should drive, in its own frame.
+        angle: How far the direction may be off, in degrees.
+        turn: How far the base may turn, in degrees for each metre.
+        rollers: The angles in degrees from the axis of each wheel to that of its roller that
+            touches the ground: 90 for an omni wheel, 45 or -45 for a mecanum wheel.
+        level: Whether the robot is judged with its base level and all wheels on the ground, however
+            it stands.
+    """
+    standing = StandingRobot(robot, wheels, base, is_level=level)
+    driven = _Driven(standing, rollers)
+    message = "with its wheels turning forward, it drives straight ahead"
+    faults = driven.find_idle_wheels()
+    if faults:
+        return _judge(standing, faults, message, faults[0], by_mass=False)
+    driven.refuse_crossed()
+    faults = driven.find_uneven_wheels()
+    faults += driven.find_course_faults(forward, angle, turn)
+    fine = _RobotFault("", 0.0, angle, "deg")
+    return _judge(standing, faults, message, fine, by_mass=False)
+
+
+def turns_in_place(
+    robot: Configuration,
+    *,
+    wheels: list[str],
+    base: str = "",
+    rollers: list[float] | None = None,
+    level: bool = False,
+) -> Outcome:
+    """With the right wheels turning forward and the left ones backward, the base turns to the left,
+    about the middle between the wheels.
+
+    The robot is judged as it stands, as `stands_level` computes it. Forward is the x axis of the
+    base; the middle may be off by 10 % of the distance between the wheels. Wheels may slip.
+
+    Args:
+        wheels: The links of the wheels that are driven.
+        base: The link that turns; default: the nearest one above all wheels that has a shape.
+        rollers: The angles in degrees from the axis of each wheel to that of its roller that
+            touches the ground: 90 for an omni wheel, 45 or -45 for a mecanum wheel.
+        level: Whether the robot is judged with its base level and all wheels on the ground, however
+            it stands.
+    """
+    standing = StandingRobot(robot, wheels, base, is_level=level)
+    driven = _Driven(standing, rollers)
+    faults = driven.find_idle_wheels()
+    if not faults:
+        driven.refuse_crossed()
+        faults = driven.find_turning_faults()
+    message = "with its wheels turning against each other, it turns to the left in place"
+    return _judge(standing, faults, message, _RobotFault(""), by_mass=False)
+
+
+def does_not_tip(robot: Configuration, *, on: list[str], acceleration: NonNegative) -> Outcome:
+    """Accelerated forward and backward, the robot does not tip over: its centre of mass stays over
+    the area between its contacts.
+
+    The robot is judged as it stands, as `stands_level` computes it. Forward is the x axis of the
+    nearest link above all of `on` that has a shape.
+
+    Args:
+        on: The links on which the robot rests.
+        acceleration: The acceleration in m/s^2 that it must bear.
+    """
+    standing = StandingRobot(robot, on)
+    at = origin_place(robot, on[-1])
+    if standing.rest.has_fallen:
+        return _judge(standing, [_RobotFault("it tips over", at=at)], "", _RobotFault(""))
+    limits = standing.tipping_accelerations()
+    if limits is None:
+        text = f"its centre of mass is not over the area between {_in_quotes(on)}"
+        return _judge(standing, [_RobotFault(text, at=at)], "", _RobotFault(""))
+    faults = []
+    ways = (("forward", "backward"), ("backward", "forward"))
+    for limit, (way, falls) in zip(limits, ways, strict=True):
+        if not acceleration <= limit + SLACK:
+            text = (
+                f"accelerated {way}, it tips {falls} from {limit:.3g} m/s^2 on; it should bear "
+                f"{acceleration:g} m/s^2"
+            )
+            faults.append(_RobotFault(text, limit, None, "m/s^2", at))
+    least = min(*limits, _MOST)
+    message = f"it does not tip over below {least:.3g} m/s^2"
+    return _judge(standing, faults, message, _RobotFault("", least, None, "m/s^2"))
+
+
+def _judge(
+    standing: StandingRobot,
+    faults: Sequence[_RobotFault],
+    message: str,
+    fine: _RobotFault,
+    *,
+    by_mass: bool = True,
+) -> Outcome:
+    """Return the outcome for faults; `fine` has the numbers of a robot without any. If it is
+    decided by the centre of mass, the message says what is assumed of that.
+    """
+    shown = faults[0] if faults else fine
+    text = "; ".join(fault.text for fault in faults) or message
+    if by_mass and not standing.body.is_weighed:
+        text += " (no link has a mass, so all shapes have the same density)"
+    expected = None if shown.measured is None or shown.tolerance is None else 0.0
+    return judged(
+        not faults, text, shown.measured, expected, shown.tolerance, shown.unit, at=shown.at
+    )
+
+
+class _Driven:
+    """The driven wheels of a robot that stands, and what is wrong with how they drive it."""
+
+    def __init__(self, standing: StandingRobot, rollers: Sequence[float] | None) -> None:
+        if rollers is not None and len(rollers) != len(standing.named):
+            raise RubricError(("rollers must have an angle for each of the wheels",))
+        self._standing, self._has_rollers = standing, rollers is not None
+        self._wheels = standing.wheels(rollers)
+
+    def find_idle_wheels(self) -> list[_RobotFault]:
+        """Return the faults of wheels that drive nothing: they are in the air, or lie flat."""
+        standing = self._standing
+        if standing.rest.has_fallen:
+            return [_RobotFault("it tips over")]
+        faults = []
+        for wheel in self._wheels:
+            height = standing.height(wheel.link)
+            off_level = abs(90.0 - degrees_between(wheel.axis, standing.rest.up))
+            if height > _HANGING + SLACK:
+                text = f"{wheel.link!r} is {in_millimetres(height)} above the ground"
+                at = origin_place(standing.robot, wheel.link)
+                faults.append(_RobotFault(text, height, _HANGING, "m", at))
+            elif off_level > _MAX_SLOPE:
+                off = in_degrees(off_level)
+                text = f"{wheel.link!r} does not roll: its axis is {off} off level"
+                faults.append(
+                    _RobotFault(text, off_level, _MAX_SLOPE, "deg", axis_place(wheel.joint))
+                )
+        return faults
+
+    def find_uneven_wheels(self) -> list[_RobotFault]:
+        """Return the faults of wheels that are not round about their joints."""
+        faults = []
+        for wheel in self._wheels:
+            uneven = wheel.measure_roundness(self._standing.rest.up)
+            if uneven > _ROUND + SLACK:
+                text = (
+                    f"{wheel.link!r} is not round about its joint: its lowest point rises and "
+                    f"falls by {in_millimetres(uneven)} as it turns"
+                )
+                faults.append(_RobotFault(text, uneven, _ROUND, "m", axis_place(wheel.joint)))
+        return faults
+
+    def refuse_crossed(self) -> None:
+        """Raise NotDecided for more than two wheels with axes that cross, which may have
+        rollers.
+        """
+        if self._has_rollers or len(self._wheels) < 3:
+            return
+        first = self._wheels[0]
+        for wheel in self._wheels[1:]:
+            off = degrees_between(first.axis, wheel.axis)
+            if min(off, 180.0 - off) > _CROSSED:
+                raise NotDecided(
+                    f"the axes of {first.link!r} and {wheel.link!r} cross: the rubric does not say "
+                    "what rollers they have",
+                    "the axes of wheels cross",
+                )
+
+    def find_course_faults(self, forward: Vector, angle: float, turn: float) -> list[_RobotFault]:
+        """Return what is wrong with the way that the robot drives while all wheels turn at one
+        rate.
+        """
+        rates = [1.0] * len(self._wheels)
+        course = self._standing.drive(self._wheels, rates, forward)
+        at = axis_place(self._wheels[0].joint)
+        faults = []
+        if course.speed > _SLOW * course.rim_speed:
+            off, turned = course.off, degrees(course.turn) / course.speed
+            if abs(off) > _BACKWARD:
+                faults.append(_RobotFault("it drives backward", off, angle, "deg", at))
+            elif not abs(off) <= angle + SLACK:
+                text = f"it drives {in_degrees(abs(off))} to the {_side(off)} of straight ahead"
+                faults.append(_RobotFault(text, off, angle, "deg", at))
+            if not abs(turned) <= turn + SLACK:
+                radius = course.speed / abs(course.turn)
+                text = f"it drives a circle of radius {radius:.2g} m to the {_side(turned)}"
+                faults.append(_RobotFault(text, turned, turn, "deg/m", at))
+        else:
+            text = "it does not drive"
+            reach = max(map(abs, course.sides))
+            if abs(course.turn) * reach > _SLOW * course.rim_speed:
+                text = f"it turns on the spot to the {_side(course.turn)}"
+            faults.append(_RobotFault(text, course.speed, None, "m/s", at))
+        slips: dict[str, float] = {}
+        for wheel, slip in zip(self._wheels, course.slips, strict=True):
+            if slip > (_MAX_SLIP + SLACK) * wheel.radius:
+                slips[wheel.link] = slip / max(wheel.radius, slip)
+        if slips:
+            share = 100.0 * max(slips.values())
+            verb = "slips" if len(slips) == 1 else "slip"
+            text = f"{_in_quotes([*slips])} {verb} by {share:.3g} % of the speed of the rim"
+            faults.append(_RobotFault(text, share, 100.0 * _MAX_SLIP, "%", at))
+        return self._with_culprits(faults, forward)
+
+    def find_turning_faults(self) -> list[_RobotFault]:
+        """Return what is wrong with the way that the robot turns while its wheels turn against each
+        other.
+        """
+        sides = self._standing.drive(self._wheels, [0.0] * len(self._wheels), X_AXIS).sides
+        rates = [-1.0 if side > 0.0 else 1.0 for side in sides]
+        course = self._standing.drive(self._wheels, rates, X_AXIS)
+        width, rim_speed = max(sides) - min(sides), course.rim_speed
+        if not width > _OFF_CENTRE * rim_speed:
+            return [_RobotFault("its wheels are not on two sides, so it cannot turn")]
+        at = axis_place(self._wheels[0].joint)
+        faults = []
+        if abs(course.turn) * width / 2.0 <= _SLOW * rim_speed:
+            text = "it does not turn"
+            if course.speed > _SLOW * rim_speed:
+                text = "it drives and does not turn"
+            faults.append(_RobotFault(text, course.turn, None, "rad/s", at))
+        elif course.turn < 0.0:
+            text = "it turns to the right; it should turn to the left"
+            faults.append(_RobotFault(text, course.turn, None, "rad/s", at))
+        elif course.speed / course.turn > _OFF_CENTRE * width + SLACK:
+            away = course.speed / course.turn
+            far = in_millimetres(away)
+            text = f"it turns about a point {far} from the middle between its wheels"
+            faults.append(_RobotFault(text, away, _OFF_CENTRE * width, "m", at))
+        return self._with_culprits(faults, X_AXIS)
+
+    def _with_culprits(self, faults: list[_RobotFault], forward: Vector) -> list[_RobotFault]:
+        """Return faults of which the first says which wheels are the cause."""
+        culprits = [] if self._has_rollers or not faults else self._find_culprits(forward)
+        if not culprits:
+            return faults
+        causes = enumerated([f"{link!r} {how}" for link, how, _ in culprits])
+        *_, at = culprits[0]
+        first = faults[0]._replace(text=f"{faults[0].text}: {causes}", at=at)
+        return [first, *faults[1:]]
+
+    def _find_culprits(self, forward: Vector) -> list[tuple[str, str, LazyLocation | None]]:
+        """Return the links of the wheels that do not drive as the others, each with how it
+        differs, and where to look.
+        """
+        rates = [1.0] * len(self._wheels)
+        headings = self._standing.drive(self._wheels, rates, forward).headings
+        culprits: list[tuple[str, str, LazyLocation | None]] = []
+        if any(abs(heading) > _ANGLE for heading in headings):
+            if max(headings) - min(headings) <= _ANGLE:  # all alike
+                return []
+            for wheel, off in zip(self._wheels, headings, strict=True):
+                at = axis_place(wheel.joint)
+                if abs(off) > 90.0:
+                    culprits.append((wheel.link, "drives it backward", at))
+                elif abs(off) > _ANGLE:
+                    how = f"points {in_degrees(abs(off))} to the {_side(off)}"
+                    culprits.append((wheel.link, how, at))
+            return culprits
+        radii = sorted(wheel.radius for wheel in self._wheels)
+        usual = radii[len(radii) // 2]
+        for wheel in self._wheels:
+            share = wheel.radius / usual - 1.0
+            if abs(share) > _OTHER_SIZE:
+                size = "larger" if share > 0.0 else "smaller"
+                how = f"is {abs(share) * 100.0:.3g} % {size}"
+                link = self._standing.robot.link(wheel.link)
+                at = axis_place(wheel.joint)
+                for element in link.collisions or link.visuals:
+                    at = place(element.geometry.location)
+                culprits.append((wheel.link, how, at))
+        return culprits
+
+
+def _side(value: float) -> str:
+    return "left" if value > 0.0 else "right"
+
+
+def _in_quotes(links: Sequence[str]) -> str:
+    return enumerated([repr(link) for link in links])

@@ -1,0 +1,1 @@
+"""How robots stand and drive: designs that are correct or have one fault."""
