@@ -21,6 +21,7 @@ from grader.ros.urdf.model import Joint
 from grader.ros.urdf.reader import Reading
 
 if TYPE_CHECKING:
+    from grader.ros.package.mesh_loading import MeshLoader
     from grader.ros.workspace.extent import Extent
 
 MAX_LISTED = 500  # links, or problems on a page
@@ -45,6 +46,7 @@ class InspectedRobot:
     configuration: Configuration | None = None
     relative_to: str | None = None
     hidden: frozenset[Problem] = frozenset()  # its problems that are ignored
+    meshes: "MeshLoader | None" = None  # loads its meshes for pictures
 
     @property
     def verdict(self) -> str:

@@ -204,7 +204,8 @@ def _inspected(
         known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
     reading = urdf.loaded._replace(problems=opened.problems_of(urdf))
-    return InspectedRobot(urdf.path, reading, robot, relative_to)
+    meshes = opened.meshes_of(urdf)
+    return InspectedRobot(urdf.path, reading, robot, relative_to, meshes=meshes)
 
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:

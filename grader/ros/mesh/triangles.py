@@ -91,16 +91,21 @@ def _clustered(corners: Any, cells: int) -> Any:
     cells along the longest side; without triangles that get flat, and each once.
     """
     points = corners.reshape(-1, 3).astype(np.float64)
-    low = points.min(axis=0)
-    size = (points.max(axis=0) - low).max() or 1.0
-    places = (points - low) / size * cells
-    x, y, z = np.minimum(places, cells - 1).astype(np.int64).T
-    _, cell_of = np.unique((x * cells + y) * cells + z, return_inverse=True)
+    _, cell_of = np.unique(_number_cells(points, cells), return_inverse=True)
     counts = np.bincount(cell_of)
     sums = [np.bincount(cell_of, points[:, axis]) for axis in range(3)]
     means = np.stack(sums, axis=1) / counts[:, None]
     triangles = _different_triangles(cell_of.reshape(-1, 3), len(counts))
     return means[triangles].astype(np.float32)
+
+
+def _number_cells(points: Any, cells: int) -> Any:
+    """Return the number of the cell that each point is in."""
+    low = points.min(axis=0)
+    size = (points.max(axis=0) - low).max() or 1.0
+    places = (points - low) / size * cells
+    x, y, z = np.minimum(places, cells - 1).astype(np.int64).T
+    return (x * cells + y) * cells + z
 
 
 def _different_triangles(triangles: Any, count: int) -> Any:
