@@ -36,7 +36,7 @@ ROOMS = {
     ),
     "ros": (
         "known python xml",
-        "xacro urdf build",
+        "xacro urdf build mesh",
         "config",
         "launch",
         "package",
@@ -90,7 +90,7 @@ LIBRARIES = {
     "ast": {"ros.python", "ros.build", "ros.launch", "ros.package", "lab.hints", "lab.authoring"},
     "docx": {"lab.documents"},
     "pypdf": {"lab.documents"},
-    "numpy": {"report", "ros.urdf", "base.transforms"},
+    "numpy": {"report", "ros.urdf", "ros.mesh", "base.transforms"},
     "tomllib": {
         "lab.rubric",
         "app.bundle",

@@ -21,6 +21,7 @@ from grader.ros.urdf.model import Joint
 from grader.ros.urdf.reader import Reading
 
 if TYPE_CHECKING:
+    from grader.ros.package.mesh_loading import MeshLoader
     from grader.ros.workspace.extent import Extent
 
 MAX_LISTED = 500  # links, or problems on a page
@@ -46,6 +47,7 @@ class InspectedRobot:
     relative_to: str | None = None
     hidden: frozenset[Problem] = frozenset()  # its problems that are ignored
     driving: str = ""  # how it stands and drives, if a controller or a plugin names its wheels
+    meshes: "MeshLoader | None" = None  # loads its meshes for pictures
 
     @property
     def verdict(self) -> str:

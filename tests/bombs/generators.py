@@ -99,7 +99,7 @@ def parameters_in_words(n: int) -> Files:
 
 @_bomb
 def plugin_lists(n: int) -> Files:
-    files = {}
+    files: Files = {}
     for k in range(n // 10):
         names = ", ".join(f"a{i}" for i in range(10))
         sections = lines(10, lambda i: f"    b{i}: {{plugin: x}}")
@@ -176,7 +176,7 @@ def nodes_without_program(n: int) -> Files:
 @_bomb
 def launches_of_one_node(n: int) -> Files:
     text = launched(started(2))["launch/a.launch.py"]
-    files = {}
+    files: Files = {}
     for k in range(n // 20):
         files |= {f"p{k}/{path}": data for path, data in package(f"p{k}").items()}
         files |= {f"p{k}/launch/a{i}.launch.py": text for i in range(20)}
@@ -199,7 +199,7 @@ def lifecycle_names(n: int) -> Files:
 def modules_that_import(n: int) -> Files:
     files = launched(started(1), programs="'x = my_robot.m0:main'")
     for i in range(n):
-        imports = lines(3, lambda j, i=i: f"from my_robot.m{(i + j + 1) % n} import N as N{j}")
+        imports = "\n".join(f"from my_robot.m{(i + j + 1) % n} import N as N{j}" for j in range(3))
         files[f"my_robot/m{i}.py"] = f"{imports}\n{program(['pass'])}"
     return files
 
@@ -367,7 +367,7 @@ def dependencies(n: int) -> Files:
 
 @_bomb
 def packages_that_depend(n: int) -> Files:
-    files = {}
+    files: Files = {}
     for k in range(n // 10):
         more = lines(15, lambda i: f"<depend>p{i}</depend>")
         files |= {f"p{k}/{path}": data for path, data in package(f"p{k}", more).items()}

@@ -126,8 +126,8 @@ def test_the_time_of_a_converter_is_taken_from_the_next(
     log = tmp_path / "log"
     code = f"import sys; open({str(log)!r}, 'a').write(sys.argv[2] + ' ')"
     converter(code.encode(), tmp_path / "log.py", monkeypatch)
-    answer = {"d.txt": "Task 1 step 15: It vanishes."}
-    answer_in(ALONE.with_files({f"{name}.pdf": b"" for name in "abc"} | answer))
+    answer = b"Task 1 step 15: It vanishes."
+    answer_in(ALONE.with_files({f"{name}.pdf": b"" for name in "abc"} | {"d.txt": answer}))
     assert log.read_text().split() == ["3.0", "2.75", "2.5"]
 
 

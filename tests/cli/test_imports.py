@@ -28,6 +28,8 @@ UNUSED = {
     "grader.lab.hints",
     "grader.base.markup",
     "grader.report.writers.svg",
+    "grader.ros.mesh",
+    "grader.ros.package.mesh_loading",
     "grader.ros.xacro",
     "hashlib",
     "jinja2",

@@ -4,7 +4,7 @@ import tomllib
 from collections.abc import Callable, Iterable
 from functools import partial
 
-from tests.fuzz import classes, documents, packages, robots, seeds, submissions
+from tests.fuzz import classes, documents, meshes, packages, robots, seeds, submissions
 from tests.fuzz.harness import FOLDER, Harness
 
 _WORDS: dict[str, list[str]] = tomllib.loads((FOLDER / "words.toml").read_text())
@@ -72,6 +72,12 @@ HARNESSES: dict[str, Harness] = {
     "yaml": _row(
         packages.yaml, "yaml", 2048, seeds.yaml_files, ["tests/package/launch_samples/*.yaml.txt"]
     ),
+    **{
+        f"mesh-{ending}": _row(
+            run, f"{'xml ' if ending == 'dae' else ''}mesh", 2048, partial(meshes.seeds, ending)
+        )
+        for ending, run in meshes.MESHES.items()
+    },
     "archive": _row(documents.archive, "archive", 4096, documents.archives),
     "class-zip": _row(documents.class_zip, "class-zip", 4096, documents.classes),
     "answers": _row(documents.answers, "markdown", 1024, documents.documents),

@@ -241,7 +241,8 @@ def test_programs_of_a_file_that_is_not_read(text: str, is_certain: bool) -> Non
     """They are not known; blocks that only this reader does not follow stop no build."""
     found = read(text)
     assert found.fault is not None
-    assert (found.fault.is_certain, found.has_program("node", "bot")) == (is_certain, None)
+    has_program = found.has_program("node", "bot", found.known_programs())
+    assert (found.fault.is_certain, has_program) == (is_certain, None)
 
 
 def test_a_package_without_its_end() -> None:

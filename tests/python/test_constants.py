@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from grader.ros.python.budget import Budget
 from grader.ros.python.constants import Constants, constant_in
 from grader.ros.python.parse import own_nodes
 from grader.ros.python.values import SCALARS, Scope
@@ -60,7 +61,7 @@ def test_a_constant_has_the_value_that_python_gives_it(lines: list[str]) -> None
     """Whatever else a module does: a name that is changed, deleted or bound elsewhere is no constant."""
     text = "\n".join(lines)
     tree = ast.parse(text)
-    constants = Constants([*ast.walk(tree)], "module", {}, is_package=False)
+    constants = Constants([*ast.walk(tree)], "module", {}, Budget(), is_package=False)
     scope = constants.bound(own_nodes(tree), Scope({}))
     for answer in (True, False):
         run: dict[str, object] = {"unknown": lambda answer=answer: answer, "open_": _Manager}

@@ -205,7 +205,8 @@ def _inspected(
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
     reading = urdf.loaded._replace(problems=opened.problems_of(urdf))
     driving = _describe_driving(robot, opened.driven_joints(urdf)) if robot is not None else ""
-    return InspectedRobot(urdf.path, reading, robot, relative_to, driving=driving)
+    meshes = opened.meshes_of(urdf)
+    return InspectedRobot(urdf.path, reading, robot, relative_to, driving=driving, meshes=meshes)
 
 
 def _describe_driving(robot: Configuration, joints: Sequence[str]) -> str:

@@ -10,9 +10,9 @@ from grader.base.errors import InputError, MachineError
 from grader.base.text import enumerated, printable, printable_path
 from grader.files.opening import open_tree, tree_name
 from grader.files.reading import read_capped, read_standard_input, read_start
-from grader.files.tree import File, Tree, overlaid
+from grader.files.tree import File, Tree, make_tree, overlaid
 from grader.lab.submission.submission import DEFAULTS, Lab, Opening, Submission
-from grader.ros.package.package import MANIFEST
+from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import (
     Absent,
     Read,
@@ -73,7 +73,8 @@ def open_submission(
 ) -> Submission:
     """Read the submission at a path: a URDF, a folder, an archive, or standard input for `-`.
 
-    `with_neighbours` reads the files that a single xacro file includes from the package around it.
+    `with_neighbours` reads the files that a single xacro file includes from the package around it,
+    and meshes from there for a picture.
     Raises InputError, with one sentence, if the path cannot be read.
     """
     if path == STANDARD_INPUT:
@@ -102,14 +103,18 @@ def open_submission(
     data = read_capped(place, opening.max_size)
     identity = printable_path(place.stem)
     if with_neighbours and b"xacro" in data:
-        return _read_with_neighbours(place, data, identity, opening)
-    return read_submission(
-        data,
-        identity=identity,
-        path=printable_path(place.name),
-        opening=opening,
-        is_graded=lab is not _NO_LAB,
-    )
+        submission = _read_with_neighbours(place, data, identity, opening)
+    else:
+        submission = read_submission(
+            data,
+            identity=identity,
+            path=printable_path(place.name),
+            opening=opening,
+            is_graded=lab is not _NO_LAB,
+        )
+    if with_neighbours:
+        return replace(submission, around=partial(_read_around, place))
+    return submission
 
 
 def open_workspace(path: str, max_size: int, arguments: Mapping[str, str]) -> OpenedWorkspace:
@@ -181,6 +186,31 @@ def _read_with_neighbours(place: Path, data: bytes, identity: str, opening: Open
     if tree is not None:
         return _with_files_around(submission, tree, path, alone)
     return submission
+
+
+def _read_around(place: Path, names: Collection[str]) -> tuple[tuple[Package, ...], Tree]:
+    """Return the packages around a file, and the files that they are among, to find those of some
+    packages; without a package.xml, the files of the folder that is called as one of them.
+    """
+    # Late: few robots have meshes.
+    from grader.files.folder import read_folder
+    from grader.ros.package.finding import read_packages
+
+    nothing: tuple[tuple[Package, ...], Tree] = ((), make_tree("", (), ()))
+    try:
+        folder = place.parent.resolve()
+        above = (folder, *folder.parents)
+        package = next((it for it in above if (it / MANIFEST).is_file()), None)
+        root = next((it for it in above if it.name in names), None)
+        if package is not None:
+            root = _workspace_around(package, {*names} - {package.name})
+        if root is None:
+            return nothing
+        tree = read_folder(root)
+    except (OSError, InputError) as error:
+        MachineError.check(error, printable_path(place.name))
+        return nothing
+    return read_packages(tree, ""), tree
 
 
 def _workspace_around(package: Path, names: Collection[str]) -> Path:

@@ -28,6 +28,7 @@ from grader.ros.workspace.opened import OpenedWorkspace
 if TYPE_CHECKING:
     from grader.lab.documents.collection import DocumentCollection
     from grader.lab.documents.evidence import LabelledFile
+    from grader.ros.package.mesh_loading import MeshLoader
 
 # parts of a package's evaluation that take as long as reading a short URDF
 _WORK_OF_READING = 1_500
@@ -157,6 +158,13 @@ class Submission(OpenedWorkspace):
         """The robot that is graded; None if there is none."""
         if isinstance(self.urdf, Read):
             return self.urdf.reading.robot
+        return None
+
+    @cached_property
+    def meshes(self) -> "MeshLoader | None":
+        """What loads the meshes of the robot that is graded, for pictures; None without a robot."""
+        if isinstance(self.urdf, Read):
+            return self.meshes_of(self.urdf)
         return None
 
     @cached_property

@@ -9,10 +9,10 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import isfinite
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
-from grader.base.text import counted, enumerated, quoted, texts_in
+from grader.base.text import counted, enumerated, quoted, quoted_end, texts_in
 from grader.base.transforms import Z_AXIS, Transform, Vector
 from grader.lab.checks.motion import travel_of, turning_joint
 from grader.lab.grading.report import Report, Result
@@ -22,12 +22,17 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Cylinder, Link, Mesh, Sphere, Visual
 from grader.ros.urdf.shapes import Shape, UnknownShape
 
+if TYPE_CHECKING:
+    from grader.ros.package.mesh_loading import MeshLoader
+
 _Rgba = tuple[float, float, float, float]
 
 _MAX_BODIES = 500  # in software, a browser draws more only in seconds
 _MAX_COORDINATE = 1e4  # metres
 _MAX_OMITTED = 4  # links that are not shown
+_MAX_REASONS = 50  # why links are not shown
 _WITHOUT_MATERIAL: _Rgba = (1.0, 0.0, 0.0, 1.0)  # RViz shows such a shape in red
+_OWN_COLOUR: _Rgba = (0.7, 0.7, 0.7, 1.0)  # for the colours in a mesh file, which are not read
 _MESHES, _UNKNOWN = (
     "mesh files are not opened",
     "the size or place of a shape is zero, too large or not known",
@@ -39,13 +44,15 @@ _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name wh
 class Body(NamedTuple):
     """A visible shape of a link: its pose in the frame of the scene in metres, and its colour.
 
-    Sizes are not negative, and the channels of the colour are from 0 to 1.
+    Sizes are not negative, and the channels of the colour are from 0 to 1. With a `mesh`, the shape
+    is the box around it.
     """
 
     link: str
     shape: Shape
     T_frame_shape: Transform
     rgba: _Rgba
+    mesh: Mesh | None = None
 
 
 class Wheel(NamedTuple):
@@ -92,9 +99,14 @@ class Scene:
         return self.poses.get(self.root)
 
 
-def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> Scene:
+def scene_of(
+    robot: Configuration,
+    frame: str,
+    wheels: Collection[str] = (),
+    meshes: "MeshLoader | None" = None,
+) -> Scene:
     """Return the content of a picture of a robot, in the frame of a link; `wheels` are links
-    that are meant to roll.
+    that are meant to roll. Without `meshes`, no mesh is shown.
     """
     # The links that are not shown, or not wholly, by reason.
     omitted: dict[str, dict[str, None]] = {}
@@ -104,20 +116,33 @@ def scene_of(robot: Configuration, frame: str, wheels: Collection[str] = ()) -> 
         pose = _pose(robot, link.name, frame)
         if isinstance(pose, Transform):
             poses[link.name] = pose
-        for body in _bodies(link, pose):
+        for body in _bodies(link, pose, meshes):
             if isinstance(body, Body):
                 bodies[body] = None
             else:
                 omitted.setdefault(body, {})[link.name] = None
-    missing = []
-    for why, names in omitted.items():
-        shown = enumerated([quoted(name) for name in names], _MAX_OMITTED)
-        missing.append(f"Not shown: {shown}: {why}")
+    missing = _list_omitted(omitted)
+    boxed = dict.fromkeys(quoted(body.link) for body in bodies if body.mesh is not None)
+    if boxed:
+        shown = enumerated([*boxed], _MAX_OMITTED)
+        missing.append(f"Shown as the boxes around them: the meshes of {shown}")
     if len(bodies) > _MAX_BODIES:
         missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")
     scene = Scene(robot, frame, poses, tuple(bodies)[:_MAX_BODIES], (), tuple(missing))
     turning = (_wheel(scene, link) for link in wheels)
     return replace(scene, wheels=tuple(wheel for wheel in turning if wheel is not None))
+
+
+def _list_omitted(omitted: Mapping[str, Collection[str]]) -> list[str]:
+    """Return sentences on the links that are not shown, by reason."""
+    sentences = []
+    for why, names in [*omitted.items()][:_MAX_REASONS]:
+        shown = enumerated([quoted(name) for name in names], _MAX_OMITTED)
+        sentences.append(f"Not shown: {shown}: {why}")
+    rest = len(omitted) - _MAX_REASONS
+    if rest > 0:
+        sentences.append(f"Not shown: shapes for {counted(rest, 'other reason')}")
+    return sentences
 
 
 def _pose(robot: Configuration, link: str, frame: str) -> Transform | str:
@@ -129,34 +154,60 @@ def _pose(robot: Configuration, link: str, frame: str) -> Transform | str:
     return pose if _is_drawable(pose.translation) else "it is too far away"
 
 
-def _bodies(link: Link, pose: Transform | str) -> Iterator[Body | str]:
+def _bodies(link: Link, pose: Transform | str, meshes: "MeshLoader | None") -> Iterator[Body | str]:
     """Yield the bodies of a link, and why the others are not drawn."""
     if isinstance(pose, str):
         if link.visuals:
             yield pose
         return
-    yield from (_body(link.name, visual, pose) for visual in link.visuals)
+    for visual in link.visuals:
+        yield _body(link.name, visual, pose, meshes)
     if link.unresolved.keys() & {"visual", ""}:
         yield _UNKNOWN
 
 
-def _body(link: str, visual: Visual, pose: Transform) -> Body | str:
+def _body(link: str, visual: Visual, pose: Transform, meshes: "MeshLoader | None") -> Body | str:
+    """Return the body of a visual; else why it cannot be drawn."""
     drawn: Shape
+    mesh: Mesh | None = None
+    place = visual.origin.placed_in()
+    rgba = visual.material.rgba if visual.material is not None else _WITHOUT_MATERIAL
     match visual.geometry:
-        case Mesh():
-            return _MESHES
+        case Mesh() as shown:
+            if meshes is None:
+                return _MESHES
+            box = _box_around(shown, meshes)
+            if isinstance(box, str):
+                return f"the mesh {quoted_end(shown.filename)} {box}"
+            size, centre = box
+            mesh, sizes, drawn = shown, size, Box(size)
+            place = place @ Transform(translation=centre)
+            if visual.material is None and not shown.filename.lower().endswith(".stl"):
+                rgba = _OWN_COLOUR
         case Box(size=(x, y, z)):
             sizes, drawn = (x, y, z), Box((abs(x), abs(y), abs(z)))
         case Cylinder(radius=radius, length=length):
             sizes, drawn = (radius, length, 0.0), Cylinder(abs(radius), abs(length))
         case Sphere(radius=radius):
             sizes, drawn = (radius, 0.0, 0.0), Sphere(abs(radius))
-    place = visual.origin.placed_in()
     if visual.geometry.is_empty or not _is_drawable(sizes) or not _is_drawable(place.translation):
         return _UNKNOWN
-    rgba = visual.material.rgba if visual.material is not None else _WITHOUT_MATERIAL
     red, green, blue, alpha = map(_channel, rgba)
-    return Body(link, drawn, pose @ place, (red, green, blue, alpha))
+    return Body(link, drawn, pose @ place, (red, green, blue, alpha), mesh)
+
+
+def _box_around(mesh: Mesh, meshes: "MeshLoader") -> tuple[Vector, Vector] | str:
+    """Return the size and the centre of the box around a scaled mesh, in its frame (m); else why
+    there is none.
+    """
+    loaded = meshes.load(mesh)
+    if isinstance(loaded, str):
+        return loaded
+    sizes, centres = [], []
+    for low, high, factor in zip(*loaded.bounds, mesh.scale, strict=True):
+        sizes.append(abs(factor) * (high - low))
+        centres.append(factor * (low + high) / 2.0)
+    return (sizes[0], sizes[1], sizes[2]), (centres[0], centres[1], centres[2])
 
 
 def _channel(value: float) -> float:
@@ -216,12 +267,14 @@ class Picture:
     callouts: tuple[_Callout, ...]
 
 
-def plain_picture(robot: Configuration | None, frame: str | None) -> Picture | None:
+def plain_picture(
+    robot: Configuration | None, frame: str | None, meshes: "MeshLoader | None" = None
+) -> Picture | None:
     """Return the picture of a robot that is not graded, in the frame of one of its links; None
     without either.
     """
     if robot is not None and frame is not None:
-        return Picture(scene_of(robot, frame), (), (), ())
+        return Picture(scene_of(robot, frame, meshes=meshes), (), (), ())
     return None
 
 
@@ -237,7 +290,7 @@ def picture_of(report: Report) -> Picture | None:
     if frame is None:
         return None
     wheels = [*_wheels(report.rubric, robot)]
-    scene = scene_of(robot, frame, wheels)
+    scene = scene_of(robot, frame, wheels, report.submission.meshes)
     reference = None
     if solution is not None and reference_frame:
         reference = scene_of(solution, reference_frame, wheels)

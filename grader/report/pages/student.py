@@ -142,7 +142,8 @@ def inspection_html(inspection: Inspection) -> str:
         "lists": [("Robots", lines)] if robot is None and lines else lists(robot),
     }
     relative_to = robot.relative_to if robot is not None else None
-    return _render("inspection.html", values, plain_picture(configuration, relative_to))
+    meshes = robot.meshes if robot is not None else None
+    return _render("inspection.html", values, plain_picture(configuration, relative_to, meshes))
 
 
 def _problem_card(problem: Problem, inspection: Inspection) -> tuple[str, str, object]:

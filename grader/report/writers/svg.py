@@ -175,7 +175,7 @@ def inspection_svg(inspection: Inspection) -> str:
         positions = configuration.positions.items()
         words += f"; {', '.join(f'{joint} = {position}' for joint, position in positions)}"
     title = (configuration.robot.name if configuration is not None else "") or robot.path
-    picture = plain_picture(configuration, robot.relative_to)
+    picture = plain_picture(configuration, robot.relative_to, robot.meshes)
     return _file(picture, title, (words,), NO_PICTURE)
 
 

@@ -27,6 +27,7 @@ _SCHEME = re.compile(
 )  # one letter is a disk of Windows
 _ABSOLUTE = re.compile(r"[/~\\]|[A-Za-z]:")
 _ONE_MACHINE = "exists on one machine only; use package://"
+RELATIVE = "is at a relative path, which RViz does not find; use package://"
 _BACKSLASH = "has a \\ in its path; separate folders by /"
 
 _MAX_WARNED = 20  # meshes of one file
@@ -136,7 +137,7 @@ def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterat
     of home folders.
     """
     robot = urdf.loaded.robot
-    found = _meshes(robot) if robot is not None else {}
+    found = meshes_of(robot) if robot is not None else {}
     for name, (link, mesh) in islice(found.items(), _MAX_WARNED):
         file = mesh_file(name, is_expanded=urdf.is_expanded)
         fault = _sure_fault(file, packages, tree)
@@ -145,7 +146,7 @@ def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterat
             yield Problem(MESH_PATH, file.problem_text(link, fault), at.resolve())
 
 
-def _meshes(robot: Robot) -> dict[str, tuple[str, Mesh]]:
+def meshes_of(robot: Robot) -> dict[str, tuple[str, Mesh]]:
     """Return the meshes of a robot by the names of their files, each with a link that has it."""
     shapes = [(link.name, it.geometry) for link in robot.links for it in link.visuals]
     shapes += [(link.name, it.geometry) for link in robot.links for it in link.collisions]
@@ -157,7 +158,7 @@ def _sure_fault(file: MeshFile, packages: Sequence[Package], tree: Tree) -> str:
     if file.written.startswith("file://") and not file.package and not is_of_one_machine(file.path):
         return ""
     if not (file.package or file.fault or file.doubt):
-        return "is at a relative path, which RViz does not find; use package://"
+        return RELATIVE
     if file.fault or not any(package.name == file.package for package in packages):
         return file.fault
     try:

@@ -110,7 +110,7 @@ class Sphere:
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A mesh file. It is never opened, so its extent is unknown."""
+    """A mesh file. Only pictures open it, so to checks its extent is unknown."""
 
     filename: str
     scale: Vector = (1.0, 1.0, 1.0)

@@ -14,6 +14,7 @@ from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Unreadable, Urdf
 
 if TYPE_CHECKING:
+    from grader.ros.package.mesh_loading import Around, MeshLoader
     from grader.ros.workspace.extent import Extent
     from grader.ros.workspace.workspace import Workspace
 
@@ -36,6 +37,7 @@ class OpenedWorkspace:
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
     distro: Release | None = None  # the release of ROS 2 that a lab is for
     stated: StatedReleases = NOT_STATED  # those that a workspace is for
+    around: "Around | None" = None  # of a URDF on its own: reads the packages around it
 
     @cached_property
     def workspace(self) -> "Workspace":
@@ -85,6 +87,13 @@ class OpenedWorkspace:
         if joints or self.is_single:
             return joints
         return joints_of_controllers(self.workspace)
+
+    def meshes_of(self, robot: Read) -> "MeshLoader":
+        """Return what loads the meshes of one of its robots, for pictures."""
+        from grader.ros.package.mesh_loading import MeshLoader  # late: few robots have meshes
+
+        packages = (*self.packages, *self.ros1_packages)
+        return MeshLoader(robot, self.around or (lambda _: (packages, self.whole_tree)))
 
     def package_problems(self) -> list[Problem]:
         """Return what is wrong in its packages: in their files, then names that do not agree."""

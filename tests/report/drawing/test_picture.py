@@ -7,11 +7,15 @@ import pytest
 
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import load_rubric
-from grader.lab.submission.opening import open_submission
+from grader.lab.submission.opening import open_submission, open_workspace
 from grader.report.drawing.picture import Picture, picture_of, scene_of
+from grader.ros.package import mesh_loading
+from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Box
 from grader.ros.urdf.reader import read_urdf
 from tests.command_line import run
+from tests.mesh.mesh_files import CUBE, binary_stl, collada
 
 ROOT = Path(__file__).parents[3]
 
@@ -102,3 +106,63 @@ def test_wheel_below_a_joint_that_slides_has_an_arrow() -> None:
     assert robot is not None
     (wheel,) = scene_of(Configuration(robot), "base", ["wheel"]).wheels
     assert wheel.travel == pytest.approx((1.0, 0.0, 0.0), abs=1e-4)
+
+
+@pytest.mark.parametrize("ending", ["stl", "dae"])
+def test_a_mesh_is_the_box_around_it(ending: str, tmp_path: Path) -> None:
+    """Scaled, mirrored where the scale is negative, in the frame of the visual; in red without a
+    material, as RViz shows it, or in grey if the file has colours of its own.
+    """
+    (tmp_path / "rover").mkdir()
+    data = binary_stl(CUBE) if ending == "stl" else collada(CUBE)
+    (tmp_path / "rover" / f"cube.{ending}").write_bytes(data)
+    mesh = f'<mesh filename="package://rover/cube.{ending}" scale="0.1 -0.2 0"/>'
+    (tmp_path / "rover" / "rover.urdf").write_text(
+        f'<robot name="r"><link name="a"><visual><origin xyz="1 0 0" rpy="0 0 1.5707963267948966"/>'
+        f"<geometry>{mesh}</geometry></visual></link></robot>"
+    )
+    opened = open_workspace(str(tmp_path / "rover" / "rover.urdf"), 10_000, {})
+    assert isinstance(opened.urdf, Read)
+    robot = opened.urdf.loaded.robot
+    assert robot is not None
+    scene = scene_of(Configuration(robot), "a", meshes=opened.meshes_of(opened.urdf))
+    (body,) = scene.bodies
+    assert isinstance(body.shape, Box)
+    assert body.shape.size == pytest.approx((0.1, 0.4, 0.0))
+    assert body.T_frame_shape.translation == pytest.approx((1.2, 0.05, 0.0))
+    assert body.rgba == ((1.0, 0.0, 0.0, 1.0) if ending == "stl" else (0.7, 0.7, 0.7, 1.0))
+    assert body.mesh == robot.links[0].visuals[0].geometry
+    assert scene.missing == ("Shown as the boxes around them: the meshes of 'a'",)
+    assert scene_of(Configuration(robot), "a").bodies == ()
+
+
+def test_meshes_of_a_robot_have_limits_together(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first ones are shown, and each of the others says why it is not; a file counts once."""
+    (tmp_path / "rover").mkdir()
+    links = []
+    for number in range(6):
+        (tmp_path / "rover" / f"{number}.stl").write_bytes(binary_stl(CUBE))
+        mesh = (
+            f'<visual><geometry><mesh filename="package://rover/{number}.stl"/></geometry></visual>'
+        )
+        links.append(f'<link name="{number}">{mesh}{mesh}</link>')
+    for number in range(1, 6):
+        joint = f'<joint name="{number}" type="fixed"><parent link="0"/><child link="{number}"/></joint>'
+        links.append(joint)
+    (tmp_path / "rover" / "r.urdf").write_text(f'<robot name="r">{"".join(links)}</robot>')
+    monkeypatch.setattr(mesh_loading, "_MAX_SIZE", 5 * 684)
+    monkeypatch.setattr(mesh_loading, "_MAX_TRIANGLES", 40)
+    opened = open_workspace(str(tmp_path / "rover"), 10_000, {})
+    (urdf,) = opened.robots
+    assert isinstance(urdf, Read)
+    robot = urdf.loaded.robot
+    assert robot is not None
+    scene = scene_of(Configuration(robot), "0", meshes=opened.meshes_of(urdf))
+    assert [body.link for body in scene.bodies] == ["0", "1", "2"]
+    assert [text.rpartition(": ")[2] for text in scene.missing[:3]] == [
+        "40 triangles are read of all meshes of a robot",
+        "40 triangles are read of all meshes of a robot",
+        "3420 bytes are read of all meshes of a robot",
+    ]

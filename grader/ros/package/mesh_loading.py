@@ -1,0 +1,122 @@
+"""The meshes of a robot as triangles, for pictures; each file is where a build of its package puts
+it.
+"""
+
+import posixpath
+from collections.abc import Callable, Collection
+from typing import TYPE_CHECKING
+
+from grader.base.errors import InputError, NotDecided
+from grader.base.text import quoted, size_text
+from grader.files.tree import File, Tree
+from grader.ros.package.installed_files import look_up
+from grader.ros.package.mesh_content import LFS_POINTER
+from grader.ros.package.mesh_files import RELATIVE, MeshFile, mesh_file, meshes_of
+from grader.ros.package.package import Package
+from grader.ros.package.robot_file import Read
+from grader.ros.urdf.model import Mesh
+
+if TYPE_CHECKING:
+    from grader.ros.mesh.triangles import Triangles
+
+# Returns the packages with some names, and the files that they are among.
+Around = Callable[[Collection[str]], tuple[tuple[Package, ...], Tree]]
+
+# Of the meshes of a robot together.
+_MAX_SIZE = 64 * 1024 * 1024  # bytes
+_MAX_TRIANGLES = 1_500_000
+
+
+class MeshLoader:
+    """Loads the meshes of a robot, within limits for all of them together.
+
+    The files are looked for when the first mesh is loaded, and each is read once.
+    """
+
+    def __init__(self, robot: Read, read_around: Around) -> None:
+        self._robot = robot
+        self._read_around = read_around
+        self._around: tuple[tuple[Package, ...], Tree] | None = None
+        self._loaded: dict[str, Triangles | str] = {}  # by the names of the files
+        self._free_size, self._free_triangles = _MAX_SIZE, _MAX_TRIANGLES
+
+    def load(self, mesh: Mesh) -> "Triangles | str":
+        """Return the triangles of a mesh, before it is scaled; else why it cannot be shown, as the
+        end of a sentence that begins with its name.
+        """
+        if mesh.filename not in self._loaded:
+            named = mesh_file(mesh.filename, is_expanded=self._robot.is_expanded)
+            file = self._find(named)
+            if not isinstance(file, str):
+                self._loaded[mesh.filename] = self._read(file, named.path)
+            else:
+                self._loaded[mesh.filename] = file
+        return self._loaded[mesh.filename]
+
+    def _find(self, named: MeshFile) -> File | str:
+        """Return the file that is meant; else why there is none."""
+        if named.doubt:
+            return "is not at a package:// path, and is not opened"
+        if named.fault or not named.package:
+            return named.fault or RELATIVE
+        if self._around is None:
+            self._around = self._read_around(self._name_packages())
+        packages, tree = self._around
+        path = posixpath.normpath(named.path)
+        package = packages[0].find(named.package) if packages else None
+        if package is not None:
+            return _find_in_package(named, package, path, tree)
+        # RViz needs a package.xml; a folder with the package's name surely has the mesh.
+        end = f"/{named.package}/{path}"
+        found = [it for it in tree.files if f"/{tree.name}/{it}".endswith(end)]
+        if found:
+            return tree.files[min(found, key=len)]
+        return f"is looked for at share{end}, but no package {quoted(named.package)} is here"
+
+    def _name_packages(self) -> set[str]:
+        """Return the names of the packages that the robot's meshes are in."""
+        robot = self._robot.loaded.robot
+        meshes = meshes_of(robot) if robot is not None else {}
+        files = [mesh_file(it, is_expanded=self._robot.is_expanded) for it in meshes]
+        return {file.package for file in files if file.package}
+
+    def _read(self, file: File, path: str) -> "Triangles | str":
+        """Return the triangles in a file; else why they are not shown."""
+        from grader.ros.mesh.triangles import MAX_MESH_SIZE, read_triangles  # late: it loads numpy
+
+        if file.size > self._free_size:
+            return f"does not fit: {size_text(_MAX_SIZE)} are read of all meshes of a robot"
+        self._free_size -= file.size
+        try:
+            data = file.read(MAX_MESH_SIZE + 1, first=True)
+        except InputError as error:
+            return f"cannot be read: {error}"
+        if data.startswith(LFS_POINTER):
+            return "is not here: this download holds only the pointer of Git LFS"
+        triangles = read_triangles(data, path)
+        if isinstance(triangles, str):
+            return triangles
+        if triangles.count > self._free_triangles:
+            return f"does not fit: {_MAX_TRIANGLES:,} triangles are read of all meshes of a robot"
+        self._free_triangles -= triangles.count
+        return triangles
+
+
+def _find_in_package(named: MeshFile, package: Package, path: str, tree: Tree) -> File | str:
+    """Return the file of a package that a build installs where a mesh is looked for, or may
+    install; else why it does not.
+    """
+    target = f"share/{named.package}/{path}"
+    place = look_up(package, target)
+    file = package.tree.files.get(place.path if place.state == "installed" else path)
+    try:
+        fault = named.why_not_found((package,), tree)
+    except NotDecided as reason:
+        if file is not None:
+            return file
+        fault = f"is not here: {reason}"
+    if file is None or fault:
+        if place.state in ("absent", "no build"):
+            fault += f"; it is looked for at {target}"
+        return fault
+    return file
