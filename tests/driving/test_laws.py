@@ -162,3 +162,20 @@ def test_four_mecanum_wheels_drive_sideways(angle: float, ahead: float, aside: f
     assert abs(course.left) == pytest.approx(0.1 * tan(angle * pi / 180.0), rel=1e-6)
     straight = standing.drive(standing.wheels(rollers), [1.0] * 4, (1.0, 0.0, 0.0))
     assert (straight.forward, straight.left) == pytest.approx((0.1, 0.0), abs=1e-6)
+
+
+@examples(20)
+@given(reach=st.floats(0.0, 1.0))
+def test_the_positions_of_joints_count(reach: float) -> None:
+    """A mass that slides beyond the contacts tips the robot over, and one that stays between them does not."""
+    slide = (
+        '<link name="mass"><visual><geometry><box size="0.01 0.01 0.01"/></geometry></visual><inertial><mass value="99"/>'
+        '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
+        '<joint name="slide" type="prismatic"><parent link="base"/><child link="mass"/><axis xyz="1 0 0"/>'
+        '<limit lower="0" upper="1" effort="1" velocity="1"/></joint>'
+    )
+    robot = configuration(base("0.4 0.4 0.1", "0 0 0"), slide).moved("slide", reach)
+    rest = find_rest(body_of(robot, "base"))
+    centre = 0.99 * reach
+    if abs(centre - 0.2) > 1e-3:
+        assert (rest.tilt < 0.01) == (centre < 0.2)

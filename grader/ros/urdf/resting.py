@@ -6,26 +6,29 @@ the normal of that plane. Lengths are metres, poses are in the frame of the base
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from itertools import combinations, product
 from math import atan2, cos, degrees, hypot, inf, pi, radians, sin
 from typing import NamedTuple
 
-from grader.base.errors import NotDecided
+from grader.base.errors import MissingElement, NotDecided
 from grader.base.transforms import X_AXIS, Z_AXIS, Vector, cross, dot, minus, unit
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Collision, Cylinder, Mesh, Visual
 from grader.ros.urdf.shapes import PlacedShape, UnknownShape, bounding_radius
 
 _TOUCHING = 1e-4  # metres above the ground at which a link still touches it
+MAX_SHAPES = 300
 _MAX_TILT = 75.0  # degrees; a robot that leans by more has fallen over
 _STEEPEST = 9.0  # the slope of the steepest face on which a robot is said to stand
 _EXACT = 1e-14  # of the size of a robot: a point that is nearer to a plane is on it
 _STILL = 1e-6  # radians; a smaller motion is none
+_LEAP = 0.01  # radians
 _MAX_STEPS = 300
-_MAX_REFINEMENTS = 200
+_MAX_REFINEMENTS = 100
 _THIN = 1e-12  # the area of a triangle that has none, of the square of its distance
 _ROUNDING = 1e-9  # of the area of a triangle
-_LOWER = 1e-12  # metres
+_LOWER = 1e-12  # of the size of a robot: a mass that goes down by less does not fall
 _NUDGE = 2e-3  # radians by which a robot that balances is pushed
 _BALANCE = 1e-6  # metres from an edge of the contacts within which a mass balances on it
 _RIM_POINTS = 24  # of a cylinder that stands on its flat side
@@ -108,10 +111,13 @@ def body_of(robot: Configuration, base: str) -> _RestingBody:
     pose is undefined.
     """
     root = robot.root_of(base)
+    roots: dict[str, str] = {}
     shapes: list[_LinkShape] = []
     masses: list[tuple[float, Vector]] = []
     for link in robot.robot.links:
-        if not _is_below(robot, link.name, root):
+        with suppress(MissingElement):  # a link on a loop of joints is in no tree
+            roots[link.name] = robot.root_of(link.name)
+        if roots.get(link.name) != root:
             continue
         solids = solid_shapes(link.collisions) or solid_shapes(link.visuals)
         if not solids and link.inertial is None:
@@ -124,6 +130,8 @@ def body_of(robot: Configuration, base: str) -> _RestingBody:
             shapes.append(_LinkShape(link.name, PlacedShape(element.geometry, pose)))
         if link.inertial is not None and link.inertial.mass > 0.0:
             masses.append((link.inertial.mass, T_base_link.apply(link.inertial.origin.xyz)))
+    if len(shapes) > MAX_SHAPES:
+        raise NotDecided(f"the robot has more than {MAX_SHAPES} shapes", "a robot has many shapes")
     is_weighed = bool(masses)
     if not is_weighed:
         for _, (geometry, pose) in shapes:
@@ -135,11 +143,6 @@ def body_of(robot: Configuration, base: str) -> _RestingBody:
 def solid_shapes(elements: Iterable[Visual | Collision]) -> list[Visual | Collision]:
     """Return the visuals or collisions that have a size."""
     return [element for element in elements if not element.geometry.is_empty]
-
-
-def _is_below(robot: Configuration, link: str, root: str) -> bool:
-    chain = robot.chain(link)
-    return link == root or (chain != () and chain[0].parent == root)
 
 
 def _mean(weighted: Sequence[tuple[float, Vector]]) -> Vector:
@@ -169,10 +172,11 @@ def find_rest(body: _RestingBody) -> Rest:
         if face is None:
             up = X_AXIS  # nothing is below the mass: it falls over
             break
-        if hypot(*minus(face, up)) > _STILL:
-            up = face
+        falls = body.mass_height(face) < body.mass_height(up) - _LOWER * size
+        if falls and hypot(*minus(face, up)) > _STILL:
+            up = _follow(body, up, face)
         else:
-            pushed = _pushed_off_balance(body, face)
+            pushed = _pushed_off_balance(body, face, size)
             if pushed is None:
                 break
             up = pushed
@@ -182,6 +186,20 @@ def find_rest(body: _RestingBody) -> Rest:
     if not contacts:
         raise NotDecided("the numbers of the robot are too large to tell how it stands")
     return Rest(up, body.mass_centre, heights, contacts)
+
+
+def _follow(body: _RestingBody, start: Vector, face: Vector) -> Vector:
+    """Return where up is after a fall to a face, and further that way while the mass goes down and
+    the way is short: a large ball rolls far in many small steps.
+    """
+    best, step = face, minus(face, start)
+    while hypot(*step) < _LEAP:
+        step = (2.0 * step[0], 2.0 * step[1], 2.0 * step[2])
+        further = unit((start[0] + step[0], start[1] + step[1], start[2] + step[2]))
+        if further is None or not body.mass_height(further) < body.mass_height(best):
+            break
+        best = further
+    return best
 
 
 def _size_of(body: _RestingBody) -> float:
@@ -259,14 +277,14 @@ def _fit_around(triangle: list[Vector], centre: Vector, up: Vector) -> tuple[flo
     return (min(0.0, min(parts) / area + _ROUNDING), area)
 
 
-def _pushed_off_balance(body: _RestingBody, up: Vector) -> Vector | None:
+def _pushed_off_balance(body: _RestingBody, up: Vector, size: float) -> Vector | None:
     """Return where up is after a push under which the centre of mass goes down; None if the robot
     stands firmly.
 
     It can fall only if its centre of mass is straight above a line between two contacts, such as
     the axle of two wheels, or above a single one. There the slope is 0, and the curvature decides.
     """
-    best, lowest = None, body.mass_height(up) - _LOWER
+    best, lowest = None, body.mass_height(up) - _LOWER * size
     for direction in _find_loose_directions(body, up):
         pushed = unit(moved(up, [(direction, _NUDGE)]))
         if pushed is not None and body.mass_height(pushed) < lowest:

@@ -10,6 +10,7 @@ from grader.base.transforms import Z_AXIS, Vector, dot, minus
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint, Link
 from grader.ros.urdf.resting import (
+    MAX_SHAPES,
     Rest,
     body_of,
     find_rest,
@@ -45,9 +46,12 @@ class StandingRobot:
         self.robot, self.named = robot, named
         for link in named:
             robot.link(link)
-        owners = {self._owner_of(link.name) for link in robot.robot.links if _has_shape(link)}
+        shaped = [link.name for link in robot.robot.links if _has_shape(link)]
+        if len(shaped) > MAX_SHAPES:
+            raise NotDecided(f"the robot has more than {MAX_SHAPES} shapes", "it has many shapes")
+        self._owners = {link: self._find_owner(link) for link in shaped}
         for link in named:
-            if link not in owners:
+            if link not in self._owners.values():
                 message = f"link {quoted(link)} has no visual or collision with a size"
                 at = robot.link(link).location
                 raise MissingElement("visual", link, message=message, location=at)
@@ -78,7 +82,7 @@ class StandingRobot:
     def _list_upward(self, link: str) -> list[str]:
         return [link, *(joint.parent for joint in reversed(self.robot.chain(link)))]
 
-    def _owner_of(self, link: str) -> str:
+    def _find_owner(self, link: str) -> str:
         """Return the link that is named and that another one is fixed to, else that one itself."""
         name = link
         for joint in reversed(self.robot.chain(link)):
@@ -94,7 +98,7 @@ class StandingRobot:
         fixed to it.
         """
         heights = self.rest.heights
-        return min(heights[name] for name in heights if self._owner_of(name) == link)
+        return min(heights[name] for name in heights if self._owners[name] == link)
 
     def find_odd_height(self) -> tuple[str, float]:
         """Return the named link whose lowest point is farthest from the level of the others while
@@ -102,7 +106,7 @@ class StandingRobot:
         """
         bottoms: dict[str, float] = {}
         for name, shape in self.body.shapes:
-            owner = self._owner_of(name)
+            owner = self._owners[name]
             if owner in self.named:
                 bottoms[owner] = min(shape.extent(Z_AXIS)[0], bottoms.get(owner, inf))
         usual = sorted(bottoms.values())[len(bottoms) // 2]
@@ -112,7 +116,7 @@ class StandingRobot:
     @property
     def touching(self) -> list[str]:
         """The links on which the robot rests, as they are named."""
-        return [*dict.fromkeys(map(self._owner_of, self.rest.contacts))]
+        return [*dict.fromkeys(self._owners[link] for link in self.rest.contacts)]
 
     def _find_span_below_mass(self) -> tuple[float, float] | None:
         """Return how far the area between the contacts of links reaches backward and forward from
@@ -121,7 +125,7 @@ class StandingRobot:
         forward, left = level_directions(self.rest.up)
         corners: list[tuple[float, float]] = []
         for link, points in self.rest.contacts.items():
-            if self._owner_of(link) not in self.named:
+            if self._owners[link] not in self.named:
                 continue
             for point in points:
                 away = minus(point, self.rest.mass_centre)
