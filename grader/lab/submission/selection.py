@@ -180,7 +180,7 @@ def _note_on_folders(selection: _Selection) -> str:
     return ""
 
 
-class _Places(NamedTuple):
+class _SearchedPlaces(NamedTuple):
     """The places of a submission that are searched; of other labs only the one in `other_lab`."""
 
     labs: LabFolders
@@ -244,7 +244,7 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
 
     package_files = [path for path in tree.files if path.rpartition("/")[2] in PACKAGE_FILES]
     other_lab = _other_lab(tree, labs, choice.path, () if has_own_folder else package_files)
-    places = _Places(labs, other_lab)
+    places = _SearchedPlaces(labs, other_lab)
     searched_tree = places.only(tree, tuple(Belonging))
     own_tree = places.own(tree) if has_own_folder else searched_tree
 
