@@ -69,7 +69,7 @@ class Review(NamedTuple):
         own = {"Content_Type": "application/json", "Origin": f"http://{HOST}:{self.port}"}
         return self.ask("POST", f"/{self.token}/{path}", own | headers, json.dumps(sent).encode())
 
-    def mark(self, path: str, points: str, comment: str = "", **sent: str) -> dict[str, Any]:
+    def mark(self, path: str, points: str, comment: str = "", **sent: object) -> dict[str, Any]:
         """Mark an item as its page does, and return the answer."""
         return self.post(
             path, {"do": "mark", "points": points, "comment": comment, **self.seen(path), **sent}

@@ -408,3 +408,23 @@ def test_one_column_below_900_pixels(review: Review, open_page: Open) -> None:
             assert box is not None and box["width"] > width - 40
             assert points is not None and 0 < points["y"] < 500 - points["height"]
             assert page.evaluate("scrollY") == place
+
+
+def test_a_similar_answer_gets_the_mark_if_it_is_ticked(tmp_path: Path, open_page: Open) -> None:
+    """The box beside the other answer is empty at first; what is ticked is saved with the mark."""
+    for key, end in (("ash", "roots"), ("birch", "Roots!"), ("cedar", "trees")):
+        answer = f"Nothing joins the link to another one, so that there are two {end}"
+        write_submission(tmp_path / "class" / key, answer=answer)
+    book = graded_in(tmp_path)
+    with running(book, "essay") as review:
+        page = open_page(f"{review.url}1").page
+        boxes = page.locator("[data-similar]")
+        assert [boxes.count(), boxes.nth(0).is_checked()] == [2, False]
+        boxes.nth(0).check()
+        page.fill("#points", "3")
+        page.press("#points", "Enter")
+        page.wait_for_url(re.compile("/3$"))
+    assert [mark[:3] for mark in marks_in(book)] == [
+        ("ash", "essay", "3"),
+        ("birch", "essay", "3"),
+    ]

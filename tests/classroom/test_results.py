@@ -38,6 +38,8 @@ GRADED = st.builds(
     work=st.just({}),
     answers=st.dictionaries(TEXT, TEXT),
     texts=st.dictionaries(TEXT, TEXT, max_size=2),
+    written=st.dictionaries(TEXT, TEXT, max_size=2),
+    timeout=st.sampled_from([0, 2.5]),
 )
 pytestmark = pytest.mark.usefixtures("unsynced")
 RUN = Run(
@@ -69,13 +71,14 @@ def test_the_newest_line_of_each_student_is_read(
     newest = {one.student: one for one in lines}
     found = Results(file)
     assert list(map(plain, found.all())) == [
-        newest[key]._replace(texts={}) for key in sorted(newest)
+        newest[key]._replace(texts={}, written={}) for key in sorted(newest)
     ]
     assert all(found.of(key) is not None for key in newest)
     for (
         one
     ) in newest.values():  # texts of an earlier result count as long as the submission is the same
         assert not one.texts or found.texts(one) == one.texts
+        assert not one.written or found.written_answers(one) == one.written
         assert found.texts(one._replace(digest=f"{one.digest} ")) == {}
     assert found.of("\x00nobody") is None
 

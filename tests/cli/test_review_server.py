@@ -1,5 +1,6 @@
 """The server of grader review: what it shows and writes, and what it refuses to whom."""
 
+import json
 import re
 import signal
 import socket
@@ -65,6 +66,49 @@ def test_an_item(review: Review, book: Path) -> None:
     hostile = review.get("2").text
     assert r"[bold]\x1b[31mRed\x1b[0m roots[/bold] \u202eturned" in hostile
     assert not set(hostile) & set("\x1b\u202e")
+
+
+def test_similar_answers_are_offered_together(tmp_path: Path) -> None:
+    """Each has a box, unticked, with the answer; what is ticked gets the same mark, if it is still as it was shown."""
+    answers = {
+        "anna": "The link has no parent, so that the tree has two roots.",
+        "ben": "the link has NO parent so that the tree has  two roots",
+        "cleo": "The link has no parent, so that its tree has two roots!",
+        "dora": "Because RViz cannot draw what robot_state_publisher does not publish.",
+        "emil": "The roots.",
+    }
+    for name, answer in answers.items():
+        write_submission(tmp_path / "class" / name, answer=answer)
+    (tmp_path / "small.toml").write_text(lab_text())
+    book = tmp_path / "book"
+    done = grader(
+        "batch", tmp_path / "class", "--gradebook", book, "--rubric", tmp_path / "small.toml"
+    )
+    assert done.returncode == 0, done.stderr
+    with running(book, "essay") as review:
+        page = review.get("1").text
+        boxes = re.findall(r'data-similar="(\w+)"> (.*?)</label>', page)
+        assert [about for _, about in boxes] == [
+            "ben: 100% the same words",
+            "cleo: 92% the same words",
+        ]
+        assert "so that its tree has two roots!" in page
+        views = re.findall(r'"similar":({.*?})', page)
+        similar = json.loads(views[0])
+        assert [*similar] == [address for address, _ in boxes]
+        other = {**similar, boxes[1][0]: "another"}
+        assert "error" in review.mark("1", "3", similar=other)
+        assert "error" in review.mark("1", "3", similar={"99": "x"})
+        assert marks_in(book) == []
+        assert "error" not in review.mark(
+            "1", "3", "no parent", similar={boxes[1][0]: similar[boxes[1][0]]}
+        )
+        assert marks_in(book) == [
+            ("anna", "essay", "3", "no parent"),
+            ("cleo", "essay", "3", "no parent"),
+        ]
+        assert 'class="similar"' not in review.get("4").text
+        assert 'class="similar"' not in review.get("5").text
 
 
 def test_pictures_have_their_verified_type(review: Review) -> None:

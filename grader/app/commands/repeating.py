@@ -1,6 +1,7 @@
 """--watch: do something now and whenever a watched file changes, until Ctrl-C."""
 
 import gc
+import math
 import os
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
@@ -93,10 +94,12 @@ def _changes(watched: Sequence[Path], own: Collection[str] = ()) -> Iterator[lis
     besides: list[Path] = []
     seen: _Stamps | None = None
     before: _Stamps = {}
+    looks = [math.inf]  # the times of the last two
     while True:
         start = time.monotonic()
         now = _stamps([*watched, *besides], own)
-        pause = max(_POLL, _SHARE * (time.monotonic() - start))
+        looks = [looks[-1], time.monotonic() - start]
+        pause = max(_POLL, _SHARE * min(looks))  # a look that a busy machine interrupts is longer
         if (
             seen is None or before == now != seen
         ):  # what changed since the last look may be half written

@@ -70,7 +70,7 @@ from grader.workers.queue import Progress
 _MAX_LINES = 10
 _LEAST_SECONDS = 15.0  # in which hints are searched, and a few reports written
 _PRIVATE = 0o600
-_FORMAT = 2  # of results: those of another one are graded again
+_FORMAT = 3  # of results: those of another one are graded again
 
 
 @dataclass(frozen=True, slots=True)

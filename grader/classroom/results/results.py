@@ -60,17 +60,19 @@ class StoredResult(NamedTuple):
     no_documents: str = ""  # why its documents were not read
     timeout: float = 0  # the limit of processor time that it reached, in seconds
     texts: Mapping[str, str] = {}  # those of Word and PDF files by path, in a new result only
+    written: Mapping[str, str] = {}  # the answers by criterion, in a new result only
 
     @property
     def line(self) -> bytes:
         """The line of the file, without what is empty, and before it that of the texts."""
         values = self._asdict()
-        files = values.pop("texts")
+        files, answers = values.pop("texts"), values.pop("written")
         line = json_line(
             {name: value for name, value in values.items() if value or name in ("student", "run")}
         )
-        if files:
-            return json_line({"texts": self.student, "digest": self.digest, "files": files}) + line
+        if files or answers:
+            texts = {"texts": self.student, "digest": self.digest}
+            return json_line({**texts, "files": files, "answers": answers}) + line
         return line
 
 
@@ -283,9 +285,16 @@ class Results:
 
     def texts(self, stored: StoredResult) -> dict[str, str]:
         """Return the texts of the Word and PDF files in a submission as it was graded, by path."""
+        return self._texts_of(stored, "files")
+
+    def written_answers(self, stored: StoredResult) -> dict[str, str]:
+        """Return the written answers in a submission as it was graded, by criterion."""
+        return self._texts_of(stored, "answers")
+
+    def _texts_of(self, stored: StoredResult, kind: str) -> dict[str, str]:
         [found] = self._read_values(self._texts, [stored.student])
         if found and found["digest"] == stored.digest:
-            return dict(found["files"])
+            return dict(found[kind])
         return {}
 
     def _read_values(

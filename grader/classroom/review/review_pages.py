@@ -11,7 +11,14 @@ from typing import Any, NamedTuple
 from markupsafe import Markup
 
 from grader import __version__
-from grader.base.text import counted, counted_points, format_points, printable, shell_quoted
+from grader.base.text import (
+    counted,
+    counted_points,
+    format_points,
+    people_text,
+    printable,
+    shell_quoted,
+)
 from grader.classroom.gradebook.review_items import (
     OLDER,
     STATES,
@@ -33,6 +40,15 @@ _FILES = Path(__file__).parent / "files"
 _ASSETS = Assets("text.css robot.css review.css", "review.js", STYLE, _SOURCES, _FILES)
 NO_ANSWER = "No answer"
 _DECIMALS = Decimal("0.0001")
+
+
+class SimilarItem(NamedTuple):
+    """An item with an answer that is similar to another one."""
+
+    position: int
+    item: ReviewItem
+    text: str
+    share: float  # of the words that both have in common
 
 
 class OpenedItem(NamedTuple):
@@ -68,11 +84,16 @@ def filters(
     ]
 
 
-def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) -> str:
+def item_page(
+    item: ReviewItem,
+    opened: OpenedItem,
+    place: Mapping[str, Any],
+    similar: Mapping[str, SimilarItem],
+) -> str:
     """Return the page of an item; `place` has its `number` and address among a `total`, and the
     filters.
 
-    The addresses of the pictures are ADDRESS/picture/1 and so on.
+    The addresses of the pictures are ADDRESS/picture/1 and so on. `similar` are items by address.
     """
     criterion, members = item.criterion, [member.label for member in item.members]
     marks = [shown.members[0].mark for shown in item.all]
@@ -90,6 +111,7 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
     if len(members) == 1:
         who, listed = members[0], []
     is_older = item.members[0].state == OLDER
+    similar_answers = [_similar_answer(*one) for one in similar.items()]
     values = {
         **place,
         "title": f"{place['number']} of {place['total']}: {who}, {criterion.title}",
@@ -103,16 +125,25 @@ def item_page(item: ReviewItem, opened: OpenedItem, place: Mapping[str, Any]) ->
         "model": model_lines(criterion),
         "pictures": pictures,
         "marked": _marked_text(marks, is_older=is_older),
+        "similar": similar_answers,
         "buttons": _buttons(maximum),
         "choices": [f"{text} ({format_points(points)})" for text, points in choices.items()],
     }
+    views = {address: one.item.view for address, one in similar.items()}
     data = {
         **_marked_data(item, marks),
+        "similar": views,
         "choices": [(text, float(points)) for text, points in choices.items()],
         "maximum": float(maximum),
         "people": members,
     }
     return _page("review.html", values, data)
+
+
+def _similar_answer(address: str, one: SimilarItem) -> tuple[str, str, list[str]]:
+    """Return the address of an item, who has its answer, and the lines of the answer."""
+    people = people_text([member.label for member in one.item.members])
+    return address, f"{people}: {int(100 * one.share)}% the same words", one.text.splitlines()
 
 
 def _marked_data(item: ReviewItem, marks: Sequence[Mark | None]) -> dict[str, Any]:

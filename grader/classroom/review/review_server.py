@@ -13,7 +13,7 @@ import re
 import secrets
 import signal
 from bisect import bisect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import nullcontext, suppress
 from http import HTTPStatus
 from http.server import BaseHTTPRequestHandler
@@ -45,6 +45,7 @@ MAX_BODY = 64 * 1024  # bytes; `http.server` limits the headers
 _PATIENCE = 15.0
 _TEXT = "text/plain; charset=utf-8"
 _TOKEN_BYTES = 24
+_MAX_SIMILAR = 20  # answers on a page
 _LINK = "open-review.html"  # in the gradebook, while the server runs
 _HEADERS = {
     "X-Content-Type-Options": "nosniff",
@@ -239,7 +240,9 @@ class ReviewPage:
             case (_,) if is_item:
                 item = session.item_at(at)
                 place = self._place(at) | {"so_far": session.so_far(item)}
-                return _html(pages.item_page(item, open_item(session.book, item), place))
+                found = session.similar(at)[:_MAX_SIMILAR]
+                similar = {self.address(one.position): one for one in found}
+                return _html(pages.item_page(item, open_item(session.book, item), place, similar))
             case (_, "picture", number) if is_item:
                 pictures = enumerate(open_item(session.book, session.item_at(at)).pictures, 1)
                 picture = {str(which): picture for which, picture in pictures}.get(number)
@@ -278,7 +281,7 @@ class ReviewPage:
                 "shown": str(shown),
                 **more,
             } if at < len(session.places):
-                return self._mark(at, points, comment.strip(), shown, to=str(more.get("to")))
+                return self._mark(at, points, comment.strip(), shown, more)
             case {
                 "do": "filter",
                 "criterion": str(criterion),
@@ -302,13 +305,23 @@ class ReviewPage:
                 return _json(HTTPStatus.BAD_REQUEST, error="this request is not from the page")
         return _json(go=self.address(at))
 
-    def _mark(self, at: int, points: str, comment: str, shown: str, *, to: str) -> _Response:
-        """Save a mark, or return those of others that it would replace. `question` is the next one
-        of the student.
+    def _mark(
+        self, at: int, points: str, comment: str, shown: str, sent: Mapping[Any, Any]
+    ) -> _Response:
+        """Save a mark, or return those of others that it would replace.
+
+        Of what is sent besides, `to` is `question` for the next one of the student, and `similar`
+        has the addresses and views of items that get the same mark.
         """
-        session = self.session
-        open_item(session.book, session.item_at(at))  # what has moved or changed cannot be marked
-        replaced = session.mark(at, points, comment, shown)
+        session, to = self.session, sent.get("to")
+        given, similar = sent.get("similar"), []
+        for address, view in given.items() if isinstance(given, dict) else ():
+            similar.append((self._position(address), str(view)))
+        for position in (at, *(position for position, _ in similar)):
+            if not 0 <= position < len(session.places):
+                return _json(error=_CHANGED, go=self.address(at))
+            open_item(session.book, session.item_at(position))  # not what has moved or changed
+        replaced = session.mark(at, points, comment, shown, similar)
         if replaced:
             more = f" (and {counted(len(replaced) - 1, 'more mark')})" if len(replaced) > 1 else ""
             return _json(newer=pages.mark_text(replaced[0]) + more)

@@ -7,6 +7,7 @@ pictures. Instead of the page, a person can fill in a sheet of the open items, a
 
 import os
 from collections import defaultdict
+from collections.abc import Sequence
 from pathlib import Path
 
 from grader.base.errors import InputError
@@ -35,7 +36,8 @@ from grader.classroom.marks import gradebook_folder as names
 from grader.classroom.marks.gradebook_folder import CLASS_FILE
 from grader.classroom.marks.marks import Key, Mark, append_marks, mark_file, mark_in
 from grader.classroom.review.opened_item import open_item
-from grader.classroom.review.review_pages import NO_ANSWER
+from grader.classroom.review.review_pages import NO_ANSWER, SimilarItem
+from grader.classroom.review.similar_answers import share_of_words, words_of
 from grader.classroom.roster.roster import plain
 from grader.classroom.roster.typed_names import criterion_of
 from grader.classroom.tables import write_table
@@ -220,8 +222,38 @@ class ReviewSession:
         self._kept.clear()
         self._arrange()
 
-    def mark(self, at: int, points: str, comment: str, shown: str) -> list[Mark] | None:
+    def similar(self, at: int) -> list[SimilarItem]:
+        """Return the unmarked items of the same question with similar answers, the most similar
+        first.
+        """
+        item, found = self.item_at(at), list[SimilarItem]()
+        own = words_of(self._written(item))
+        for position, other in self.shown.items():
+            is_same = other.criterion.id == item.criterion.id and position != at
+            is_alone = not (item.also or self._joined[position].also)
+            if is_same and is_alone and other.members[0].state == UNMARKED:
+                text = self._written(other)
+                share = share_of_words(own, words_of(text))
+                if share:
+                    found.append(SimilarItem(position, other, text, share))
+        return sorted(found, key=lambda one: -one.share)
+
+    def _written(self, item: ReviewItem) -> str:
+        """Return the written answer of an item; empty if it is not, or not only, words."""
+        answers = self.book.results.written_answers(item.members[0].stored)
+        return answers.get(item.criterion.id, "")
+
+    def mark(
+        self,
+        at: int,
+        points: str,
+        comment: str,
+        shown: str,
+        similar: Sequence[tuple[int, str]] = (),
+    ) -> list[Mark] | None:
         """Append a mark for each student of an item; `-` as points withdraws marks.
+
+        The items of `similar`, positions with the views that the person saw, get the same mark.
 
         Of criteria that are shown together, `points` has a word for each.
         `shown` is the item's view that the person saw: without effect, returns None if it is
@@ -230,13 +262,19 @@ class ReviewSession:
         """
         item = self.item_at(at)
         self._check_rows()
+        items = [item]
+        for position, view in similar:
+            items.append(self.item_at(position))
+            is_other = items[-1].criterion.id != item.criterion.id or bool(item.also)
+            if is_other or items[-1].view != view:
+                return None
         if shown.removesuffix(CONFIRMED) != item.view:
             return None
         values = points.split() if item.also else [points.strip()]
         if len(values) != len(item.all) or not all(values):
             raise InputError("points are missing")
         new, replaced = dict[Key, Mark](), list[Mark]()
-        for one, value in zip(item.all, values, strict=True):
+        for one, value in zip([*item.all, *items[1:]], values + values * len(similar), strict=True):
             new |= self._marks_of(one, value, comment)
             replaced += [
                 it.mark for it in one.members if it.mark is not None and it.mark.points is not None

@@ -26,6 +26,7 @@ from grader.lab.submission.submission import Opening, Submission
 from grader.ros.package.robot_file import Absent, Unreadable
 from grader.workers.pool import NO_MEMORY, WorkerError, out_of_time
 
+_MAX_ANSWER = 4000  # characters of an answer that are kept to compare it
 _MAX_CAUSE = 200  # characters
 
 
@@ -120,9 +121,8 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
             reason = f"the grader itself failed: {type(error).__name__}: {error}"
         return _undecided(context, result._replace(verdict="errored", reason=reason))
     entries = {one.criterion.id: _stored_criterion(one) for one in report.results}
-    result = result._replace(
-        parts=report.parts, results=entries, answers=_answers_of(report, result.digest)
-    )
+    answers, written = _answers_of(report, result.digest)
+    result = result._replace(parts=report.parts, results=entries, answers=answers, written=written)
     if fault := report.fault:
         return result._replace(verdict="errored", reason=fault)
     is_handed_out = bool(report.another_robot)  # by the course, so that it is no equal work
@@ -147,21 +147,23 @@ def _stored_criterion(result: Result) -> StoredCriterion:
     return (*stored, off)
 
 
-def _answers_of(report: Report, digest: str) -> dict[str, str]:
+def _answers_of(report: Report, digest: str) -> tuple[dict[str, str], dict[str, str]]:
     """Return the key of the answer for each criterion that needs manual grading, empty if there is
-    nothing to read.
+    nothing to read, and the answers that are words.
 
     It is that of the words, or of the whole submission where more than words is to be looked at.
     """
-    found = dict[str, str]()
+    found, written = dict[str, str](), dict[str, str]()
     for one in report.results:
         if one.outcome.status != "pending":
             continue
         content = content_of(one, report)
+        if content:
+            written[one.criterion.id] = content[:_MAX_ANSWER]
         if not content and not is_empty(one, report):
             content = digest
         found[one.criterion.id] = digest_of(content) if content else ""
-    return found
+    return found, written
 
 
 def given_up(context: ClassContext, task: Task, error: WorkerError, digest: str) -> StoredResult:

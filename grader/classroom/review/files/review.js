@@ -11,6 +11,8 @@
   const isChanged = () => form !== null && String(written()) !== String([data.points, data.comment, ...data.each]);
   const sentPoints = () => each.length ? each.map((field) => field.value.replace(/\s/g, "")).join(" ") : points?.value;
 
+  const chosenSimilar = () => Object.fromEntries([...document.querySelectorAll("[data-similar]:checked")].map((box) => [box.dataset.similar, data.similar[box.dataset.similar]]));
+
   async function send(action, more = {}) {
     if (busy) return;
     if (action === "mark" && !points.value.trim()) { refuse("Enter the points first."); return; }
@@ -25,7 +27,7 @@
     say("Saving ...", true);
     find("main").inert = true;
     try {
-      const mark = action === "mark" ? { points: sentPoints(), comment: comment.value, shown } : {};
+      const mark = action === "mark" ? { points: sentPoints(), comment: comment.value, shown, similar: chosenSimilar() } : {};
       const sent = { do: action, ...mark, ...more };
       const headers = { "Content-Type": "application/json" };
       const answer = await (await fetch(location.pathname, { method: "POST", headers, body: JSON.stringify(sent) })).json();
