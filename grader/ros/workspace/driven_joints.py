@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.config.yaml_nodes import Visits, YamlNode
 from grader.ros.package.robot_file import Read
 
 if TYPE_CHECKING:
@@ -38,9 +38,9 @@ def joints_of_controllers(workspace: "Workspace") -> list[str]:
 
 def _tables_in(node: YamlNode) -> Iterator[YamlNode]:
     """Yield a table and all tables in it."""
-    pending = [node]
+    pending, visits = [node], Visits()
     while pending:
         table = pending.pop()
-        if isinstance(table.value, dict):
+        if isinstance(table.value, dict) and visits.enters(table):
             yield table
             pending += table.value.values()
