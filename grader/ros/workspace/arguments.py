@@ -31,7 +31,7 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
         for owner in workspace.targets_of(package, path):
             for name in launch.declared:
                 yield Definition("launch argument", name, start, owner)
-            text = package.tree.files[path].read(_MAX_LAUNCH).decode("utf-8", "replace")
+            text = (package.tree.read(path, _MAX_LAUNCH) or b"").decode("utf-8", "replace")
             used = {match[1] or match[2] for match in _CONFIGURATION.finditer(text)}
             for name in used:
                 yield Definition("launch argument", name, start, owner)

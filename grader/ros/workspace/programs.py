@@ -27,7 +27,6 @@ from grader.ros.workspace.names import (
 from grader.ros.workspace.workspace import Workspace
 
 _MAX_FIRST_LINE = 100  # bytes
-_BYTES_A_PART = 4  # of a module whose functions are compared with the one that is missing
 _OF_MISSING = 5_000  # parts: similar names are searched among all programs
 
 
@@ -80,7 +79,7 @@ def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
         yield Compared("programs")
         path = module_path(package, entry.module)
         size = package.tree.files[path].size if path is not None else 0
-        workspace.charge(len(package.tree.files) + size // _BYTES_A_PART)
+        workspace.charge(len(package.tree.files) + size)  # the functions of the module
         fault = entry_fault(package, entry.name)
         if fault is not None:
             message = f"the entry point of {entry.name!r} names no function: {fault.message}"

@@ -105,7 +105,7 @@ def _opened(commands: list[Command], start: int, depth: int) -> tuple[Command, i
 
 def _commands(source: Source) -> Iterator[Command]:
     """Yield the commands of a file, without blocks. Raises CMakeFault."""
-    text, places = source.text, _Places(source)
+    text, places = source.text, _Columns(source)
     offset = len("\ufeff") if text.startswith("\ufeff") else 0  # CMake takes a byte order mark
     while (offset := _skip(text, offset)) < len(text):
         name = _NAME.match(text, offset)
@@ -121,7 +121,7 @@ def _commands(source: Source) -> Iterator[Command]:
         offset = end
 
 
-def _arguments(text: str, offset: int, places: "_Places") -> tuple[tuple[Argument, ...], int]:
+def _arguments(text: str, offset: int, places: "_Columns") -> tuple[tuple[Argument, ...], int]:
     """Return the arguments of a command and where it ends. Raises CMakeFault."""
     start, depth = offset, 0
     found: list[Argument] = []
@@ -150,7 +150,7 @@ def _skip(text: str, offset: int) -> int:
     return found.end() if found is not None else offset
 
 
-class _Places:
+class _Columns:
     """The positions of offsets in a text, whose columns count bytes, as Python counts them.
 
     Offsets grow, and a line may have many arguments: a column is counted from the one before.
