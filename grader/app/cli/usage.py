@@ -244,7 +244,9 @@ def _correct_extra_words(line: _CommandLine, error: Any) -> _Correction | None:
     why = f"{line.command.name} takes only one {arguments[0].metavar.strip('[]')}"
     if line.command.name == "grade":
         why += " (grader batch grades a class)"
-    return _Correction(why, [it for n, it in enumerate(line.words) if n not in loose[1:]])
+    there = [index for index in loose if os.path.lexists(line.words[index])]
+    others = {*loose} - {*(there or loose)[:1]}
+    return _Correction(why, [it for n, it in enumerate(line.words) if n not in others])
 
 
 def _correct_repetition(line: _CommandLine, loose: list[int]) -> _Correction | None:

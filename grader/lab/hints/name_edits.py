@@ -152,11 +152,12 @@ def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterat
     """
     name, meant = wanted["parameter"], wanted.get("value")
     try:
-        value, at = value_of(submission, wanted["node"], name)
+        given = value_of(submission, wanted["node"], name)
         if "measure" in wanted:
             meant = round(measured(submission, wanted["measure"], wanted.get("links", [])), 6)
     except (MissingElement, NotDecided):
         return
+    value, at = given.value, given.location
     source, key = submission.source(at.path), re.escape(name.rpartition(".")[2])
     if source is None:
         return

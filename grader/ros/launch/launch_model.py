@@ -153,12 +153,13 @@ class Context:
 
 
 class ParameterValue(NamedTuple):
-    """The value that a parameter is given, a scalar or a list of them or Unknown, and where it is
-    written.
+    """The value that a parameter is given, a scalar or a list of them or Unknown, where it is
+    written, and where its name is in a file.
     """
 
     value: Any
     location: Location
+    named_at: Location | None = None
 
 
 class GivenParameters(NamedTuple):

@@ -588,25 +588,26 @@ def _sections(
         return
     for name, value in node.pairs:
         if name == _KEY:
-            values = _flat(value, "", 0, visits)
-            yield (
-                key,
-                {
-                    it: value_in_file(own, is_plain=is_plain)
-                    for it, own in values
-                    if isinstance(own.value, str | list)
-                },
-            )
+            values: dict[str, ParameterValue] = {}
+            for parameter, own, named_at in _flat(value, "", None, 0, visits):
+                if isinstance(own.value, str | list):
+                    given = value_in_file(own, is_plain=is_plain)
+                    values[parameter] = given._replace(named_at=named_at)
+            yield key, values
         else:
             yield from _sections(value, f"{key}/{name.strip('/')}", visits, is_plain=is_plain)
 
 
-def _flat(node: YamlNode, name: str, depth: int, visits: Visits) -> Iterator[tuple[str, YamlNode]]:
+def _flat(
+    node: YamlNode, name: str, named_at: Location | None, depth: int, visits: Visits
+) -> Iterator[tuple[str, YamlNode, Location | None]]:
+    """Yield the values below a node, with the names of their parameters, and where these end."""
     if not isinstance(node.value, dict) or depth > _MAX_DEPTH:
-        yield name, node
+        yield name, node, named_at
     elif visits.enters(node):
         for key, value in node.value.items():
-            yield from _flat(value, f"{name}.{key}" if name else key, depth + 1, visits)
+            at = node.key_location(key) if key in node.key_marks else None
+            yield from _flat(value, f"{name}.{key}" if name else key, at, depth + 1, visits)
 
 
 def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:

@@ -293,7 +293,7 @@ def _given(
     for name, value in given.values.items():
         if value.location not in for_all and not name.startswith("qos_overrides."):
             said = f"the node {workspace.name_of(node) or node.executable!r}"
-            yield Use("parameter", name, value.location, said, owner)
+            yield Use("parameter", name, value.named_at or value.location, said, owner)
     yield from _types_given(python_node, given.values)
 
 
