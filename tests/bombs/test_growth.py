@@ -10,6 +10,7 @@ from grader.files.reading import URDF_LIMIT
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission, open_workspace
+from grader.ros.package.robot_file import Read
 from grader.ros.python import budget
 from tests.bombs.files import Files, package
 from tests.bombs.generators import BOMBS
@@ -33,6 +34,9 @@ def _inspect(folder: str) -> None:
     opened = open_workspace(folder, URDF_LIMIT, {}).of_release(None, "")
     opened.package_problems()
     opened.extent()
+    for robot in opened.robots:
+        if isinstance(robot, Read):
+            opened.driven_joints(robot)
 
 
 def _grade(folder: str) -> None:

@@ -1,8 +1,10 @@
 """The joints of wheels that a controller or a plugin of Gazebo drives: a differential drive."""
 
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from grader.base.errors import NotDecided
 from grader.ros.config.yaml_nodes import Visits, YamlNode
 from grader.ros.package.robot_file import Read
 
@@ -26,13 +28,16 @@ def joints_of_plugins(robot: Read) -> list[str]:
 
 
 def joints_of_controllers(workspace: "Workspace") -> list[str]:
-    """Return the joints that the first controller with wheels on both sides names."""
-    for _, tree in workspace.trees:
-        for section in _tables_in(tree):
-            left, right = section.get("left_wheel_names"), section.get("right_wheel_names")
-            if left is not None and right is not None:
-                items = (*(left.items or [left]), *(right.items or [right]))
-                return [item.text for item in items if item.text]
+    """Return the joints that the first controller with wheels on both sides names; none where
+    reading the workspace takes too much work.
+    """
+    with suppress(NotDecided):
+        for _, tree in workspace.trees:
+            for section in _tables_in(tree):
+                left, right = section.get("left_wheel_names"), section.get("right_wheel_names")
+                if left is not None and right is not None:
+                    items = (*(left.items or [left]), *(right.items or [right]))
+                    return [item.text for item in items if item.text]
     return []
 
 
