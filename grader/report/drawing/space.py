@@ -60,6 +60,29 @@ def space_data(picture: Picture, cards: Mapping[str, str]) -> dict[str, Any] | N
     }
 
 
+def without_names(space: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a robot with numbers in place of the names of links and joints, and without pins."""
+    names = {"": ""}
+    joints, links = [], []
+    for number, link in enumerate(space["links"], 1):
+        names[link["name"]] = f"link {number}"
+        links.append({**link, "name": names[link["name"]]})
+    numbers: dict[str, str] = {}
+    for joint in space["joints"]:
+        numbers.setdefault(joint["name"], f"joint {len(numbers) + 1}")
+    for joint in space["joints"]:
+        ends = {end: names.get(joint[end], "") for end in ("parent", "child")}
+        renamed = {**joint, **ends, "name": numbers[joint["name"]]}
+        if "axis" not in joint:
+            renamed["type"] = ""  # it may be any text
+        if "mimic" in joint:
+            leader, *motion = joint["mimic"]
+            renamed["mimic"] = [numbers.get(leader, ""), *motion]
+        joints.append(renamed)
+    frame, root = names.get(space["frame"], ""), names.get(space["root"], "")
+    return {"frame": frame, "root": root, "links": links, "joints": joints, "pins": []}
+
+
 def _shape(body: Body, T_link_frame: Transform) -> dict[str, Any]:
     """Return a shape in the frame of its link; its size is that of the scaled unit shape of the
     script.

@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 
 from grader.report.drawing.picture import plain_picture
-from grader.report.drawing.space import space_data
+from grader.report.drawing.space import space_data, without_names
 from grader.report.pages.student import render_html
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import read_urdf
@@ -114,3 +114,21 @@ def test_page_of_a_huge_robot_has_the_views_only() -> None:
     )
     assert picture is not None
     assert space_data(picture, {}) is None
+
+
+def test_robot_without_names_is_the_same_robot() -> None:
+    """Numbers stand for the names of links and joints, everywhere; a type that is no type is dropped."""
+    follows = '<mimic joint="Ada leads" multiplier="2"/>'
+    text = robot(
+        links("Ada 1", "Ada 2", "Ada 3", "Ada 4")
+        + joint("Ada 1", "Ada 2", "Ada leads", kind="continuous")
+        + joint("Ada 2", "Ada 3", "Ada follows", kind="continuous", body=follows)
+        + joint("Ada 3", "Ada 4", "Ada", kind="Ada")
+    )
+    known, data = data_of(text), without_names(data_of(text))
+    assert "Ada" not in json.dumps(data)
+    assert [link["name"] for link in data["links"]] == [f"link {k}" for k in (1, 2, 3, 4)]
+    follower = data["joints"][1]
+    assert (follower["parent"], follower["mimic"]) == ("link 2", ["joint 1", 2, 0])
+    assert follower["origin"] == known["joints"][1]["origin"]
+    assert data["frame"] == "link 1"

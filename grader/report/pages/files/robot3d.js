@@ -7,7 +7,8 @@
 /** @typedef {{buffer: WebGLBuffer, count: number}} Solid */
 /** @typedef {{solid: Solid, pose: Pose, size: Vector, rgba: number[]}} Item */
 
-const RobotView = (() => {
+/** Show the robot of the page; null without one, or without WebGL. */
+function showRobot() {
   const text = document.getElementById("data")?.textContent || "{}";
   /** @type {ShownRobot | undefined} */
   const robot = JSON.parse(text).robot;
@@ -318,15 +319,19 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
   };
 
   // --- The numbers of failed criteria ---
+  const svg = (/** @type {string} */ name, /** @type {{[name: string]: string}} */ attributes) => {
+    const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+    Object.entries(attributes).forEach(([key, value]) => element.setAttribute(key, value));
+    return element;
+  };
   const pins = robot.pins.map((pin) => {
-    const element = document.createElement(pin.card ? "a" : "span");
-    element.className = "pin";
-    element.textContent = String(pin.number);
-    element.title = pin.link;
-    if (element instanceof HTMLAnchorElement) {
-      element.href = `#${pin.card}`;
-      element.setAttribute("aria-label", `${pin.number}: ${pin.link}`);
+    const element = svg("a", { class: "space-pin", "aria-label": `${pin.number}: ${pin.link}` });
+    if (pin.card) {
+      element.setAttribute("href", `#${pin.card}`);
     }
+    const number = svg("text", { y: "4.5" });
+    number.textContent = String(pin.number);
+    element.append(svg("circle", { r: "11" }), number);
     find("pins").append(element);
     return { ...pin, element };
   });
@@ -340,11 +345,9 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
         point = [T[3], T[7], T[11]];
       }
       const where = point && place(point);
-      element.hidden = !where;
-      if (where) {
-        element.style.left = `${100 * where[0]}%`;
-        element.style.top = `${100 * where[1]}%`;
-      }
+      const [x, y] = where || [-1, -1];
+      const at = `${x * canvas.clientWidth} ${y * canvas.clientHeight}`;
+      element.setAttribute("transform", `translate(${at})`);
     });
   };
 
@@ -470,12 +473,13 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
       zoom(0.9);
     } else if (event.key === "-") {
       zoom(1 / 0.9);
-    } else if (event.key === "Home" || event.key === "0") {
+    } else if (event.key === "Home") {
       reset();
     } else {
       return;
     }
     event.preventDefault();
+    event.stopPropagation(); // in a review, letters and signs are keys everywhere else
     redraw();
   });
 
@@ -552,14 +556,25 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
       link.addEventListener("click", () => select(pin.link));
     }
   }
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
-  new ResizeObserver(redraw).observe(canvas);
+  const scheme = matchMedia("(prefers-color-scheme: dark)");
+  scheme.addEventListener("change", redraw);
+  const resizing = new ResizeObserver(redraw);
+  resizing.observe(canvas);
   canvas.addEventListener("webglcontextlost", () => {
     box.hidden = true;
   });
+  /** Release what the robot takes, before another one is shown. */
+  const close = () => {
+    scheme.removeEventListener("change", redraw);
+    resizing.disconnect();
+    cancelAnimationFrame(asked);
+    gl.getExtension("WEBGL_lose_context")?.loseContext();
+  };
   render();
   return {
-    ...{ camera, positions, move, select, linkAt, place, render, reset, sliders },
+    ...{ camera, positions, move, select, linkAt, place, render, reset, sliders, close },
     poses: () => poses,
   };
-})();
+}
+
+let RobotView = showRobot();
