@@ -224,8 +224,18 @@ def test_slider_is_in_degrees_and_hides_the_reference(page: Any) -> None:
     page.get_by_role("button", name="Reference").click()
 
 
-def test_reference_is_where_it_should_be(page: Any) -> None:
-    """The ghost of the buried lidar is read from the three views: its middle is at the height of the reference."""
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("lidar-buried", [[0.15, 0, 0.225]]),
+        ("wheels-rolling-sideways", [[-0.15, 0.225, 0], [-0.15, -0.225, 0]]),
+    ],
+)
+def test_reference_is_where_it_should_be(
+    open_page: Open, tmp_path: Path, name: str, expected: list[list[float]]
+) -> None:
+    """The ghost is read from the three views: the middle of each part, once, is where the reference has it."""
+    page = open_page(write(tmp_path, "grade", SAMPLES[name].path)).page
     bodies = page.evaluate(
         """() => {
           const links = JSON.parse(document.getElementById("data").textContent).robot.links;
@@ -235,7 +245,9 @@ def test_reference_is_where_it_should_be(page: Any) -> None:
           return Ghost.bodies(views, scale).map((body) => body.middle);
         }"""
     )
-    assert any(middle == pytest.approx([0.15, 0, 0.225], abs=0.001) for middle in bodies), bodies
+    assert len(bodies) == len(expected)
+    for middle, place in zip(bodies, expected, strict=True):
+        assert middle == pytest.approx(place, abs=0.001)
 
 
 def test_click_names_a_link_and_number_leads_to_its_mistake(page: Any) -> None:

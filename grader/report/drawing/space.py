@@ -122,8 +122,9 @@ def _joint(joint: Joint, robot: Configuration, poses: Mapping[str, Transform]) -
     if joint.has_position and axis is not None:
         data["axis"] = _rounded(axis)
         if "mimic" not in data:
-            data["start"] = position or 0.0
-            data["range"] = _range(joint, position or 0.0)
+            if position:
+                data["start"] = position
+            data["range"] = _rounded(_range(joint, position or 0.0))
     return data
 
 

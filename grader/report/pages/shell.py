@@ -28,6 +28,7 @@ _LITERAL = r"""(?P<literal>
     | (?<=[(,=:!&|?\[]) \s* /(?![*/])(?:\\. | \[(?:\\.|[^\]\\\n])*\] | [^/\[\\\n])+/
 )"""
 _COMMENTS = re.compile(rf"{_LITERAL} | /\*.*?\*/ | //[^\n]*", re.DOTALL | re.VERBOSE)
+_COMMENTS_OF_STYLES = re.compile(r"/\*.*?\*/\s*", re.DOTALL)
 # White space beside punctuation; a line may end a statement after a bracket, or before one.
 _SPACES = re.compile(
     rf"{_LITERAL} | \s+(?=[)\]}},;?:&|=>*]) | [ ]+(?=[(\[{{])"
@@ -60,7 +61,7 @@ def render_page(
             `JSON.parse(document.getElementById("data").textContent)`.
         assets: The styles and scripts.
     """
-    styles = [_file(assets.folder, name) for name in ("base.css", *assets.styles.split())]
+    styles = [_style(assets.folder, name) for name in ("base.css", *assets.styles.split())]
     if assets.rules:
         styles.append(assets.rules)
     scripts = [_script(assets.folder, name) for name in assets.scripts.split()]
@@ -106,6 +107,11 @@ def _printable(value: object) -> object:
 def _file(folder: Path, name: str) -> str:
     path = folder / name
     return (path if path.exists() else _FILES / name).read_text(encoding="utf-8")
+
+
+@cache
+def _style(folder: Path, name: str) -> str:
+    return _COMMENTS_OF_STYLES.sub("", _file(folder, name))
 
 
 @cache

@@ -81,7 +81,7 @@ const Ghost = {
 
   /**
    * Return the bodies that have the outlines of the three views: the triangles of each, six numbers
-   * a corner as in `Shapes`, and its middle.
+   * a corner as in `Shapes`, its middle and its extents along x, y and z.
    * @param {View[]} views
    * @param {number} scale
    */
@@ -95,16 +95,24 @@ const Ghost = {
         return { points, u, v };
       }),
     );
+    /** @type {{middle: Vector, triangles: number[], extents: number[][], corners: number}[]} */
     const bodies = [];
     for (const top of tops) {
       for (const side of sides.filter((one) => near(one.u, top.u))) {
         for (const front of fronts.filter((one) => near(one.u, top.v) && near(one.v, side.v))) {
-          if (bodies.length < Ghost.MAX_BODIES) {
-            const extents = [top.u, top.v, side.v];
+          const extents = [top.u, top.v, side.v];
+          const corners = top.points.length + side.points.length + front.points.length;
+          // two parts of the reference whose outlines differ by a tenth of a pixel are shown once
+          const isShown = bodies.some(
+            (one) =>
+              Math.abs(one.corners - corners) < 9 &&
+              one.extents.every((extent, k) => near(extent, extents[k])),
+          );
+          if (bodies.length < Ghost.MAX_BODIES && !isShown) {
             const middle = extents.map(([low, high]) => (low + high) / 2);
             const outlines = [top.points, side.points, front.points];
             const triangles = Ghost.sphere(outlines, extents) || Ghost.hull(outlines, scale);
-            bodies.push({ middle, triangles });
+            bodies.push({ middle, triangles, extents, corners });
           }
         }
       }

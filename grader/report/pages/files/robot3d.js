@@ -572,7 +572,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
   };
   render();
   return {
-    ...{ camera, positions, move, select, linkAt, place, render, reset, sliders, close },
+    ...{ camera, positions, move, select, render, reset, sliders, close },
     poses: () => poses,
   };
 }
