@@ -19,6 +19,7 @@ SAMPLES, CLASS = DOCS.parent / "submissions/lab6", DOCS.parent / "submissions/cl
 FOLDER = DOCS / "screenshots"
 STUDENT = "lidar-buried"
 SIZE = {"width": 1140, "height": 740}
+SOFTWARE_WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 
 
@@ -28,7 +29,9 @@ def browser() -> Iterator["Browser"]:
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:
-        started = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        started = playwright.chromium.launch(
+            executable_path=CHROMIUM, args=["--no-sandbox", *SOFTWARE_WEBGL]
+        )
         yield started
         started.close()
 

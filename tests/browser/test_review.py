@@ -428,3 +428,24 @@ def test_a_similar_answer_gets_the_mark_if_it_is_ticked(tmp_path: Path, open_pag
         ("ash", "essay", "3"),
         ("birch", "essay", "3"),
     ]
+
+
+def test_robot_of_each_item_is_shown_in_space(open_page: Open, opened: Path) -> None:
+    """An item that replaces the page has its own robot, or none; keys on the canvas are no keys of the review."""
+    with running(opened) as review:
+        page = open_page(f"{review.url}1").page
+        assert page.locator("#space-canvas").is_visible()
+        page.locator("#space-canvas").focus()
+        zoom = page.evaluate("() => RobotView.camera.zoom")
+        press(page, "-")
+        assert page.evaluate("() => RobotView.camera.zoom") > zoom
+        assert page.locator("#points").input_value() == ""
+        press(page, "n", "4")
+        assert page.evaluate("() => RobotView") is None
+        press(page, "b", "1")
+        assert page.locator("#space-canvas").is_visible()
+        assert (
+            page.evaluate("() => RobotView.poses().size")
+            == page.locator("#space-links option").count() - 1
+        )
+        rest(page)

@@ -263,7 +263,7 @@ def test_anonymous_items_name_nothing(book: Path) -> None:
     assert [label for label, *_ in people] == [f"submission {number}" for number in (1, 2, 3, 4)]
     assert sum("side (from -y)" in page for page in pages) >= 3
     for page in pages:
-        shown = page.partition("<main")[2].partition("<script")[0]
+        shown = page.partition("<main")[2].partition("<script>")[0]  # with the data
         assert "left_wheel" not in shown and 'class="file"' not in shown
         assert not [name for name in ("cedar", "answers.txt", "my_robot.urdf") if name in shown]
 

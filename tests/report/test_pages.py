@@ -14,7 +14,7 @@ from lxml import html
 
 from grader.base.text import without_commands
 from grader.report.formats import Format, render
-from grader.report.pages.shell import Assets, render_page
+from grader.report.pages.shell import Assets, render_page, shortened
 from tests.command_line import ROOT, run_with_input
 from tests.samples import SAMPLES
 
@@ -24,6 +24,12 @@ VALUES = {"version": "1", "title": "A page"}
 
 def page(data: dict[str, object] | None = None, **values: str) -> str:
     return render_page("base.html", VALUES | values, data or {}, Assets())
+
+
+@pytest.mark.parametrize("name", ["several-mistakes", "reference", "centimetres"])
+def test_page_of_a_wheeled_base_is_small(name: str) -> None:
+    """With the robot in 3-D it has at most 90 KB."""
+    assert len(render(SAMPLES[name].grade(), Format.HTML).encode()) <= 90_000
 
 
 def test_policy_allows_what_the_page_has_and_nothing_else() -> None:
@@ -94,6 +100,37 @@ def test_policy_names_the_scripts_of_the_students_page(name: str) -> None:
     ]
     assert named == hashes
     assert len(hashes) > 3
+
+
+@pytest.mark.parametrize(
+    ("script", "short"),
+    [
+        ("// why\nlet a = 1; // more\n", "let a=1;"),
+        (
+            "/** Types.\n * @type {X} */\nconst f = (a) => {\n  return [a, a];\n};",
+            "const f=(a)=>{return[a,a];};",
+        ),
+        (
+            'f("// \'no\'", \'a  //  b\', "\\"  //"); // yes',
+            'f("// \'no\'",\'a  //  b\',"\\"  //");',
+        ),
+        (
+            "const t = `a  // b\n  ${c ? `: ${d}` : 1}  e`; // f",
+            "const t=`a  // b\n  ${c ? `: ${d}` : 1}  e`;",
+        ),
+        ("x.replace(/ \"[/ ']\\/ /g, 1); // y", "x.replace(/ \"[/ ']\\/ /g,1);"),
+        ("a = b / c; // d / e\nf = g / 2;", "a=b / c;f=g / 2;"),
+        (
+            "a = b - -c;\nif (d) {\n  e();\n} else {\n  f();\n}\ng();",
+            "a=b - -c;if(d){e();}else{f();}\ng();",
+        ),
+        ("a\n  .b()\n  .c();", "a\n.b()\n.c();"),
+    ],
+)
+def test_scripts_are_shortened(script: str, short: str) -> None:
+    """Comments, indentation and spaces beside punctuation go; no character of a literal does."""
+    assert shortened(script) == f"{short}\n"
+    assert shortened(short) == f"{short}\n"
 
 
 @pytest.mark.parametrize("file", sorted(FILES.glob("*.js")), ids=lambda file: file.name)

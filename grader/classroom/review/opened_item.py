@@ -30,6 +30,7 @@ from grader.lab.rubric.criterion import Criterion
 from grader.lab.submission.submission import Submission
 from grader.report.criteria import answer_lines, counts_lines, is_manual
 from grader.report.drawing.picture import Picture, picture_of
+from grader.report.drawing.space import space_data, without_names
 from grader.report.locations import location_text, source_lines
 from grader.report.writers.svg import callout_lines, drawing_element
 from grader.ros.package.package import SETUP
@@ -125,8 +126,12 @@ def _with_robot(
     criteria.
     """
     picture, views, legend = picture_of(report), "", list[str]()
+    space = None
     if picture is not None:
         legend = callout_lines(picture)
+        space = space_data(picture, {})
+        if is_anonymous and space is not None:
+            space = without_names(space)
         views = drawing_element(_without_names(picture) if is_anonymous else picture, legend=False)
     found = dict.fromkeys(
         place for result in results if (place := _deciding_place(report, result)) is not None
@@ -135,7 +140,7 @@ def _with_robot(
         (location_text(one), source_lines(one, report.submission.source, _AROUND)) for one in found
     )
     places = [*islice(((words, lines) for words, lines in shown if lines), _MAX_PLACES)]
-    return opened._replace(views=views, legend=legend, places=places)
+    return opened._replace(views=views, space=space, legend=legend, places=places)
 
 
 def _without_names(picture: Picture) -> Picture:

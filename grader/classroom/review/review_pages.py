@@ -32,12 +32,13 @@ from grader.classroom.roster.lateness import time_text
 from grader.lab.documents.pictures import EmbeddedPicture, NotShown
 from grader.report.criteria import model_lines
 from grader.report.locations import SourceLine
-from grader.report.pages.shell import Assets, render_page
+from grader.report.pages.shell import SPACE_SCRIPTS, Assets, render_page
 from grader.report.writers.svg import STYLE
 
 _SOURCES = "img-src 'self'; frame-src 'self'; connect-src 'self'"
 _FILES = Path(__file__).parent / "files"
-_ASSETS = Assets("text.css robot.css review.css", "review.js", STYLE, _SOURCES, _FILES)
+_SCRIPTS = f"{SPACE_SCRIPTS} review.js"
+_ASSETS = Assets("text.css robot.css review.css", _SCRIPTS, STYLE, _SOURCES, _FILES)
 NO_ANSWER = "No answer"
 _DECIMALS = Decimal("0.0001")
 
@@ -54,9 +55,9 @@ class SimilarItem(NamedTuple):
 class OpenedItem(NamedTuple):
     """What was found for an item, as a page or a sheet shows it.
 
-    `views` is an SVG element with the robot, empty without one, and `legend` says what is marked in
-    it. `places` are the lines of files around the places that decide, each with its location in
-    words.
+    `views` is an SVG element with the robot, empty without one, `space` the robot as data for the
+    script of the page, and `legend` says what is marked in it. `places` are the lines of files
+    around the places that decide, each with its location in words.
     """
 
     message: str
@@ -64,6 +65,7 @@ class OpenedItem(NamedTuple):
     pictures: Sequence[EmbeddedPicture | NotShown] = ()
     paths: Sequence[str] = ()  # of the files, below the class folder
     views: str = ""
+    space: Mapping[str, Any] | None = None
     legend: Sequence[str] = ()
     places: Sequence[tuple[str, Sequence[SourceLine]]] = ()
     title: str = "Answer"  # of the answer
@@ -137,6 +139,8 @@ def item_page(
         "maximum": float(maximum),
         "people": members,
     }
+    if opened.space is not None:
+        data["robot"] = opened.space
     return _page("review.html", values, data)
 
 

@@ -4,6 +4,7 @@ policy.
 
 import hashlib
 import json
+import re
 from base64 import b64encode
 from collections.abc import Mapping
 from functools import cache
@@ -16,7 +17,24 @@ from markupsafe import Markup
 from grader.base.text import printable
 
 _FILES = Path(__file__).parent / "files"  # templates, styles and scripts of several pages
+# The scripts of a page with `robot.html` and the data of a robot, each after those that it needs.
+SPACE_SCRIPTS = "transforms.js kinematics.js shapes.js ghost.js robot3d.js"
 _NOTHING = "'none'"
+# A literal of JavaScript: a text, which keeps what looks like a comment, or a regular expression,
+# which stands where a value begins.
+_LITERAL = r"""(?P<literal>
+    "(?:\\.|[^"\\\n])*" | '(?:\\.|[^'\\\n])*'
+    | `(?:\\. | \$\{(?:[^`{}]|`[^`]*`)*\} | [^`\\])*`
+    | (?<=[(,=:!&|?\[]) \s* /(?![*/])(?:\\. | \[(?:\\.|[^\]\\\n])*\] | [^/\[\\\n])+/
+)"""
+_COMMENTS = re.compile(rf"{_LITERAL} | /\*.*?\*/ | //[^\n]*", re.DOTALL | re.VERBOSE)
+_COMMENTS_OF_STYLES = re.compile(r"/\*.*?\*/\s*", re.DOTALL)
+# White space beside punctuation; a line may end a statement after a bracket, or before one.
+_SPACES = re.compile(
+    rf"{_LITERAL} | \s+(?=[)\]}},;?:&|=>*]) | [ ]+(?=[(\[{{])"
+    r"| (?<=[{(\[,;=>?:&|*])\s+ | (?<=[)\]}])[ ]+ | (?P<end>\s*\n\s*)",
+    re.VERBOSE,
+)
 _UNSAFE = str.maketrans({character: f"\\u{ord(character):04x}" for character in "<>&\u2028\u2029"})
 
 
@@ -43,10 +61,10 @@ def render_page(
             `JSON.parse(document.getElementById("data").textContent)`.
         assets: The styles and scripts.
     """
-    styles = [_file(assets.folder, name) for name in ("base.css", *assets.styles.split())]
+    styles = [_style(assets.folder, name) for name in ("base.css", *assets.styles.split())]
     if assets.rules:
         styles.append(assets.rules)
-    scripts = [_file(assets.folder, name) for name in assets.scripts.split()]
+    scripts = [_script(assets.folder, name) for name in assets.scripts.split()]
     policy = [
         f"default-src {_NOTHING}",
         f"style-src {' '.join(map(_source_hash, styles))}",
@@ -89,6 +107,33 @@ def _printable(value: object) -> object:
 def _file(folder: Path, name: str) -> str:
     path = folder / name
     return (path if path.exists() else _FILES / name).read_text(encoding="utf-8")
+
+
+@cache
+def _style(folder: Path, name: str) -> str:
+    return _COMMENTS_OF_STYLES.sub("", _file(folder, name))
+
+
+@cache
+def _script(folder: Path, name: str) -> str:
+    return shortened(_file(folder, name))
+
+
+def shortened(script: str) -> str:
+    """Return a script without comments, indentation and spaces beside punctuation, as pages have
+    it.
+
+    Literals keep each character. Statements end with a semicolon or a brace, as prettier writes
+    them.
+    """
+    code = _COMMENTS.sub(lambda found: found["literal"] or "", script)
+    return _SPACES.sub(_shortened_space, code).strip() + "\n"
+
+
+def _shortened_space(found: re.Match[str]) -> str:
+    if found["end"] is not None:
+        return "\n"
+    return found["literal"] or ""
 
 
 def _source_hash(text: str) -> str:

@@ -28,6 +28,7 @@ from grader.report.criteria import (
     status_of,
 )
 from grader.report.drawing.picture import Picture, picture_of, plain_picture
+from grader.report.drawing.space import space_data
 from grader.report.inspection import (
     MAX_LISTED,
     Inspection,
@@ -37,7 +38,7 @@ from grader.report.inspection import (
     robot_line,
 )
 from grader.report.locations import diff_lines, location_text, source_lines
-from grader.report.pages.shell import Assets, render_page
+from grader.report.pages.shell import SPACE_SCRIPTS, Assets, render_page
 from grader.report.writers.svg import NO_PICTURE, STYLE, callout_lines, drawing_element
 
 _MAX_PICTURES = 6 * 1024 * 1024  # bytes on a page
@@ -90,7 +91,7 @@ def render_html(report: Report) -> str:
         "pictures": _pictures(report, entries),
         "no_picture": NO_PICTURE,
     }
-    return _render("student.html", values, picture, "student.js", "img-src data:")
+    return _render("student.html", values, picture, "student.js", "img-src data:", cards)
 
 
 def _pictures(report: Report, entries: Sequence[Entry]) -> Mapping[str, list[tuple[str, str]]]:
@@ -158,12 +159,17 @@ def _render(
     picture: Picture | None,
     script: str = "",
     sources: str = "",
+    cards: Mapping[str, str] = {},
 ) -> str:
-    """Return a page about the robot of a picture, if there is one."""
+    """Return a page about the robot of a picture, if there is one; `cards` are the entries of its
+    criteria.
+    """
     drawn = drawing_element(picture, legend=False) if picture is not None else ""
     views = Markup(drawn)  # noqa: S704  an element, whose text is escaped
-    assets = Assets("text.css robot.css student.css", script, STYLE if drawn else "", sources)
+    space = space_data(picture, cards) if picture is not None else None
+    scripts = f"{script} {SPACE_SCRIPTS}" if space is not None else script
+    assets = Assets("text.css robot.css student.css", scripts, STYLE if drawn else "", sources)
     legend = callout_lines(picture) if picture is not None else []
-    return render_page(
-        template, {**values, "picture": picture, "views": views, "legend": legend}, {}, assets
-    )
+    shown = {"picture": picture, "views": views, "legend": legend, "has_space": space is not None}
+    data = {"robot": space} if space is not None else {}
+    return render_page(template, {**values, **shown}, data, assets)

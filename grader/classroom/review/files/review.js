@@ -68,6 +68,8 @@
     find("main").replaceWith(document.adoptNode(page.getElementById("main")));
     find("data").textContent = page.getElementById("data").textContent;
     if (!location.pathname.endsWith(`/${address}`)) history.pushState(null, "", address);
+    RobotView?.close();
+    RobotView = showRobot();
     scrollTo(0, 0);
     start();
     loadPeople();

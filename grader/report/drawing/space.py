@@ -1,0 +1,154 @@
+"""The robot of a picture as data for the script of a page, which moves its joints: links with
+shapes, and joints.
+
+It has nothing of the reference: the script reads that from the three views in the page.
+"""
+
+from collections.abc import Iterable, Mapping
+from math import inf, isfinite, pi
+from typing import Any
+
+from grader.base.transforms import Transform, unit
+from grader.report.drawing.picture import Body, Picture
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Box, Cylinder, Joint
+
+_MAX_LINKS = 500  # in software, a browser moves more only in seconds
+_DIGITS = 8
+_WITHOUT_LIMITS = {"prismatic": 1.0}  # metres to each side; the other joints turn by half a turn
+
+
+def space_data(picture: Picture, cards: Mapping[str, str]) -> dict[str, Any] | None:
+    """Return the robot of a picture; None if it has too many links.
+
+    Poses are 12 numbers, row by row: the rotation and the translation in metres. `cards` are the
+    ids of the cards on the page, by criterion.
+    """
+    scene = picture.scene
+    if len(scene.poses) > _MAX_LINKS or len(scene.robot.known.joints) > _MAX_LINKS:
+        return None
+    shapes: dict[str, list[dict[str, Any]]] = {}
+    for body in scene.bodies:
+        T_link_frame = scene.poses[body.link].inverse()
+        shapes.setdefault(body.link, []).append(_shape(body, T_link_frame))
+    joints = [_joint(joint, scene.robot, scene.poses) for joint in scene.robot.known.joints]
+    leaders = {joint["mimic"][0] for joint in joints if "mimic" in joint}
+    for joint in joints:
+        if "origin" not in joint and joint["name"] not in leaders:
+            joint.pop("range", None)  # it moves nothing that is shown
+    placed = {joint["child"] for joint in joints if "origin" in joint}
+    links = []
+    for name, pose in scene.poses.items():
+        link: dict[str, Any] = {"name": name, "shapes": shapes.get(name, [])}
+        if name not in placed:
+            link["pose"] = _rows(pose)
+        links.append(link)
+    pins = []
+    for callout in picture.callouts:
+        if callout.point is not None:
+            pin = {"number": callout.number, "link": callout.link}
+            card = cards.get(callout.names[0])
+            if card is not None:
+                pin["card"] = f"criterion-{card}"
+            pins.append(pin)
+    return {
+        "frame": scene.frame,
+        "root": scene.root,
+        "links": links,
+        "joints": joints,
+        "pins": pins,
+    }
+
+
+def without_names(space: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a robot with numbers in place of the names of links and joints, and without pins."""
+    names = {"": ""}
+    joints, links = [], []
+    for number, link in enumerate(space["links"], 1):
+        names[link["name"]] = f"link {number}"
+        links.append({**link, "name": names[link["name"]]})
+    numbers: dict[str, str] = {}
+    for joint in space["joints"]:
+        numbers.setdefault(joint["name"], f"joint {len(numbers) + 1}")
+    for joint in space["joints"]:
+        ends = {end: names.get(joint[end], "") for end in ("parent", "child")}
+        renamed = {**joint, **ends, "name": numbers[joint["name"]]}
+        if "axis" not in joint:
+            renamed["type"] = ""  # it may be any text
+        if "mimic" in joint:
+            leader, *motion = joint["mimic"]
+            renamed["mimic"] = [numbers.get(leader, ""), *motion]
+        joints.append(renamed)
+    frame, root = names.get(space["frame"], ""), names.get(space["root"], "")
+    return {"frame": frame, "root": root, "links": links, "joints": joints, "pins": []}
+
+
+def _shape(body: Body, T_link_frame: Transform) -> dict[str, Any]:
+    """Return a shape in the frame of its link; its size is that of the scaled unit shape of the
+    script.
+    """
+    shape = body.shape
+    if isinstance(shape, Box):
+        kind, size = "box", shape.size
+    elif isinstance(shape, Cylinder):
+        kind, size = "cylinder", (shape.radius, shape.radius, shape.length)
+    else:
+        kind, size = "sphere", (shape.radius, shape.radius, shape.radius)
+    pose = T_link_frame @ body.T_frame_shape
+    return {
+        "kind": kind,
+        "size": _rounded(size),
+        "pose": _rows(pose),
+        "rgba": _rounded(body.rgba),
+    }
+
+
+def _joint(joint: Joint, robot: Configuration, poses: Mapping[str, Transform]) -> dict[str, Any]:
+    """Return a joint: how it places its child, if both are shown, how it moves, what it mimics."""
+    data: dict[str, Any] = {
+        "name": joint.name,
+        "type": joint.type,
+        "parent": joint.parent,
+        "child": joint.child,
+    }
+    is_shown = joint.parent in poses and robot.known_parents.get(joint.child) is joint
+    if is_shown and joint.child in poses and joint.origin is not None:
+        data["origin"] = _rows(joint.origin.placed_in())
+    position = robot.positions.get(joint.name)
+    mimic = joint.mimic
+    if mimic is not None and position is None and isfinite(mimic.multiplier + mimic.offset):
+        data["mimic"] = [mimic.joint, mimic.multiplier, mimic.offset]
+    axis = unit(joint.axis) if joint.axis is not None else None
+    if joint.has_position and axis is not None:
+        data["axis"] = _rounded(axis)
+        if "mimic" not in data:
+            if position:
+                data["start"] = position
+            data["range"] = _rounded(_range(joint, position or 0.0))
+    return data
+
+
+def _range(joint: Joint, position: float) -> tuple[float, float]:
+    """Return the positions (rad or m) that a slider offers: the limits, and where the joint is."""
+    reach = _WITHOUT_LIMITS.get(joint.type, pi)
+    lower, upper = -reach, reach
+    limit = joint.limit
+    if limit is not None and joint.type != "continuous" and -inf < limit.lower <= limit.upper < inf:
+        lower, upper = limit.lower, limit.upper
+    return min(lower, position), max(upper, position)
+
+
+def _rows(pose: Transform) -> list[float]:
+    """Return a pose as 12 numbers, row by row."""
+    a, b, c, d, e, f, g, h, i = pose.rotation
+    x, y, z = pose.translation
+    return _rounded((a, b, c, x, d, e, f, y, g, h, i, z))
+
+
+def _rounded(values: Iterable[float]) -> list[float]:
+    """Return numbers without the digits that no picture shows, in the shortest form."""
+    numbers = []
+    for value in values:
+        whole = int(value)
+        numbers.append(whole if whole == value else round(value, _DIGITS))
+    return numbers
