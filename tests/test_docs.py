@@ -303,7 +303,7 @@ def test_every_test_that_the_table_of_attacks_names_exists() -> None:
 
 
 def test_the_pages_stay_short() -> None:
-    """The README has at most 650 words, and all pages that are not generated have at most 25,500."""
+    """The README has at most 650 words, and all pages that are not generated have at most 26,000."""
     words = {
         page: len(page.read_text(encoding="utf-8").split())
         for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
@@ -311,5 +311,5 @@ def test_the_pages_stay_short() -> None:
     assert words[ROOT / "README.md"] <= 650
     assert (
         sum(words[page] for page in words if page.name not in ("problems.md", "checks.md"))
-        <= 25_500
+        <= 26_000
     )

@@ -28,7 +28,7 @@ class GraderError(Exception):
     >>> import grader
     >>> grader.grade("absent.urdf")
     Traceback (most recent call last):
-    grader.base.errors.InputError: absent.urdf does not exist (relative to the current folder)
+    grader.base.errors.NotThereError: absent.urdf does not exist (relative to the current folder)
     """
 
 

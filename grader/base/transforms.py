@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     import numpy as np
 
 Vector = tuple[float, float, float]
+FULL_TURN = 6.2832  # radians
 AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 X_AXIS, _, Z_AXIS = AXES
 Rotation = tuple[

@@ -184,13 +184,18 @@ def test_several_files_are_graded_like_a_folder(tmp_path: Path) -> None:
 
 
 def test_reports_quote_unchanged_files_only(tmp_path: Path) -> None:
-    """A text report quotes lines as `grader grade` does, below the student's name; once the file has changed, none."""
+    """A text report quotes lines as `grader grade` does, below the student's name; once the file has changed, none.
+
+    It also lists what else to hand in, which `grade` only counts while there is something to correct.
+    """
     folder, book, words = tmp_path / "class", tmp_path / "lab6", tmp_path / "words"
     for name in ("ann", "bea"):
         shutil.copytree(ROOT / "submissions/lab6/several-mistakes/my_robot/urdf", folder / name)
     grader("batch", folder, "--gradebook", book, "--reports", words)
     alone = grader("grade", folder / "ann").stdout
-    assert (words / "ann.txt").read_text() == alone.replace(
+    mistakes, counted, _ = alone.partition("Also to hand in")
+    assert counted
+    assert (words / "ann.txt").read_text().partition("Not found")[0] == mistakes.replace(
         "my_robot.urdf\n", "my_robot.urdf (ann)\n", 1
     )
     quoted = next(line for line in alone.splitlines() if "<" in line and "xyz" in line)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from grader.base.errors import MissingElement
 from grader.base.names import did_you_mean
 from grader.base.source import LazyLocation
-from grader.base.transforms import Vector, cross, degrees_between, minus, unit
+from grader.base.transforms import FULL_TURN, Vector, cross, degrees_between, minus, unit
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -27,7 +27,6 @@ from grader.lab.checks.outcome import (
 )
 from grader.lab.checks.toml_types import Direction, NonNegative
 from grader.lab.checks.visuals import axis_place
-from grader.ros.urdf.diagnostics import FULL_TURN
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Dynamics, Joint
 

@@ -1,6 +1,7 @@
 """Opens a submission: a URDF, a folder, an archive or standard input."""
 
 import os
+import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
@@ -19,7 +20,6 @@ from grader.ros.package.robot_file import (
     Surroundings,
     Unreadable,
     Urdf,
-    is_blank,
     read_as_ros,
 )
 from grader.ros.python.budget import Budget
@@ -47,6 +47,7 @@ _NO_URDFS = frozenset(
 )
 _TABLES = frozenset({".csv", ".tsv", ".xlsx", ".xls", ".ods"})
 _NO_LAB = Lab("robot.urdf")  # any robot, and any package
+_MAX_BLANK = 4000  # bytes of a file without a robot
 _MAX_NAMED = 6  # files in a note
 _MAX_LEVELS = 4  # above a package, at which its workspace may be
 _EXPECTED = "give a .urdf file, or the folder or archive that was submitted"
@@ -58,7 +59,7 @@ def read_submission(
     """Return the submission that consists of the bytes of one URDF. If it is graded, a URDF without
     content is none.
     """
-    if is_graded and is_blank(data):
+    if is_graded and _is_blank(data):
         return Submission(identity, Absent(path), opening=opening)
     if not opening.arguments and b"xacro" not in data:
         return Submission(identity, read_as_ros(data, path))
@@ -293,6 +294,14 @@ def _first_step(tree: Tree, place: Path, package: str) -> str:
     return f": create {what} in {where}, or name the folder that holds your files"
 
 
+def _is_blank(data: bytes) -> bool:
+    """Return whether a file holds nothing but a declaration and comments: no robot is begun."""
+    if len(data) > _MAX_BLANK:
+        return False
+    text = data.decode("utf-8-sig", "replace")
+    return not re.sub(r"(?s)<\?xml.*?\?>|<!--.*?-->", "", text).strip()
+
+
 def _is_lab(lab: Lab, name: str) -> bool:
     """Return whether an archive is named like the lab's folder."""
     from grader.lab.submission.labs import LabFolders  # late: a URDF on its own needs no search
@@ -322,7 +331,7 @@ def submission_of(
             urdf = read_as_ros(tree.files[path].read(opening.max_size), path, surroundings)
         except InputError as error:  # the rest of the submission is graded
             urdf = Unreadable(path, str(error))
-    if isinstance(urdf, Read) and is_blank(urdf.data):
+    if isinstance(urdf, Read) and _is_blank(urdf.data):
         urdf = Absent(urdf.path)
     return Submission(
         identity,

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from grader.ros.xacro.expansion import ExpandedSource
     from grader.ros.xacro.texts import OtherArguments
 
-_MAX_BLANK = 4000  # bytes of a file without a robot
 _MAX_FOLDERS = 40  # whose launch files are read
 _NO_FILES = make_tree("", (), ())
 
@@ -280,14 +279,6 @@ class Surroundings(NamedTuple):
             if len(found) == 1:
                 return found[0]
         return None
-
-
-def is_blank(data: bytes) -> bool:
-    """Return whether a file holds nothing but a declaration and comments: no robot is begun."""
-    if len(data) > _MAX_BLANK:
-        return False
-    text = data.decode("utf-8-sig", "replace")
-    return not re.sub(r"(?s)<\?xml.*?\?>|<!--.*?-->", "", text).strip()
 
 
 def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]) -> list[Package]:

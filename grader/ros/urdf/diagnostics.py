@@ -11,7 +11,7 @@ from grader.base.names import MAX_GUESSES, closest, did_you_mean
 from grader.base.problems import Effect, Kind, Problem
 from grader.base.source import LazyLocation
 from grader.base.text import cut, quoted
-from grader.base.transforms import Vector
+from grader.base.transforms import FULL_TURN, Vector
 from grader.ros.urdf import urdf_problems
 from grader.ros.urdf.model import Joint, Origin, UnresolvedPart, UnresolvedParts
 from grader.ros.urdf.numbers import NumberError, number, vector
@@ -25,7 +25,6 @@ NO_GUESSES = 0
 _PRINTED = frozenset(
     {"origin", "box", "cylinder", "sphere", "mass"}
 )  # whose values urdfdom uses as printf's format
-FULL_TURN = 6.2832  # radians
 _OF_MISSING = (
     urdf_problems.UNKNOWN_LINK,
     urdf_problems.TWO_ROOTS,

@@ -3,9 +3,9 @@ names they refer to.
 """
 
 from grader.base.text import quoted
-from grader.base.transforms import X_AXIS, Vector, unit
+from grader.base.transforms import FULL_TURN, X_AXIS, Vector, unit
 from grader.ros.urdf import urdf_problems
-from grader.ros.urdf.diagnostics import FULL_TURN, ElementReader, Problems, first_children
+from grader.ros.urdf.diagnostics import ElementReader, Problems, first_children
 from grader.ros.urdf.model import (
     Calibration,
     Dynamics,

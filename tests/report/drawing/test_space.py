@@ -45,7 +45,9 @@ def test_page_has_no_more_of_the_reference_than_the_views(name: str) -> None:
     report = SAMPLES[name].grade()
     drawings, pages = set(), set()
     for text in changed_references():
-        solution: Any = SimpleNamespace(robot=Configuration(read_urdf(text.encode()).robot))
+        model = read_urdf(text.encode()).robot
+        assert model is not None
+        solution: Any = SimpleNamespace(robot=Configuration(model))
         page = render_html(report._replace(rubric=replace(report.rubric, solution=solution)))
         drawing = re.search(r'<div class="views">.*?</svg>', page, re.DOTALL)
         assert drawing is not None
@@ -109,9 +111,9 @@ def test_page_of_a_huge_robot_has_the_views_only() -> None:
     """A browser moves so many links only in seconds: there is no canvas, and no slider."""
     names = [f"l{k}" for k in range(600)]
     rows = (joint("l0", name, f"j{name}", kind="continuous") for name in names[1:])
-    picture = plain_picture(
-        Configuration(read_urdf(robot(links(*names) + "".join(rows)).encode()).robot), "l0"
-    )
+    model = read_urdf(robot(links(*names) + "".join(rows)).encode()).robot
+    assert model is not None
+    picture = plain_picture(Configuration(model), "l0")
     assert picture is not None
     assert space_data(picture, {}) is None
 
