@@ -105,7 +105,8 @@ class Read(NamedTuple):
             from grader.ros.xacro.xacro_slips import xacro_slips
 
             slips += xacro_slips(cast("ExpandedSource", self.reading.source))
-        if any(problem.kind in OF_SLIPS for problem in self.reading.problems):
+        kinds = {problem.kind for problem in self.reading.problems}
+        if self.reading.elements is not None and not OF_SLIPS.isdisjoint(kinds):
             from grader.ros.urdf.robot_slips import robot_slips  # late: most files have none
 
             slips += robot_slips(self.reading)

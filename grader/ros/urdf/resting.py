@@ -234,9 +234,9 @@ def _face_below(body: _RestingBody, up: Vector, size: float) -> Vector | None:
             break
         refined = _refined(corners, point, body.mass_centre, up)
         turned = unit(cross(minus(refined[1], refined[0]), minus(refined[2], refined[0])))
-        if turned is None or dot(turned, up) <= 0.0:  # an edge, but for rounding
-            break
-        corners, normal = refined, turned
+        corners = refined
+        # but for rounding, an edge has no face
+        normal = turned if turned is not None and dot(turned, up) > 0.0 else normal
     if any(corner in bounds for corner in corners):
         return None
     return normal

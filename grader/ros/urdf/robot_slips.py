@@ -23,8 +23,6 @@ def robot_slips(reading: Reading) -> list[Slip]:
     """Return the slips of a URDF in the order of its elements, each place once. The words for which
     ROS 2 rejects a file are not among them.
     """
-    if reading.elements is None:
-        return []
     slips: dict[Edits, Slip] = {}
     for slip in _Slips(reading).found():
         slips.setdefault(slip.edits, slip)

@@ -155,8 +155,7 @@ def _held_directions(wheel: DrivenWheel, up: Vector) -> list[Vector]:
         return [forward, left]
     roller = Transform(rotation_about(up, radians(wheel.roller))).rotate(wheel.axis)
     along = unit((dot(roller, forward), dot(roller, left), 0.0))
-    if along is None:
-        return []
+    assert along is not None  # the axis of a wheel that rolls does not stand up
     return [moved((0.0, 0.0, 0.0), [(forward, along[0]), (left, along[1])])]
 
 
