@@ -245,6 +245,15 @@ def test_programs_of_a_file_that_is_not_read(text: str, is_certain: bool) -> Non
     assert (found.fault.is_certain, has_program) == (is_certain, None)
 
 
+@pytest.mark.parametrize(("count", "is_known"), [(40, True), (3000, False)])
+def test_functions_that_call_each_other(count: int, is_known: bool) -> None:
+    """Of a chain that is too long for this reader it is not known what it installs."""
+    functions = [f"function(f{k})\nf{k + 1}()\nendfunction()\n" for k in range(count)]
+    last = f"function(f{count})\ninstall(FILES package.xml DESTINATION share/bot)\nendfunction()\n"
+    found = read("".join(functions) + last + "f0()\n")
+    assert (not found.unknown) == is_known
+
+
 def test_a_package_without_its_end() -> None:
     """ROS 2 finds a package by what ament_package() installs."""
     assert "ament_package()" in read("", ending="").stops[0].message

@@ -26,6 +26,8 @@ from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.parse import START, Position, SyntaxFault, location_in
 from grader.ros.python.values import Unknown
 
+_MAX_DEPTH = 60  # blocks and calls in each other
+
 
 class _Returns(Exception):
     """The file is evaluated no further."""
@@ -60,10 +62,23 @@ class _Evaluation:
     def __init__(self, build: Build) -> None:
         self.build, self.values = build, build.values
         self.own: dict[str, Command] = {}  # functions and macros
+        self._depth = 0  # of blocks and calls in each other
         self._for_outside: dict[str, Text] = {}  # what the current function sets with PARENT_SCOPE
 
     def run(self, commands: Sequence[Command]) -> None:
-        """Evaluate commands in their order."""
+        """Evaluate commands in their order: those of a file, or of a block or function in it."""
+        if self._depth == _MAX_DEPTH:
+            self.build.give_up(
+                "blocks and calls that are nested so deeply are not evaluated", START
+            )
+            return
+        self._depth += 1
+        try:
+            self._run_each(commands)
+        finally:
+            self._depth -= 1
+
+    def _run_each(self, commands: Sequence[Command]) -> None:
         for command in commands:
             self.values.budget.charge(1 + len(command.arguments))
             self.build.last = command.at
