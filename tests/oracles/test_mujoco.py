@@ -41,6 +41,25 @@ EXPLAINED = {
     "base-origin-in-geometry": _LOAD,
     "broken-tag-origin": _LOAD,
 }
+# Without a robot, a wheel, a shape of either, or a number of them: how it stands cannot be determined.
+UNDECIDED = frozenset(
+    [
+        "comma-in-box-size",
+        "cylinder-height",
+        "empty-urdf",
+        "geometry-missing",
+        "inertial-without-mass",
+        "links-without-joints",
+        "pictures-only",
+        "right-wheel-missing",
+        "truncated-file",
+        "two-numbers-in-origin",
+        "wheel-joint-fixed",
+        "xacro-from-another-package",
+        "zero-axis",
+    ]
+)
+WITH_WHEELS = [name for name in SAMPLES if not name.startswith(("arm/", "sensors/"))]
 
 
 def differences(robot: Configuration) -> Iterator[str]:
@@ -118,14 +137,15 @@ def test_designs(start: int) -> None:
     assert found == []
 
 
-@pytest.mark.parametrize("name", SAMPLES)
+@pytest.mark.parametrize("name", WITH_WHEELS)
 def test_samples(name: str) -> None:
-    """No sample with two wheels whose stand can be determined differs, but for those that are explained."""
-    robot = SAMPLES[name].open().robot
-    if robot is None:
-        pytest.skip("it has no robot")
-    try:
-        found = [*differences(Configuration(robot))]
-    except (MissingElement, NotDecided, UnknownShape) as reason:
-        pytest.skip(str(reason))
+    """No sample differs, but for those that are explained; which ones cannot be determined is known."""
+    robot, found = SAMPLES[name].open().robot, list[str]()
+    is_decided = robot is not None
+    if robot is not None:
+        try:
+            found += differences(Configuration(robot))
+        except (MissingElement, NotDecided, UnknownShape):
+            is_decided = False
+    assert is_decided == (name not in UNDECIDED)
     assert found == [] or name in EXPLAINED
