@@ -37,7 +37,7 @@ REASONS = {
     "leaves": "the process that graded it exited unexpectedly",
     "leaves_loudly": "the process that graded it ended with exit code 7",
     "exits": "the check behaves of the package hostile-checks is faulty: SystemExit: out",
-    "eats": r".*(MemoryError|more memory than a worker has).*",
+    "eats": r".*(MemoryError|more memory than a worker has|took longer than 3 s of processor time).*",
     "raises": "the check behaves of the package hostile-checks is faulty: RuntimeError: as asked",
 }
 # Where a process ends before anybody has heard that it had begun, its task is missed only when its time is over; and memory is

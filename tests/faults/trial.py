@@ -131,7 +131,12 @@ def _normal(name: str, data: bytes) -> bytes:
         lines = (
             json.loads(line) for line in whole if b"\0" not in line
         )  # a power failure leaves holes
-        newest = {line.get("student", ""): {**line, **_OF_ONE_RUN} for line in lines}
+        # the texts that stand before a result count with it
+        newest = {
+            line.get("student", ""): {**line, **_OF_ONE_RUN}
+            for line in lines
+            if "texts" not in line
+        }
         return b"".join(json.dumps(newest[key]).encode() + b"\n" for key in sorted(newest))
     return b"".join(dict.fromkeys(data.splitlines(keepends=True))) if "/marks/" in name else data
 

@@ -61,7 +61,9 @@ def test_sample_mistakes_get_hints_that_lead_to_full_marks() -> None:
         ),
         *("remapping-forgotten", "interface-of-position"),
     }
-    assert left == without_a_file | without_a_part | {f"diffdrive/{name}" for name in of_names}
+    of_several_numbers = {"rover/base-on-the-ground"}  # of any height that the rubric leaves open
+    of_diffdrive = {f"diffdrive/{name}" for name in of_names}
+    assert left == without_a_file | without_a_part | of_diffdrive | of_several_numbers
 
 
 @pytest.mark.slow

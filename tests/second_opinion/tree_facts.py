@@ -58,8 +58,9 @@ def root_of_tree(posed: Posed, link: str, holds: str, links: Sequence[str] = ())
     return way is not None and all(joint.type == "fixed" for joint in way), None
 
 
-def counts(posed: Posed, moving: int) -> Fact:
+def counts(posed: Posed, moving: int, continuous: int | None = None) -> Fact:
     tree = max(posed.robot.trees.values(), key=len)
     joints = [posed.robot.parents[link] for link in tree[1:]]
     number = sum(joint.type != "fixed" and not joint.is_mimic for joint in joints)
-    return number == moving, (number,)
+    turning = sum(joint.type == "continuous" for joint in joints)
+    return number == moving and continuous in (None, turning), (number,)
