@@ -289,7 +289,7 @@ def picture_of(report: Report) -> Picture | None:
     frame, reference_frame = _frames(report.rubric, robot, solution)
     if frame is None:
         return None
-    wheels = [*_wheels(report.rubric, robot)]
+    wheels = [*dict.fromkeys(_wheels(report.rubric, robot))]
     scene = scene_of(robot, frame, wheels, report.submission.meshes)
     reference = None
     if solution is not None and reference_frame:
@@ -334,7 +334,9 @@ def _wheels(rubric: Rubric, robot: Configuration) -> Iterator[str]:
     """Yield the links that the rubric expects to roll."""
     for criterion in rubric.criteria:
         if criterion.check.about.picture == "wheel":
-            yield robot.selected_or_name(str(criterion.arguments["link"]))
+            given = criterion.arguments
+            for name in given["wheels"] if "wheels" in given else [given["link"]]:
+                yield robot.selected_or_name(str(name))
 
 
 def _is_marked(result: Result) -> bool:
