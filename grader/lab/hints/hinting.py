@@ -153,7 +153,7 @@ def fixed(found: _HintedReport, submission: Submission) -> Fix:
     if submission.is_costly:
         why_nothing = "the submission is too large to search for edits"
     files = edited_files(submission, found.edits) or {}
-    after = with_files(submission, files)
+    after = with_files(submission, files) if files else submission
     return Fix(
         files,
         grade(report.rubric, after, report.parts, is_one_of_class=not submission.is_single),
