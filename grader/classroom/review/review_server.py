@@ -327,11 +327,12 @@ class ReviewPage:
             return _json(newer=pages.mark_text(replaced[0]) + more)
         if replaced is None:
             return _json(error=_CHANGED, go=self.address(at))
-        return _json(
-            go=self.address(
-                session.next_question(at) if to == "question" else session.following(at)
-            )
-        )
+        if to == "question":
+            return _json(go=self.address(session.next_question(at)))
+        following = session.following(at)
+        while following in dict(similar):
+            following = session.following(following)
+        return _json(go=self.address(following))
 
     def address(self, at: int) -> str:
         """Return the address of an item below that of the server."""
