@@ -63,4 +63,5 @@ def counts(posed: Posed, moving: int, continuous: int | None = None) -> Fact:
     joints = [posed.robot.parents[link] for link in tree[1:]]
     number = sum(joint.type != "fixed" and not joint.is_mimic for joint in joints)
     turning = sum(joint.type == "continuous" for joint in joints)
-    return number == moving and continuous in (None, turning), (number,)
+    measured = (number,) if continuous is None else (number, turning)
+    return number == moving and continuous in (None, turning), measured
