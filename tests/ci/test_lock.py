@@ -101,6 +101,6 @@ def test_the_group_is_what_builds_the_grader() -> None:
 
 
 def test_the_documented_command_is_that_of_the_lock() -> None:
-    """Whoever renews it runs the same command."""
+    """The command that renews it stands in CONTRIBUTING.md, too."""
     [command] = re.findall(r"(?m)^#\s+(uv pip compile .*)$", TEXT)
     assert f"\n{command}\n" in (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")

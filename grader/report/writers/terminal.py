@@ -182,7 +182,7 @@ def _show_remarks(section: Section, page: Page) -> None:
 
 
 def _show_later(report: Report, found: str, missing: Sequence[Line], page: Page) -> None:
-    """Add how much is to be handed in, what was found for manual grading, and what matches
+    """Add how much is left to submit, what was found for manual grading, and what matches
     nothing.
     """
     texts = [text for text in (content.hand_in_line(report), found) if text]
