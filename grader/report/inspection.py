@@ -47,6 +47,7 @@ class InspectedRobot:
     relative_to: str | None = None
     hidden: frozenset[Problem] = frozenset()  # its problems that are ignored
     driving: str = ""  # how it stands and drives, if a controller or a plugin names its wheels
+    wheels: tuple[str, ...] = ()  # the links of these wheels
     meshes: "MeshLoader | None" = None  # loads its meshes for pictures
 
     @property

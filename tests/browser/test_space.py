@@ -2,12 +2,15 @@
 
 import random
 from collections.abc import Callable, Iterator
+from math import acos, hypot, pi
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from grader.base.transforms import Transform, rotation_about, rotation_from_rpy, unit
+from grader.base.transforms import Transform, dot, rotation_about, rotation_from_rpy, unit
+from grader.report.drawing.drive import drive_data
+from grader.report.drawing.picture import picture_of
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Robot
 from grader.ros.urdf.reader import read_urdf
@@ -94,6 +97,86 @@ def assert_same_poses(page: Any, read: Robot, frame: str, source: random.Random)
         for name, pose in found.items():
             expected = configuration.pose(name, relative_to=frame)
             assert pose == pytest.approx(rows(expected), abs=1e-6), name
+
+
+@pytest.mark.parametrize("name", ["caster-at-the-back", "diameter-for-radius", "axis-negated"])
+def test_robot_drives_as_computed(open_page: Open, tmp_path: Path, name: str) -> None:
+    """It comes to rest with the direction that is up upright, its mass at the height that was computed; then it moves
+    as its velocity says, at first and for the whole way.
+    """
+    page = open_page(write(tmp_path, "grade", SAMPLES[name].path)).page
+    picture = picture_of(SAMPLES[name].grade())
+    assert picture is not None
+    drive = drive_data(picture)
+    assert drive is not None
+    floor = -0.1
+
+    def pose_after(seconds: float) -> Any:
+        found = page.evaluate("(all) => Drive.after(...all)", [drive, floor, 1.0, seconds])
+        a, b, c, x, d, e, f, y, g, h, i, z = found["pose"]
+        return Transform((a, b, c, d, e, f, g, h, i), (x, y, z)), found["turned"], found["isOver"]
+
+    first, turned, is_over = pose_after(0.0)
+    assert (turned, is_over) == (0, False)
+    assert rows(first) == pytest.approx(rows(Transform()), abs=1e-9)
+    length, before = 0.0, (0.0, 0.0, 1.0)
+    for *up, height in drive["fall"]:
+        length += 0.3 + acos(min(1.0, dot(before, up)))
+        before = up
+        T_ground_robot, turned, _ = pose_after(length)
+        x, y, z = T_ground_robot.apply(drive["mass"])
+        assert (x, y, z) == pytest.approx((*drive["mass"][:2], floor + height), abs=1e-6)
+        assert T_ground_robot.rotate(up) == pytest.approx((0, 0, 1), abs=1e-4)
+    rest, _, _ = pose_after(length)
+    x, y, rate = drive["motion"]
+    moved, turned, _ = pose_after(length + 0.001)
+    motion = moved @ rest.inverse()
+    assert motion.rpy[2] == pytest.approx(rate * turned, abs=1e-6)
+    ways = [
+        b - a for a, b in zip(rest.apply(drive["mass"]), moved.apply(drive["mass"]), strict=True)
+    ]
+    assert ways == pytest.approx([x * turned, y * turned, 0], abs=1e-5)
+    last, turned, is_over = pose_after(1e9)
+    assert is_over
+    if rate:  # on a circle
+        assert abs(rate * turned) == pytest.approx(2 * pi)
+        assert rows(last) == pytest.approx(rows(rest), abs=1e-6)
+    else:
+        assert turned * hypot(x, y) == pytest.approx(1.5)
+
+
+def test_drive_button_moves_the_robot_until_it_is_pressed_again(page: Any) -> None:
+    """It says what one sees, turns the wheels and hides the reference; the button, a slider and Reset put it back."""
+    canvas, button = page.locator("#space-canvas"), page.get_by_role("button", name="Drive")
+    page.locator("#space-frames").focus()
+    before = picture(page)
+    for stop in ("Drive", "Reset"):
+        button.click()
+        assert button.get_attribute("aria-pressed") == "true"
+        assert "it turns on the spot to the right" in page.locator("#space-about").inner_text()
+        page.evaluate("() => RobotView.driveTo(2)")
+        assert canvas.screenshot() != before
+        page.get_by_role("button", name=stop).click()
+        assert button.get_attribute("aria-pressed") == "false"
+        page.locator("#space-frames").focus()
+        assert picture(page) == before
+        assert page.locator("#space-about").inner_text() == ""
+    button.click()
+    page.evaluate("() => RobotView.driveTo(2)")
+    page.get_by_label("base_left_wheel_joint").fill("0")
+    assert button.get_attribute("aria-pressed") == "false"
+    page.locator("#space-frames").focus()
+    assert picture(page) == before
+
+
+def test_drive_does_not_move_for_who_wants_no_motion(browser: Any, tmp_path: Path) -> None:
+    """The robot is at once where it would come to."""
+    page = browser.new_page(reduced_motion="reduce")
+    page.goto(write(tmp_path, "grade", SAMPLES["axis-negated"].path).as_uri())
+    page.get_by_role("button", name="Drive").click()
+    turned = page.evaluate("() => RobotView.positions.get('base_left_wheel_joint')")
+    assert turned > 6
+    page.close()
 
 
 @pytest.mark.parametrize("seed", range(12))

@@ -4,6 +4,7 @@ packages around them.
 
 import os
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from math import isfinite, nan
 from pathlib import Path
 from typing import NamedTuple
@@ -204,18 +205,15 @@ def _inspected(
         known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
     reading = urdf.loaded._replace(problems=opened.problems_of(urdf))
-    driving = _describe_driving(robot, opened.driven_joints(urdf)) if robot is not None else ""
     meshes = opened.meshes_of(urdf)
-    return InspectedRobot(urdf.path, reading, robot, relative_to, driving=driving, meshes=meshes)
-
-
-def _describe_driving(robot: Configuration, joints: Sequence[str]) -> str:
-    """Return how a robot stands and drives on the wheels of these joints; empty without any."""
-    if not joints or not all(robot.robot.has_joint(joint) for joint in joints):
-        return ""
+    inspected = InspectedRobot(urdf.path, reading, robot, relative_to, meshes=meshes)
+    driven = opened.driven_joints(urdf)
+    if robot is None or not driven or not all(map(robot.robot.has_joint, driven)):
+        return inspected
     from grader.lab.checks.driving import describe_driving  # late: few robots name their wheels
 
-    return describe_driving(robot, [robot.robot.joint(joint).child for joint in joints])
+    wheels = tuple(robot.robot.joint(joint).child for joint in driven)
+    return replace(inspected, driving=describe_driving(robot, wheels), wheels=wheels)
 
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:

@@ -1,13 +1,14 @@
 """Checks of a robot as a whole: how it stands on level ground, and where its wheels drive it."""
 
 from collections.abc import Sequence
+from contextlib import suppress
 from math import degrees
 from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.source import LazyLocation
 from grader.base.text import enumerated
-from grader.base.transforms import X_AXIS, Vector, degrees_between
+from grader.base.transforms import X_AXIS, Z_AXIS, Vector, degrees_between
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
     SLACK,
@@ -21,6 +22,7 @@ from grader.lab.checks.outcome import (
 from grader.lab.checks.toml_types import Direction, NonNegative
 from grader.lab.checks.visuals import axis_place, origin_place
 from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.rolling import Course
 from grader.ros.urdf.shapes import UnknownShape
 from grader.ros.urdf.standing_robot import StandingRobot
 
@@ -41,8 +43,11 @@ _ANGLE = 1.0  # degrees from which on a wheel is said to point elsewhere
 _BACKWARD = 135.0  # degrees off forward from which on a robot is said to drive backward
 _MAX_SLOPE = 45.0  # degrees between the axis of a wheel and the level
 _CROSSED = 30.0  # degrees between the axes of wheels that can only be omni wheels
+_OFF = 2.0  # degrees, or degrees for each metre, from which on a robot is said to drive elsewhere
+_LEANING = 1.0  # degrees from which on a robot is said to lean
 _LEVEL = 1e-4  # metres by which a link that is level with others may be off
 _MOST = 100.0  # m/s^2; nothing is said of more
+_NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
 
 
 def describe_driving(robot: Configuration, wheels: Sequence[str]) -> str:
@@ -52,18 +57,96 @@ def describe_driving(robot: Configuration, wheels: Sequence[str]) -> str:
     try:
         standing = StandingRobot(robot, wheels)
         drives = drives_straight(robot, wheels=[*wheels])
-    except (MissingElement, NotDecided, UnknownShape):
+    except _NOT_KNOWN:
         return ""
-    rest = standing.rest
-    if rest.has_fallen:
+    if standing.rest.has_fallen:
         return "on level ground, it tips over"
-    stands = "stands level"
-    if rest.tilt > 1.0:
-        stands = f"leans by {in_degrees(rest.tilt)}"
     message = drives.message
     if drives.status != "passed":
         message = f"when its wheels turn forward: {message}"
-    return f"on level ground, it {stands} on {_in_quotes(standing.touching)}; {message}"
+    return f"{_describe_rest(standing)}; {message}"
+
+
+class Drive(NamedTuple):
+    """How a robot comes to rest on level ground, and where its wheels drive it then.
+
+    `plan_drive` makes it for pictures. `course` is None where the wheels do not drive the robot, or
+    it cannot be determined where; `text` says in one line what one sees.
+    """
+
+    standing: StandingRobot
+    course: Course | None
+    text: str
+
+
+def plan_drive(
+    robot: Configuration,
+    wheels: Sequence[str] = (),
+    base: str = "",
+    forward: Vector = X_AXIS,
+    rollers: Sequence[float] | None = None,
+) -> Drive | None:
+    """Return how a robot stands, and where these wheels drive it, as `stands_level` and
+    `drives_straight` compute it. None if it cannot be determined how it stands, or it has no wheel.
+
+    Without names of links that it has, its wheels are all links that roll: a continuous joint turns
+    them, they are round about it, and touch the ground.
+    """
+    named = [link for link in wheels if robot.robot.has_link(link)]
+    if named != [*wheels] or not named:
+        rollers = None
+        named = named or _find_rolling_links(robot)
+    if not named:
+        return None
+    try:
+        standing = StandingRobot(robot, named, base if robot.robot.has_link(base) else "")
+    except _NOT_KNOWN:
+        return None
+    if standing.rest.has_fallen:
+        return Drive(standing, None, "on level ground, it tips over")
+    text = _describe_rest(standing)
+    try:
+        driven = _Driven(standing, rollers)
+        driven.refuse_crossed()
+    except _NOT_KNOWN:
+        return Drive(standing, None, text)
+    course, faults = None, driven.find_idle_wheels()
+    if not faults:
+        course = driven.measure_course(forward)
+        faults = driven.find_course_faults(course, _OFF, _OFF)
+    moves = "; ".join(fault.text for fault in faults) or "it drives straight ahead"
+    return Drive(standing, course, f"{text}; when its wheels turn forward, {moves}")
+
+
+def _find_rolling_links(robot: Configuration) -> list[str]:
+    """Return the links that a continuous joint turns about a level axis, and that are round about
+    it.
+    """
+    turning = []
+    for link in robot.robot.links:
+        with suppress(MissingElement, NotDecided):
+            types = [joint.type for joint in robot.chain(link.name)]
+            is_shaped = link.visuals or link.collisions
+            if is_shaped and types.count("continuous") == 1 and types[-1] == "continuous":
+                turning.append(link.name)
+    try:
+        wheels = StandingRobot(robot, turning).wheels() if turning else []
+    except _NOT_KNOWN:
+        return []
+    rolling = []
+    for wheel in wheels:
+        off_level = abs(90.0 - degrees_between(wheel.axis, Z_AXIS))
+        if off_level <= _MAX_SLOPE and wheel.measure_roundness(Z_AXIS) <= _ROUND:
+            rolling.append(wheel.link)
+    return rolling
+
+
+def _describe_rest(standing: StandingRobot) -> str:
+    """Return in one line how a robot stands."""
+    tilt, stands = standing.rest.tilt, "stands level"
+    if tilt > _LEANING:
+        stands = f"leans by {in_degrees(tilt)}"
+    return f"on level ground, it {stands} on {_in_quotes(standing.touching)}"
 
 
 class _RobotFault(NamedTuple):
@@ -165,7 +248,8 @@ def drives_straight(
         return _judge(standing, faults, message, faults[0], by_mass=False)
     driven.refuse_crossed()
     faults = driven.find_uneven_wheels()
-    faults += driven.find_course_faults(forward, angle, turn)
+    course = driven.measure_course(forward)
+    faults += driven.with_culprits(driven.find_course_faults(course, angle, turn), forward)
     fine = _RobotFault("", 0.0, angle, "deg")
     return _judge(standing, faults, message, fine, by_mass=False)
 
@@ -315,12 +399,13 @@ class _Driven:
                     "the axes of wheels cross",
                 )
 
-    def find_course_faults(self, forward: Vector, angle: float, turn: float) -> list[_RobotFault]:
-        """Return what is wrong with the way that the robot drives while all wheels turn at one
-        rate.
-        """
+    def measure_course(self, forward: Vector) -> Course:
+        """Return the way that the robot drives while all wheels turn at one rate."""
         rates = [1.0] * len(self._wheels)
-        course = self._standing.drive(self._wheels, rates, forward)
+        return self._standing.drive(self._wheels, rates, forward)
+
+    def find_course_faults(self, course: Course, angle: float, turn: float) -> list[_RobotFault]:
+        """Return what is wrong with a way that the robot drives."""
         at = axis_place(self._wheels[0].joint)
         faults = []
         if course.speed > _SLOW * course.rim_speed:
@@ -349,7 +434,7 @@ class _Driven:
             verb = "slips" if len(slips) == 1 else "slip"
             text = f"{_in_quotes([*slips])} {verb} by {share:.3g} % of the speed of the rim"
             faults.append(_RobotFault(text, share, 100.0 * _MAX_SLIP, "%", at))
-        return self._with_culprits(faults, forward)
+        return faults
 
     def find_turning_faults(self) -> list[_RobotFault]:
         """Return what is wrong with the way that the robot turns while its wheels turn against each
@@ -376,9 +461,9 @@ class _Driven:
             far = in_millimetres(away)
             text = f"it turns about a point {far} from the middle between its wheels"
             faults.append(_RobotFault(text, away, _OFF_CENTRE * width, "m", at))
-        return self._with_culprits(faults, X_AXIS)
+        return self.with_culprits(faults, X_AXIS)
 
-    def _with_culprits(self, faults: list[_RobotFault], forward: Vector) -> list[_RobotFault]:
+    def with_culprits(self, faults: list[_RobotFault], forward: Vector) -> list[_RobotFault]:
         """Return faults of which the first says which wheels are the cause."""
         culprits = [] if self._has_rollers or not faults else self._find_culprits(forward)
         if not culprits:

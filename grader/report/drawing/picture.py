@@ -7,9 +7,9 @@ wheels.
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import isfinite
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.text import counted, enumerated, quoted, quoted_end, texts_in
@@ -265,16 +265,21 @@ class Picture:
         Transform, ...
     ]  # poses of the reference's links whose frames failed, or that the robot has not
     callouts: tuple[_Callout, ...]
+    # The arguments of `plan_drive`: the wheels that drive it, and what a rubric says of them.
+    driving: Mapping[str, Any] = field(default_factory=dict)
 
 
 def plain_picture(
-    robot: Configuration | None, frame: str | None, meshes: "MeshLoader | None" = None
+    robot: Configuration | None,
+    frame: str | None,
+    meshes: "MeshLoader | None" = None,
+    wheels: Sequence[str] = (),
 ) -> Picture | None:
     """Return the picture of a robot that is not graded, in the frame of one of its links; None
-    without either.
+    without either. `wheels` are the links that drive it, if they are known.
     """
     if robot is not None and frame is not None:
-        return Picture(scene_of(robot, frame, meshes=meshes), (), (), ())
+        return Picture(scene_of(robot, frame, meshes=meshes), (), (), (), {"wheels": wheels})
     return None
 
 
@@ -302,10 +307,11 @@ def picture_of(report: Report) -> Picture | None:
         if point is None and reference is not None:
             point = reference.centre(link)
         callouts.append(_Callout(number, link, point, tuple(results)))
+    driving = _find_driving(report.rubric, robot, wheels)
     if reference is None:
-        return Picture(scene, (), (), tuple(callouts))
+        return Picture(scene, (), (), tuple(callouts), driving)
     outlines, frames = _expected(scene, reference, by_link)
-    return Picture(scene, outlines, frames, tuple(callouts))
+    return Picture(scene, outlines, frames, tuple(callouts), driving)
 
 
 def _reference(rubric: Rubric) -> Configuration | None:
@@ -337,6 +343,17 @@ def _wheels(rubric: Rubric, robot: Configuration) -> Iterator[str]:
             given = criterion.arguments
             for name in given["wheels"] if "wheels" in given else [given["link"]]:
                 yield robot.selected_or_name(str(name))
+
+
+def _find_driving(rubric: Rubric, robot: Configuration, wheels: Sequence[str]) -> Mapping[str, Any]:
+    """Return the wheels that drive a robot, and what the first criterion on them says besides."""
+    for criterion in rubric.criteria:
+        given = criterion.arguments
+        if criterion.check.name == "drives_straight":
+            named = [robot.selected_or_name(wheel) for wheel in given["wheels"]]
+            others = {key: given[key] for key in ("base", "forward", "rollers") if key in given}
+            return {"wheels": named, **others}
+    return {"wheels": wheels}
 
 
 def _is_marked(result: Result) -> bool:

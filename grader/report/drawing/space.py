@@ -4,17 +4,17 @@ shapes, and joints.
 It has nothing of the reference: the script reads that from the three views in the page.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from math import inf, isfinite, pi
 from typing import Any
 
 from grader.base.transforms import Transform, unit
+from grader.report.drawing.drive import drive_data, rounded
 from grader.report.drawing.picture import Body, Picture
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Cylinder, Joint
 
 _MAX_LINKS = 500  # in software, a browser moves more only in seconds
-_DIGITS = 8
 _WITHOUT_LIMITS = {"prismatic": 1.0}  # metres to each side; the other joints turn by half a turn
 
 
@@ -51,13 +51,15 @@ def space_data(picture: Picture, cards: Mapping[str, str]) -> dict[str, Any] | N
             if card is not None:
                 pin["card"] = f"criterion-{card}"
             pins.append(pin)
-    return {
+    data = {
         "frame": scene.frame,
         "root": scene.root,
         "links": links,
         "joints": joints,
         "pins": pins,
     }
+    drive = drive_data(picture)
+    return data if drive is None else {**data, "drive": drive}
 
 
 def without_names(space: Mapping[str, Any]) -> dict[str, Any]:
@@ -80,7 +82,17 @@ def without_names(space: Mapping[str, Any]) -> dict[str, Any]:
             renamed["mimic"] = [numbers.get(leader, ""), *motion]
         joints.append(renamed)
     frame, root = names.get(space["frame"], ""), names.get(space["root"], "")
-    return {"frame": frame, "root": root, "links": links, "joints": joints, "pins": []}
+    robot: dict[str, Any] = {
+        "frame": frame,
+        "root": root,
+        "links": links,
+        "joints": joints,
+        "pins": [],
+    }
+    if "drive" in space:
+        driven = [numbers[joint] for joint in space["drive"]["joints"]]
+        robot["drive"] = {**space["drive"], "joints": driven, "text": ""}
+    return robot
 
 
 def _shape(body: Body, T_link_frame: Transform) -> dict[str, Any]:
@@ -97,9 +109,9 @@ def _shape(body: Body, T_link_frame: Transform) -> dict[str, Any]:
     pose = T_link_frame @ body.T_frame_shape
     return {
         "kind": kind,
-        "size": _rounded(size),
+        "size": rounded(size),
         "pose": _rows(pose),
-        "rgba": _rounded(body.rgba),
+        "rgba": rounded(body.rgba),
     }
 
 
@@ -120,11 +132,11 @@ def _joint(joint: Joint, robot: Configuration, poses: Mapping[str, Transform]) -
         data["mimic"] = [mimic.joint, mimic.multiplier, mimic.offset]
     axis = unit(joint.axis) if joint.axis is not None else None
     if joint.has_position and axis is not None:
-        data["axis"] = _rounded(axis)
+        data["axis"] = rounded(axis)
         if "mimic" not in data:
             if position:
                 data["start"] = position
-            data["range"] = _rounded(_range(joint, position or 0.0))
+            data["range"] = rounded(_range(joint, position or 0.0))
     return data
 
 
@@ -142,13 +154,4 @@ def _rows(pose: Transform) -> list[float]:
     """Return a pose as 12 numbers, row by row."""
     a, b, c, d, e, f, g, h, i = pose.rotation
     x, y, z = pose.translation
-    return _rounded((a, b, c, x, d, e, f, y, g, h, i, z))
-
-
-def _rounded(values: Iterable[float]) -> list[float]:
-    """Return numbers without the digits that no picture shows, in the shortest form."""
-    numbers = []
-    for value in values:
-        whole = int(value)
-        numbers.append(whole if whole == value else round(value, _DIGITS))
-    return numbers
+    return rounded((a, b, c, x, d, e, f, y, g, h, i, z))

@@ -18,8 +18,9 @@ from grader.base.text import printable
 
 _FILES = Path(__file__).parent / "files"  # templates, styles and scripts of several pages
 # The scripts of a page with `robot.html` and the data of a robot, each after those that it needs.
-SPACE_SCRIPTS = "transforms.js kinematics.js shapes.js ghost.js robot3d.js"
+SPACE_SCRIPTS = "transforms.js kinematics.js shapes.js ghost.js drive.js robot3d.js"
 _NOTHING = "'none'"
+_STRICT = '"use strict";'  # at the beginning of each script, and of all together
 # A literal of JavaScript: a text, which keeps what looks like a comment, or a regular expression,
 # which stands where a value begins.
 _LITERAL = r"""(?P<literal>
@@ -28,12 +29,19 @@ _LITERAL = r"""(?P<literal>
     | (?<=[(,=:!&|?\[]) \s* /(?![*/])(?:\\. | \[(?:\\.|[^\]\\\n])*\] | [^/\[\\\n])+/
 )"""
 _COMMENTS = re.compile(rf"{_LITERAL} | /\*.*?\*/ | //[^\n]*", re.DOTALL | re.VERBOSE)
-_COMMENTS_OF_STYLES = re.compile(r"/\*.*?\*/\s*", re.DOTALL)
-# White space beside punctuation; a line may end a statement after a bracket, or before one.
+# White space beside punctuation and operators; a line may end a statement after a bracket, or
+# before one.
 _SPACES = re.compile(
     rf"{_LITERAL} | \s+(?=[)\]}},;?:&|=>*]) | [ ]+(?=[(\[{{])"
-    r"| (?<=[{(\[,;=>?:&|*])\s+ | (?<=[)\]}])[ ]+ | (?P<end>\s*\n\s*)",
+    r"| (?<=[{(\[,;=>?:&|*])\s+ | (?<=[)\]}])[ ]+ | (?P<end>\s*\n\s*)"
+    r"| (?<![-+])[ ](?=[-+/<%!]=*[ ]) | (?<=[-+/<%])[ ](?![-+/!])",
     re.VERBOSE,
+)
+_LITERAL_OF_STYLES = r"""(?P<literal> "(?:\\.|[^"\\])*" | '(?:\\.|[^'\\])*' )"""
+# A colon after white space begins a pseudo-class of any element.
+_SPACES_OF_STYLES = re.compile(
+    rf"{_LITERAL_OF_STYLES} | /\*.*?\*/ | \s+(?=[{{}},;>]) | (?<=[{{}},;:>])\s+ | (?P<space>\s+)",
+    re.DOTALL | re.VERBOSE,
 )
 _UNSAFE = str.maketrans({character: f"\\u{ord(character):04x}" for character in "<>&\u2028\u2029"})
 
@@ -62,13 +70,14 @@ def render_page(
         assets: The styles and scripts.
     """
     styles = [_style(assets.folder, name) for name in ("base.css", *assets.styles.split())]
-    if assets.rules:
-        styles.append(assets.rules)
-    scripts = [_script(assets.folder, name) for name in assets.scripts.split()]
+    style = "".join([*styles, assets.rules])
+    script = "".join(_script(assets.folder, name) for name in assets.scripts.split())
+    if script:
+        script = _STRICT + script
     policy = [
         f"default-src {_NOTHING}",
-        f"style-src {' '.join(map(_source_hash, styles))}",
-        f"script-src {' '.join(map(_source_hash, scripts)) or _NOTHING}",
+        f"style-src {_source_hash(style)}",
+        f"script-src {_source_hash(script) if script else _NOTHING}",
         f"base-uri {_NOTHING}",
         f"form-action {_NOTHING}",
     ]
@@ -76,8 +85,8 @@ def render_page(
         policy.append(assets.sources)
     shell = {
         "policy": "; ".join(policy),
-        "styles": [*map(Markup, styles)],  # our own files
-        "scripts": [*map(Markup, scripts)],
+        "style": Markup(style),  # noqa: S704  our own files
+        "script": Markup(script),  # noqa: S704
         "data": _json(data),
     }
     return _environment(assets.folder).get_template(template).render(**values, **shell)
@@ -111,12 +120,12 @@ def _file(folder: Path, name: str) -> str:
 
 @cache
 def _style(folder: Path, name: str) -> str:
-    return _COMMENTS_OF_STYLES.sub("", _file(folder, name))
+    return shortened_style(_file(folder, name))
 
 
 @cache
 def _script(folder: Path, name: str) -> str:
-    return shortened(_file(folder, name))
+    return shortened(_file(folder, name)).removeprefix(_STRICT)
 
 
 def shortened(script: str) -> str:
@@ -128,6 +137,16 @@ def shortened(script: str) -> str:
     """
     code = _COMMENTS.sub(lambda found: found["literal"] or "", script)
     return _SPACES.sub(_shortened_space, code).strip() + "\n"
+
+
+def shortened_style(style: str) -> str:
+    """Return a style without comments, indentation and spaces beside punctuation, as pages have
+    it. Literals keep each character.
+    """
+    short = _SPACES_OF_STYLES.sub(
+        lambda found: found["literal"] or (" " if found["space"] else ""), style
+    )
+    return short.strip().replace(";}", "}")
 
 
 def _shortened_space(found: re.Match[str]) -> str:

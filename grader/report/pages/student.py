@@ -144,7 +144,9 @@ def inspection_html(inspection: Inspection) -> str:
     }
     relative_to = robot.relative_to if robot is not None else None
     meshes = robot.meshes if robot is not None else None
-    return _render("inspection.html", values, plain_picture(configuration, relative_to, meshes))
+    wheels = robot.wheels if robot is not None else ()
+    picture = plain_picture(configuration, relative_to, meshes, wheels)
+    return _render("inspection.html", values, picture)
 
 
 def _problem_card(problem: Problem, inspection: Inspection) -> tuple[str, str, object]:

@@ -263,7 +263,9 @@ def _outline(panel: Panel, body: Body) -> tuple[str, ...]:
 def _shape(body: Body, outline: Sequence[str]) -> str:
     *rgb, alpha = body.rgba
     fill = "".join(f"{round(255.0 * channel):02x}" for channel in rgb)
-    looks = f'class="edge" fill="#{fill}" fill-opacity="{alpha:.2g}"'
+    looks = f'class="edge" fill="#{fill}"'
+    if alpha < 1.0:
+        looks += f' fill-opacity="{alpha:.2g}"'
     name = _escaped(body.link[:_MAX_NAME])
     return f'<polygon {looks} points="{" ".join(outline)}"><title>{name}</title></polygon>'
 

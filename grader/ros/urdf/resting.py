@@ -12,7 +12,7 @@ from math import atan2, cos, degrees, hypot, inf, pi, radians, sin
 from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.transforms import X_AXIS, Z_AXIS, Vector, cross, dot, minus, unit
+from grader.base.transforms import X_AXIS, Z_AXIS, Vector, cross, degrees_between, dot, minus, unit
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Collision, Cylinder, Mesh, Visual
 from grader.ros.urdf.shapes import PlacedShape, UnknownShape, bounding_radius
@@ -32,6 +32,8 @@ _LOWER = 1e-12  # of the size of a robot: a mass that goes down by less does not
 _NUDGE = 2e-3  # radians by which a robot that balances is pushed
 _BALANCE = 1e-6  # metres from an edge of the contacts within which a mass balances on it
 _RIM_POINTS = 24  # of a cylinder that stands on its flat side
+_FALL_STEP = 15.0  # degrees
+_MAX_FALL = 12
 _FLAT = 1e-3  # the sine of the angle from which on a cylinder stands on one point of its rim
 
 
@@ -159,6 +161,34 @@ def _mean(weighted: Sequence[tuple[float, Vector]]) -> Vector:
 def find_rest(body: _RestingBody) -> Rest:
     """Return how a robot stands that is set down upright, its base level, and then let go; the
     body must have shapes.
+    """
+    *_, up = _fall(body, _MAX_TILT)
+    heights, contacts = _measure_heights(body, up)
+    if not contacts:
+        raise NotDecided("the numbers of the robot are too large to tell how it stands")
+    return Rest(up, body.mass_centre, heights, contacts)
+
+
+def list_fall(body: _RestingBody) -> list[tuple[Vector, float]]:
+    """Return how a robot comes to rest that is set down upright, its base level, even if it tips
+    over: where up is on the way, each with the height of the centre of mass above the ground.
+    """
+    ups: list[Vector] = []
+    for up in _fall(body, 180.0):
+        if len(ups) > 1 and degrees_between(ups[-2], ups[-1]) < _FALL_STEP / 4.0:
+            ups.pop()  # a large ball rolls far in many small steps
+        before = ups[-1] if ups else up
+        steps = int(degrees_between(before, up) / _FALL_STEP) + 1
+        for number in range(1, steps + 1):
+            way = minus(up, before)
+            ups.append(unit(moved(before, [(way, number / steps)])) or up)
+    del ups[_MAX_FALL - 1 : -1]
+    return [(up, body.mass_height(up)) for up in ups]
+
+
+def _fall(body: _RestingBody, max_tilt: float) -> Iterator[Vector]:
+    """Yield where up is while a robot falls that is set down upright, until it rests, or leans by
+    more than an angle in degrees.
 
     The face of the convex hull that is straight below the centre of mass becomes the ground, until
     it is the ground already. The centre of mass only goes down on the way: the height of the hull's
@@ -167,25 +197,25 @@ def find_rest(body: _RestingBody) -> Rest:
     """
     up: Vector = Z_AXIS
     size = _size_of(body)
+    yield up
     for _ in range(_MAX_STEPS):
         face = _face_below(body, up, size)
         if face is None:
-            up = X_AXIS  # nothing is below the mass: it falls over
-            break
+            touching = lowest_points([shape for _, shape in body.shapes], up)
+            away = minus(body.mass_centre, _mean([(1.0, point) for point in touching]))
+            yield unit((-away[0], -away[1], 0.0)) or X_AXIS  # to the side where the mass is
+            return
         falls = body.mass_height(face) < body.mass_height(up) - _LOWER * size
         if falls and hypot(*minus(face, up)) > _STILL:
             up = _follow(body, up, face)
         else:
             pushed = _pushed_off_balance(body, face, size)
             if pushed is None:
-                break
+                return
             up = pushed
-        if up[2] < cos(radians(_MAX_TILT)):
-            break
-    heights, contacts = _measure_heights(body, up)
-    if not contacts:
-        raise NotDecided("the numbers of the robot are too large to tell how it stands")
-    return Rest(up, body.mass_centre, heights, contacts)
+        yield up
+        if up[2] < cos(radians(max_tilt)):
+            return
 
 
 def _follow(body: _RestingBody, start: Vector, face: Vector) -> Vector:

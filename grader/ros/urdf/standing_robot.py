@@ -15,6 +15,7 @@ from grader.ros.urdf.resting import (
     body_of,
     find_rest,
     level_directions,
+    list_fall,
     lowest_points,
     solid_shapes,
 )
@@ -117,6 +118,12 @@ class StandingRobot:
     def touching(self) -> list[str]:
         """The links on which the robot rests, as they are named."""
         return [*dict.fromkeys(self._owners[link] for link in self.rest.contacts)]
+
+    def list_fall(self) -> list[tuple[Vector, float]]:
+        """Return how it comes to rest that is set down with its base level, even if it tips over:
+        where up is on the way, each with the height of the centre of mass above the ground.
+        """
+        return list_fall(self.body)
 
     def _find_span_below_mass(self) -> tuple[float, float] | None:
         """Return how far the area between the contacts of links reaches backward and forward from

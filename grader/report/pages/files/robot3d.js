@@ -3,7 +3,7 @@
 // Without WebGL nothing of it is shown, and the three views remain.
 
 /** @typedef {{number: number, link: string, card?: string}} Pin */
-/** @typedef {Robot & {pins: Pin[]}} ShownRobot */
+/** @typedef {Robot & {pins: Pin[], drive?: DriveData}} ShownRobot */
 /** @typedef {{buffer: WebGLBuffer, count: number}} Solid */
 /** @typedef {{solid: Solid, pose: Pose, size: Vector, rgba: number[]}} Item */
 
@@ -32,7 +32,9 @@ function showRobot() {
   let selected = "";
   let poses = Kinematics.poses(robot, positions);
   const parents = new Map(robot.joints.map((one) => [one.child, one]));
-  const pose = (/** @type {string} */ link) => poses.get(link) || Transforms.IDENTITY;
+  let carried = Transforms.IDENTITY; // the pose of the robot, which drives
+  const pose = (/** @type {string} */ link) =>
+    Transforms.product(carried, poses.get(link) || Transforms.IDENTITY);
   const shapesOf = (/** @type {Link} */ link) =>
     link.shapes.map((shape) => ({ shape, at: Transforms.product(pose(link.name), shape.pose) }));
   const points = robot.links.flatMap((link) =>
@@ -161,7 +163,8 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     const up = [-cy * sp, -sy * sp, cp];
     const back = [cy * cp, sy * cp, sp];
     const away = 1.55 * size * camera.zoom;
-    const eye = middle.map(
+    const moved = Transforms.apply(carried, middle);
+    const eye = moved.map(
       (value, k) => value + back[k] * away + size * (right[k] * camera.right + up[k] * camera.up),
     );
     const shape = canvas.width / canvas.height || 1;
@@ -200,7 +203,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     const value = getComputedStyle(canvas).getPropertyValue(name).trim();
     return [...[1, 3, 5].map((i) => parseInt(value.slice(i, i + 2), 16) / 255), alpha];
   };
-  const isMoved = () => [...positions].some(([name, value]) => value !== START.get(name));
+  const isMoved = () => began || [...positions].some(([name, value]) => value !== START.get(name));
   /** Return whether a shape is a cylinder that a joint turns about its own axis. */
   const turns = (/** @type {Link} */ link, /** @type {Shape} */ shape) => {
     let [joint, turned] = [parents.get(link.name), shape.pose];
@@ -483,6 +486,55 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     redraw();
   });
 
+  // --- Drive: it comes to rest on the ground, then its wheels turn ---
+  const { drive } = robot;
+  const driving = find("drive");
+  let began = 0; // when, in milliseconds
+  const driveTo = (/** @type {number} */ seconds) => {
+    if (!drive) {
+      return true;
+    }
+    const { pose, turned, isOver } = Drive.after(drive, floor, size, seconds);
+    carried = pose;
+    for (const joint of drive.joints) {
+      positions.set(joint, (START.get(joint) || 0) + turned);
+    }
+    render();
+    return isOver;
+  };
+  const tick = (/** @type {number} */ now) => {
+    if (began && !driveTo((now - began) / 1000)) {
+      requestAnimationFrame(tick);
+    }
+  };
+  /** Put the robot back where it is drawn. */
+  const stop = () => {
+    if (!began) {
+      return;
+    }
+    began = 0;
+    carried = Transforms.IDENTITY;
+    for (const joint of drive?.joints || []) {
+      positions.set(joint, START.get(joint) || 0);
+    }
+    driving.setAttribute("aria-pressed", "false");
+    describe();
+    redraw();
+  };
+  driving.hidden = !drive;
+  driving.addEventListener("click", () => {
+    if (began || !drive) {
+      stop();
+      return;
+    }
+    reset();
+    began = performance.now();
+    driving.setAttribute("aria-pressed", "true");
+    about.textContent = drive.text;
+    const isStill = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    tick(isStill ? Infinity : began);
+  });
+
   // --- Joints ---
   /** @type {Map<string, (position: number) => void>} */
   const sliders = new Map();
@@ -505,6 +557,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
       set(position);
     };
     input.addEventListener("input", () => {
+      stop();
       set(Number(input.value) / factor);
       poses = Kinematics.poses(robot, positions);
       describe();
@@ -532,6 +585,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     }
   };
   const reset = () => {
+    stop();
     Object.assign(camera, HOME);
     for (const [name, position] of START) {
       move(name, position);
@@ -565,6 +619,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
   });
   /** Release what the robot takes, before another one is shown. */
   const close = () => {
+    stop();
     scheme.removeEventListener("change", redraw);
     resizing.disconnect();
     cancelAnimationFrame(asked);
@@ -572,7 +627,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
   };
   render();
   return {
-    ...{ camera, positions, move, select, render, reset, sliders, close },
+    ...{ camera, positions, move, select, render, reset, sliders, close, driveTo, stop },
     poses: () => poses,
   };
 }
