@@ -255,3 +255,34 @@ def test_a_class_of_a_thousand(open_page: Open, tmp_path: Path) -> None:
     assert all("lost points in" in page for page in table)
     opened.page.locator("[data-group='filter-section B'] button").click()
     assert opened.page.get_by_role("status").inner_text() == "500 of 1000 students: section B"
+
+
+def test_robots_are_shown_as_the_table_is(open_page: Open, tmp_path: Path) -> None:
+    """Filtered and sorted with it, those of equal work framed; a click opens the page of a student."""
+    make_class(tmp_path)
+    write_submission(tmp_path / "class" / "dora", "1 1 2")
+    done = batch(tmp_path, "--reports", tmp_path / "pages", "--report-format", "html")
+    assert done.returncode == 0, done.stderr
+    opened = open_page(tmp_path / "pages" / "index.html")
+    page = opened.page
+
+    def robots() -> list[str]:
+        found: list[str] = page.locator("#stills li").all_inner_texts()
+        return [text.strip() for text in found]
+
+    def rows() -> list[str]:
+        return [text.partition(",")[0].partition(" (")[0] for text in robots()]
+
+    assert rows() == names(opened)
+    framed = page.locator("#stills .equal").all_inner_texts()
+    assert framed == [
+        text for text in robots() if "(equal work 1)" in text or "(equal work 2)" in text
+    ]
+    assert framed
+    assert page.locator("#stills path").count() > 6
+    page.locator("#students th[data-column=grade] button").click()
+    assert rows() == names(opened)
+    page.locator("#find").fill("dora")
+    assert rows() == names(opened) == ["Dora Fi"]
+    page.locator("#stills a").click()
+    page.wait_for_url("**/dora.html")

@@ -440,6 +440,10 @@ def test_robot_of_each_item_is_shown_in_space(open_page: Open, opened: Path) -> 
         press(page, "-")
         assert page.evaluate("() => RobotView.camera.zoom") > zoom
         assert page.locator("#points").input_value() == ""
+        shows = page.locator("#space-ghost").get_attribute("aria-pressed")
+        page.locator("#points").focus()
+        press(page, "g")
+        assert page.locator("#space-ghost").get_attribute("aria-pressed") != shows
         press(page, "n", "4")
         assert page.evaluate("() => RobotView") is None
         press(page, "b", "1")

@@ -1,5 +1,6 @@
 """What reports keep for the next time: nothing is searched or written twice, and no page is older than what it shows."""
 
+import json
 import shutil
 from pathlib import Path
 from typing import Any
@@ -127,3 +128,14 @@ def test_hints_are_the_same_when_they_are_kept(level: str, tmp_path: Path) -> No
             path.unlink()
     assert texts[0] == texts[1]
     assert b'"hints": [{' in b"".join(b" ".join(text.split()) for text in texts[0].values())
+
+
+def test_pictures_of_robots_are_kept(top: Path) -> None:
+    """The class's page is the same where no report is written again; equal robots share a picture."""
+    pages(top)
+    first = (top / "g/index.html").read_text()
+    data = json.loads(first.partition('id="data">')[2].partition("</script>")[0])
+    assert data["robots"][0] == data["robots"][1]
+    assert len({*data["robots"]}) == len(data["stills"]) == 3
+    pages(top)
+    assert (top / "g/index.html").read_text() == first

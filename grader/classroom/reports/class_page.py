@@ -13,10 +13,12 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.statistics import ClassStatistics
 from grader.classroom.gradebook.student_grade import StudentGrade
 from grader.classroom.reports import class_words as words
+from grader.report.drawing.still import HEIGHT, WIDTH, Still
 from grader.report.pages.shell import Assets, render_page
 
-_ASSETS = Assets("class.css", "class.js", folder=Path(__file__).parent / "files")
+_ASSETS = Assets("class.css", "sheet.js class.js", folder=Path(__file__).parent / "files")
 _MAX_ATTENTION = 100  # students for one reason
+_MAX_STILLS = 200  # different pictures of robots
 _MAX_LOST = 2  # criteria in a row
 _MAX_HEIGHT, _CUT_AT = 3, 1.5  # of a bar of the second highest: a higher one is cut
 
@@ -52,9 +54,10 @@ def render_class_page(
     grades: Sequence[StudentGrade],
     figures: ClassStatistics,
     links: Mapping[str, str],
+    stills: Mapping[str, Still],
 ) -> str:
     """Return the class's page; `links` are the addresses of students' pages by key, relative to
-    this page.
+    this page, and `stills` small pictures of their robots.
     """
     rows = [_row(grade, links) for grade in grades]
     rows.sort(key=lambda row: words.family_name_order(row.name, row.key))
@@ -74,7 +77,16 @@ def render_class_page(
         "columns": _columns(rows, figures),
         "groups": groups,
     }
-    return render_page("class.html", values, {"groups": shown}, _ASSETS)
+    distinct: dict[Still, int] = {}
+    robots: list[int] = []  # of each row the number of its picture, -1 without one
+    for row in rows:
+        still = stills.get(row.key, ())
+        if still and len(distinct) < _MAX_STILLS:
+            distinct.setdefault(still, len(distinct))
+        robots.append(distinct.get(still, -1))
+    values["has_stills"] = bool(distinct)
+    data = {"groups": shown, "robots": robots, "stills": [*distinct], "size": [WIDTH, HEIGHT]}
+    return render_page("class.html", values, data, _ASSETS)
 
 
 def _figures(figures: ClassStatistics) -> dict[str, Any]:

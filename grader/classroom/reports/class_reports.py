@@ -33,6 +33,8 @@ from grader.lab.checks.outcome import Outcome
 from grader.lab.grading.grade import grade as grade_submission
 from grader.lab.grading.report import Grade, Report, Result
 from grader.lab.submission.submission import Submission
+from grader.report.drawing.picture import picture_of
+from grader.report.drawing.still import Still, still_of
 from grader.report.formats import Format, render
 from grader.report.writing import Terminal, make_folder, refuse_symlinks, save
 from grader.ros.package.robot_file import Absent
@@ -73,6 +75,7 @@ class _Done(NamedTuple):
     hints: str = ""  # their key
     new_hints: Mapping[str, Mapping[str, Any]] = {}
     is_final: bool = False  # whether it would be the same in the next run
+    still: Still = ()  # the small picture of the robot for the class's page
 
 
 class _ReportTask(NamedTuple):
@@ -212,14 +215,18 @@ def write_reports(
             kept.written.pop(str(path), None)
             if one.is_final:
                 data = sha256_of(path.read_bytes())
-                kept.written[str(path)] = WrittenReport(shown[key], data, one.hints)
+                kept.written[str(path)] = WrittenReport(shown[key], data, one.hints, one.still)
     if done:
         kept.save(new, book.settings.roots(book.folder))
     lost = {key: one.why_lost for key, one in done.items() if one.why_lost}
     if Format.HTML in run.formats:
         below = f"{names.REPORTS}/" if is_in_gradebook else ""
         pages = {key: below + name for key, name in files.items() if key not in lost}
-        write_class_page(book, run.gradebook if is_in_gradebook else run.folder, pages)
+        stills = {
+            key: done[key].still if key in done else kept.written[str(paths[key][0])].still
+            for key in pages
+        }
+        write_class_page(book, run.gradebook if is_in_gradebook else run.folder, pages, stills)
     written = counted(len(files) - len(lost), "report")
     terminal.warn(f"{written} written to {printable_path(run.folder)}")
     for key, why in lost.items():
@@ -312,7 +319,11 @@ def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[_Done]:
         for kind in run.formats:
             save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind))
         new = {key: kept.new[key] for key in kept.new if key not in known}
-        done.append(_Done(task.key, "", kept.used, new, not kept.is_lost))
+        still: Still = ()
+        if Format.HTML in run.formats:
+            picture = picture_of(report)
+            still = still_of(picture.scene) if picture is not None else ()
+        done.append(_Done(task.key, "", kept.used, new, not kept.is_lost, still))
     return done
 
 
@@ -342,14 +353,16 @@ def _with_digest(key: str) -> str:
     return f"{readable}-{sha256_of(key.encode('utf-8', 'surrogateescape'))}"
 
 
-def write_class_page(book: Gradebook, folder: Path, pages: Mapping[str, str]) -> None:
+def write_class_page(
+    book: Gradebook, folder: Path, pages: Mapping[str, str], stills: Mapping[str, Still] = {}
+) -> None:
     """Write the class's page into a folder, with links to the pages of students, by their names
-    from there.
+    from there, and small pictures of their robots.
     """
     from grader.classroom.gradebook.statistics import statistics
     from grader.classroom.reports.class_page import render_class_page
 
     grades = list(book)
     links = {key: quote(f"{name}.{Format.HTML.ending}") for key, name in pages.items()}
-    page = render_class_page(book, grades, statistics(book, grades), links)
+    page = render_class_page(book, grades, statistics(book, grades), links, stills)
     save(folder / _CLASS_PAGE, without_commands(page))

@@ -20,6 +20,7 @@ from grader.lab.grading.report import Hint, Report
 from grader.lab.hints.hinting import hinted
 from grader.lab.submission.edited import content
 from grader.lab.submission.submission import Submission
+from grader.report.drawing.still import Still
 from grader.report.writing import save_bytes
 
 _FILE = "reports.jsonl"
@@ -28,11 +29,14 @@ _OWN = "\0"  # in place of the path of the URDF, which may have the name of a st
 
 
 class WrittenReport(NamedTuple):
-    """A file that was written: what it shows, the hash of its bytes, and the key of its hints."""
+    """A file that was written: what it shows, the hash of its bytes, the key of its hints, and the
+    small picture of the robot for the class's page.
+    """
 
     shows: str
     sha256: str
     hints: str
+    still: Still = ()
 
 
 class KeptReports:
@@ -55,7 +59,8 @@ class KeptReports:
                 self._hints[values["hints_of"]] = values
             else:
                 path = values.pop("path")
-                self.written[path] = WrittenReport(**values)
+                still = tuple((fill, data) for fill, data in values.pop("still", ()))
+                self.written[path] = WrittenReport(**values, still=still)
 
     def with_hints(self, report: Report, submission: Submission, context: str) -> Report:
         """Return a report with its hints, which are searched unless they are kept.

@@ -19,7 +19,7 @@ from grader.ros.urdf.model import Box, Sphere
 Place = tuple[float, float]
 _Points = Any  # an array of shape (n, 3), or (n, 2) in a view
 
-WIDTH, _TITLE = 600.0, 18.0
+WIDTH, TITLE = 600.0, 18.0
 PANEL = WIDTH / 2.0  # the width of a view
 _MARGIN = 40.0  # around the robot in each view, for labels
 _KEY_HEIGHT = 130.0
@@ -28,9 +28,9 @@ _SMALLEST = 0.02  # metres
 _MAX_FRAMES, _MAX_FRAMES_ALONE = 12, 60  # with shapes, and where none is shown
 _FAR = 2.0  # times the size of the robot: a ground farther away is not in the picture
 _ANGLES = np.linspace(0.0, 2.0 * np.pi, 48, endpoint=False)
-_CIRCLE = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
-_CORNERS = np.array([*product((-0.5, 0.5), repeat=3)])
-_CAPS = np.array([(x, y, z) for z in (-0.5, 0.5) for x, y in _CIRCLE])
+CIRCLE = np.column_stack([np.cos(_ANGLES), np.sin(_ANGLES)])
+CORNERS = np.array([*product((-0.5, 0.5), repeat=3)])
+_CAPS = np.array([(x, y, z) for z in (-0.5, 0.5) for x, y in CIRCLE])
 # Of each view: its title, and the axes of the frame that point to the right, up and to the viewer.
 _TOP = ("top (from +z)", (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 _SIDE = ("side (from -y)", (1.0, 0.0, 0.0), (0.0, 0.0, 1.0), (0.0, -1.0, 0.0))
@@ -62,7 +62,7 @@ class Panel(NamedTuple):
 
     def places(self, points: _Points) -> _Points:
         """Return the positions of points of the frame on the sheet."""
-        centre = self.left + PANEL / 2.0, self.top + (_TITLE + self.height) / 2.0
+        centre = self.left + PANEL / 2.0, self.top + (TITLE + self.height) / 2.0
         across = (np.array(points) - self.middle) @ np.array((self.right, self.up)).T
         return centre + across * (self.scale, -self.scale)
 
@@ -76,12 +76,12 @@ class Panel(NamedTuple):
         if isinstance(body.shape, Sphere):
             return hull(
                 self.places(body.T_frame_shape.translation)
-                + _CIRCLE * body.shape.radius * self.scale
+                + CIRCLE * body.shape.radius * self.scale
             )
-        return hull(self.places(_points_of(body)))
+        return hull(self.places(points_of(body)))
 
 
-def _points_of(body: Body) -> _Points:
+def points_of(body: Body) -> _Points:
     """Return points of the frame whose hull is a body; of a sphere, those that are farthest
     along the axes.
     """
@@ -89,7 +89,7 @@ def _points_of(body: Body) -> _Points:
     if isinstance(shape, Sphere):
         return pose.translation + shape.radius * np.vstack([np.eye(3), -np.eye(3)])
     if isinstance(shape, Box):
-        points = _CORNERS * shape.size
+        points = CORNERS * shape.size
     else:
         points = _CAPS * (shape.radius, shape.radius, shape.length)
     return points @ np.reshape(pose.rotation, (3, 3)).T + pose.translation
@@ -120,7 +120,7 @@ def from_back_to_front(bodies: Iterable[Body], panel: Panel) -> list[Body]:
     """Return bodies by the depth of their nearest points; slanted ones that interlock may be in
     the wrong order.
     """
-    return sorted(bodies, key=lambda body: float((_points_of(body) @ panel.near).max()))
+    return sorted(bodies, key=lambda body: float((points_of(body) @ panel.near).max()))
 
 
 def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
@@ -131,7 +131,7 @@ def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
     size = np.maximum(high - low, _SMALLEST)
     scale = min((PANEL - 2.0 * _MARGIN) / size[:2].max(), _MAX_HEIGHT / size[1:].sum())
     rest = tuple((low + high) / 2.0), scale
-    upper, lower = (length * scale + 2.0 * _MARGIN + _TITLE for length in size[1:])
+    upper, lower = (length * scale + 2.0 * _MARGIN + TITLE for length in size[1:])
     upper = max(upper, _KEY_HEIGHT)
     return (
         Panel(*_TOP, 0.0, top, upper, *rest),
@@ -142,7 +142,7 @@ def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
 
 def _bounds(picture: Picture) -> tuple[_Points, _Points]:
     """Return the least and the largest coordinates (m) of what a picture shows, in the frame."""
-    points = [_points_of(body) for body in (*picture.scene.bodies, *picture.outlines)]
+    points = [points_of(body) for body in (*picture.scene.bodies, *picture.outlines)]
     shown = [frame.pose for frame in frames_of(picture)]
     origins = [pose.translation for pose in (*shown, *picture.frames)]
     points.append(origins or [(0.0, 0.0, 0.0)])
@@ -202,7 +202,7 @@ class FreePlaces:
         panel, (across, down) = self._panel, size
         for x, y in centres:
             is_inside = across / 2.0 <= x - panel.left <= PANEL - across / 2.0
-            is_inside &= _TITLE + down / 2.0 <= y - panel.top <= panel.height - down / 2.0
+            is_inside &= TITLE + down / 2.0 <= y - panel.top <= panel.height - down / 2.0
             if is_inside and all(
                 2.0 * abs(x - a) >= across + width or 2.0 * abs(y - b) >= down + height
                 for a, b, width, height in self._taken

@@ -1,11 +1,11 @@
 "use strict";
 // The table of students: sort, search, filter by group. The state is in the address, so that "back" restores it.
 (() => {
-  const { groups } = JSON.parse(document.getElementById("data").textContent);
+  const data = JSON.parse(document.getElementById("data").textContent), { groups } = data;
   const place = document.getElementById("class");
   if (!place) return;
   const find = document.getElementById("find"), shown = document.getElementById("shown");
-  const body = document.getElementById("students").tBodies[0], rows = [...body.rows];
+  const body = document.getElementById("students").tBodies[0], rows = [...body.rows], numbers = new Map(rows.map((row, number) => [row, number]));
   const tables = [...document.querySelectorAll("table.sortable")];
   const compare = new Intl.Collator("en", { numeric: true, sensitivity: "base" }).compare;
   const letters = { ß: "ss", æ: "ae", œ: "oe", ø: "o", ł: "l", đ: "d", ð: "d", þ: "th", ı: "i" };
@@ -44,6 +44,7 @@
     const found = new Set(named.length ? named : others), left = others.length - found.size;
     let count = 0;
     for (const row of body.rows) row.hidden = !found.has(row) || ++count > most;
+    showRobots(data, [...body.rows].filter((row) => !row.hidden).map((row) => [numbers.get(row), row]));
     const all = `${rows.length} student${rows.length === 1 ? "" : "s"}`;
     shown.textContent = found.size === rows.length ? all : `${found.size} of ${all}${chosen ? `: ${chosen[0]}` : ""}${left ? ` by name; ${left} more elsewhere in the table` : ""}`;
     more.hidden = found.size <= most;

@@ -216,7 +216,7 @@
     q: () => send("question"), "/": searchPeople,
     n: () => send("next"), s: () => send("next"), b: () => send("back"), z: zoom,
     f: () => setPoints(buttons.at(-1)), h: () => setPoints(buttons.find((button) => button.dataset.name === "half")),
-    d: () => toggle(".document"),
+    d: () => toggle(".document"), g: () => find("space-ghost")?.click(),
     c: () => comment.focus(), p: () => points.select(), "?": () => help.showModal(),
     k: () => { if (!newer.hidden) keep(); }, r: () => { if (!newer.hidden) replace(); },
   };
