@@ -59,6 +59,9 @@ function showRobot() {
   const middle = extents.map(([low, high]) => (low + high) / 2);
   const size = Math.hypot(...extents.map(([low, high]) => high - low)) || 1;
   const floor = poses.get(robot.root)?.[11] ?? extents[2][0];
+  const { drive } = robot;
+  // the ground on which it is set down: it does not rise to get there
+  const ground = drive ? Math.min(floor, drive.mass[2] - drive.fall[0][3]) : floor;
   const failed = new Set(robot.pins.map((pin) => pin.link));
 
   // --- WebGL ---
@@ -310,8 +313,8 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
     gl.uniformMatrix4fv(at.camera, false, projection());
-    const ground = Transforms.along([0, 0, 1], floor);
-    draw({ solid: grid, pose: ground, size: [1, 1, 1], rgba: colour("--line") }, 0, gl.LINES);
+    const under = Transforms.along([0, 0, 1], began ? ground : floor);
+    draw({ solid: grid, pose: under, size: [1, 1, 1], rgba: colour("--line") }, 0, gl.LINES);
     drawSolids();
     drawSigns();
     placePins();
@@ -487,14 +490,13 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
   });
 
   // --- Drive: it comes to rest on the ground, then its wheels turn ---
-  const { drive } = robot;
   const driving = find("drive");
   let began = 0; // when, in milliseconds
   const driveTo = (/** @type {number} */ seconds) => {
     if (!drive) {
       return true;
     }
-    const { pose, turned, isOver } = Drive.after(drive, floor, size, seconds);
+    const { pose, turned, isOver } = Drive.after(drive, ground, size, seconds);
     carried = pose;
     for (const joint of drive.joints) {
       positions.set(joint, (START.get(joint) || 0) + turned);
