@@ -445,8 +445,12 @@ def test_robot_of_each_item_is_shown_in_space(open_page: Open, opened: Path) -> 
         press(page, "g")
         assert page.locator("#space-ghost").get_attribute("aria-pressed") != shows
         press(page, "n", "4")
+        assert page.locator("#space-canvas").is_visible()
+        while page.locator("#form").count():
+            press(page, "n")
+            rest(page)
         assert page.evaluate("() => RobotView") is None
-        press(page, "b", "1")
+        page.goto(f"{review.url}1")
         assert page.locator("#space-canvas").is_visible()
         assert (
             page.evaluate("() => RobotView.poses().size")

@@ -1,7 +1,7 @@
 """What a person looks at to give a mark: the submission is read again, as it was graded.
 
-Of a question it is the answer, of evidence the pictures, of the robot or package the views of the
-robot and the file around the line that decides.
+Of a question it is the answer, of evidence the pictures, of the robot or package the file around
+the line that decides; and the views of the robot, unless several students have the same answer.
 """
 
 from collections.abc import Iterator, Sequence
@@ -79,8 +79,9 @@ def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
     documents = loose_lines(result, submission, is_anonymous=bool(first.number))
     if documents:
         opened = opened._replace(answer=documents, title="Documents")
-    if not is_manual(result):
-        opened = _with_robot(opened, report, results, is_anonymous=bool(first.number))
+    if not is_manual(result) or not item.members[1:]:
+        shown = [] if is_manual(result) else results
+        opened = _with_robot(opened, report, shown, is_anonymous=bool(first.number))
     if first.number:
         return _anonymous(opened, item, result)
     return opened
