@@ -6,7 +6,7 @@ from math import atan2, hypot
 from typing import Any
 
 from grader.base.text import capitalised
-from grader.base.transforms import Transform, Vector, cross, minus, rotation_about
+from grader.base.transforms import Rotation, Transform, Vector, cross, minus, rotation_about
 from grader.lab.checks.driving import plan_drive
 from grader.report.drawing.picture import Picture, Scene
 from grader.ros.urdf.kinematics import Configuration
@@ -14,12 +14,13 @@ from grader.ros.urdf.model import Link, Mesh, Origin, Visual
 from grader.ros.urdf.resting import level_directions
 from grader.ros.urdf.rolling import Course, middle_of
 
+_MAX_COORDINATE = 1e5  # metres, and rad/s
 _DIGITS = 5  # of metres and parts of 1
 
 
 def drive_data(picture: Picture) -> dict[str, Any] | None:
     """Return how the robot comes to rest on level ground and then drives; None if it has no wheel,
-    or it cannot be determined how it stands.
+    it cannot be determined how it stands, or it is too large.
 
     All is in the frame of the scene. `mass` is the centre of mass, which moves straight down;
     `fall` has four numbers for each pose on the way: where up is, and the height of the mass above
@@ -42,6 +43,8 @@ def drive_data(picture: Picture) -> dict[str, Any] | None:
         motion = _find_motion(drive.course, T_rest_base, drive.standing.rest.mass_centre)
         joints = [wheel.joint.name for wheel in drive.course.wheels]
     mass = T_frame_base.apply(drive.standing.rest.mass_centre)
+    if not all(abs(value) < _MAX_COORDINATE for value in (*mass, *motion, *fall[0], *fall[-1])):
+        return None
     text = f"{drive.text}, if its meshes are boxes" if has_boxes else drive.text
     return {
         "mass": rounded(mass, _DIGITS),
@@ -79,7 +82,7 @@ def _boxed(link: Link, scene: Scene) -> Link:
     return replace(link, visuals=tuple(shown), collisions=())
 
 
-def _upright(up: Vector) -> Any:
+def _upright(up: Vector) -> Rotation:
     """Return the shortest rotation that turns a direction upward, as the script has it."""
     flat = hypot(up[0], up[1])
     axis = (up[1] / flat, -up[0] / flat, 0.0) if flat else (1.0, 0.0, 0.0)

@@ -8,7 +8,7 @@ the normal of that plane. Lengths are metres, poses are in the frame of the base
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from itertools import combinations, product
-from math import atan2, cos, degrees, hypot, inf, pi, radians, sin
+from math import atan2, cos, degrees, hypot, inf, isfinite, pi, radians, sin
 from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
@@ -33,7 +33,7 @@ _NUDGE = 2e-3  # radians by which a robot that balances is pushed
 _BALANCE = 1e-6  # metres from an edge of the contacts within which a mass balances on it
 _RIM_POINTS = 24  # of a cylinder that stands on its flat side
 _FALL_STEP = 15.0  # degrees
-_MAX_FALL = 12
+_MAX_FALL = 12  # poses
 _FLAT = 1e-3  # the sine of the angle from which on a cylinder stands on one point of its rim
 
 
@@ -178,7 +178,8 @@ def list_fall(body: _RestingBody) -> list[tuple[Vector, float]]:
         if len(ups) > 1 and degrees_between(ups[-2], ups[-1]) < _FALL_STEP / 4.0:
             ups.pop()  # a large ball rolls far in many small steps
         before = ups[-1] if ups else up
-        steps = int(degrees_between(before, up) / _FALL_STEP) + 1
+        angle = degrees_between(before, up)
+        steps = int(angle / _FALL_STEP) + 1 if isfinite(angle) else 1
         for number in range(1, steps + 1):
             way = minus(up, before)
             ups.append(unit(moved(before, [(way, number / steps)])) or up)

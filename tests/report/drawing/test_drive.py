@@ -122,3 +122,19 @@ def test_a_robot_rests_on_the_boxes_of_its_meshes() -> None:
     )
     drive = drive_of(BODY, LEFT, RIGHT, solid, meshes=shown)
     assert drive["text"].endswith("it drives straight ahead.")
+
+
+@pytest.mark.parametrize("value", ["inf", "nan", "1e308", "1e200", "1e-320", "0", "-1", "ten"])
+@pytest.mark.parametrize("number", range(8))
+def test_every_number_of_a_student_is_data(number: int, value: str) -> None:
+    """Numbers that are too large, or none, leave data that JSON can have."""
+    values = ["0.05", "0.03", "0.1", "0.4", "0.1", "1", "1", "0.06"]
+    values[number] = value
+    radius, length, y, box, mass_at, axis, ground, ball = values
+    wheel = f'<cylinder radius="{radius}" length="{length}"/>'
+    drive_of(
+        base(f"{box} 0.2 0.05", f"{mass_at} 0 {mass_at}"),
+        part("left", wheel, f"0 {y} 0", "-1.5707963 0 0", f'<axis xyz="0 0 {axis}"/>'),
+        part("right", wheel, "0 -0.1 0", f"-1.5707963 0 {ground}", '<axis xyz="0 0 1"/>'),
+        part("ball", f'<sphere radius="{ball}"/>', "-0.2 0 0"),
+    )
