@@ -22,7 +22,6 @@ from grader.lab.checks.outcome import (
 from grader.lab.checks.toml_types import Direction, NonNegative
 from grader.lab.checks.visuals import axis_place, origin_place
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.rolling import Course
 from grader.ros.urdf.shapes import UnknownShape
 from grader.ros.urdf.standing_robot import StandingRobot
 
@@ -70,13 +69,17 @@ def describe_driving(robot: Configuration, wheels: Sequence[str]) -> str:
 class Drive(NamedTuple):
     """How a robot comes to rest on level ground, and where its wheels drive it then.
 
-    `plan_drive` makes it for pictures. `course` is None where the wheels do not drive the robot, or
-    it cannot be determined where; `text` says in one line what one sees.
+    `plan_drive` makes it for pictures. `text` says in one line what one sees. While the `joints`
+    turn at 1 rad/s, `velocity` (m/s, in the frame of the base) is that of the centre of mass at
+    first, and `turn` (rad/s) how fast it turns to the left. Without joints, the wheels do not drive
+    the robot, or it cannot be determined where.
     """
 
     standing: StandingRobot
-    course: Course | None
     text: str
+    velocity: Vector = (0.0, 0.0, 0.0)
+    turn: float = 0.0
+    joints: tuple[str, ...] = ()
 
 
 def plan_drive(
@@ -89,8 +92,8 @@ def plan_drive(
     """Return how a robot stands, and where these wheels drive it, as `stands_level` and
     `drives_straight` compute it. None if it cannot be determined how it stands, or it has no wheel.
 
-    Without names of links that it has, its wheels are all links that roll: a continuous joint turns
-    them, they are round about it, and touch the ground.
+    Without names of links that it has, its wheels are all links that a continuous joint turns about
+    a level axis, and that are round about it.
     """
     named = [link for link in wheels if robot.robot.has_link(link)]
     if named != [*wheels] or not named:
@@ -103,19 +106,24 @@ def plan_drive(
     except _NOT_KNOWN:
         return None
     if standing.rest.has_fallen:
-        return Drive(standing, None, "on level ground, it tips over")
+        return Drive(standing, "on level ground, it tips over")
     text = _describe_rest(standing)
     try:
         driven = _Driven(standing, rollers)
         driven.refuse_crossed()
     except _NOT_KNOWN:
-        return Drive(standing, None, text)
-    course, faults = None, driven.find_idle_wheels()
-    if not faults:
-        course = driven.measure_course(forward)
-        faults = driven.find_course_faults(course, _OFF, _OFF)
-    moves = "; ".join(fault.text for fault in faults) or "it drives straight ahead"
-    return Drive(standing, course, f"{text}; when its wheels turn forward, {moves}")
+        return Drive(standing, text)
+    idle = driven.find_idle_wheels()
+    if idle:
+        return Drive(standing, "; ".join([text, *(fault.text for fault in idle)]))
+    faults = [fault.text for fault in driven.find_course_faults(forward, _OFF, _OFF)]
+    moves = "; ".join(faults) or "it drives straight ahead"
+    text = f"{text}; when its wheels turn forward, {moves}"
+    turning = driven.wheels
+    course = standing.drive(turning, [1.0] * len(turning), forward)
+    velocity = course.velocity_of(standing.rest.mass_centre)
+    joints = tuple(wheel.joint.name for wheel in turning)
+    return Drive(standing, text, velocity, course.turn, joints)
 
 
 def _find_rolling_links(robot: Configuration) -> list[str]:
@@ -248,8 +256,7 @@ def drives_straight(
         return _judge(standing, faults, message, faults[0], by_mass=False)
     driven.refuse_crossed()
     faults = driven.find_uneven_wheels()
-    course = driven.measure_course(forward)
-    faults += driven.with_culprits(driven.find_course_faults(course, angle, turn), forward)
+    faults += driven.with_culprits(driven.find_course_faults(forward, angle, turn), forward)
     fine = _RobotFault("", 0.0, angle, "deg")
     return _judge(standing, faults, message, fine, by_mass=False)
 
@@ -347,7 +354,7 @@ class _Driven:
         if rollers is not None and len(rollers) != len(standing.named):
             raise RubricError(("rollers must have an angle for each of the wheels",))
         self._standing, self._has_rollers = standing, rollers is not None
-        self._wheels = standing.wheels(rollers)
+        self.wheels = standing.wheels(rollers)
 
     def find_idle_wheels(self) -> list[_RobotFault]:
         """Return the faults of wheels that drive nothing: they are in the air, or lie flat."""
@@ -355,7 +362,7 @@ class _Driven:
         if standing.rest.has_fallen:
             return [_RobotFault("it tips over")]
         faults = []
-        for wheel in self._wheels:
+        for wheel in self.wheels:
             height = standing.height(wheel.link)
             off_level = abs(90.0 - degrees_between(wheel.axis, standing.rest.up))
             if height > _HANGING + SLACK:
@@ -373,7 +380,7 @@ class _Driven:
     def find_uneven_wheels(self) -> list[_RobotFault]:
         """Return the faults of wheels that are not round about their joints."""
         faults = []
-        for wheel in self._wheels:
+        for wheel in self.wheels:
             uneven = wheel.measure_roundness(self._standing.rest.up)
             if uneven > _ROUND + SLACK:
                 text = (
@@ -387,10 +394,10 @@ class _Driven:
         """Raise NotDecided for more than two wheels with axes that cross, which may have
         rollers.
         """
-        if self._has_rollers or len(self._wheels) < 3:
+        if self._has_rollers or len(self.wheels) < 3:
             return
-        first = self._wheels[0]
-        for wheel in self._wheels[1:]:
+        first = self.wheels[0]
+        for wheel in self.wheels[1:]:
             off = degrees_between(first.axis, wheel.axis)
             if min(off, 180.0 - off) > _CROSSED:
                 raise NotDecided(
@@ -399,14 +406,12 @@ class _Driven:
                     "the axes of wheels cross",
                 )
 
-    def measure_course(self, forward: Vector) -> Course:
-        """Return the way that the robot drives while all wheels turn at one rate."""
-        rates = [1.0] * len(self._wheels)
-        return self._standing.drive(self._wheels, rates, forward)
-
-    def find_course_faults(self, course: Course, angle: float, turn: float) -> list[_RobotFault]:
-        """Return what is wrong with a way that the robot drives."""
-        at = axis_place(self._wheels[0].joint)
+    def find_course_faults(self, forward: Vector, angle: float, turn: float) -> list[_RobotFault]:
+        """Return what is wrong with the way that the robot drives while all wheels turn at one
+        rate.
+        """
+        course = self._standing.drive(self.wheels, [1.0] * len(self.wheels), forward)
+        at = axis_place(self.wheels[0].joint)
         faults = []
         if course.speed > _SLOW * course.rim_speed:
             off, turned = course.off, degrees(course.turn) / course.speed
@@ -426,7 +431,7 @@ class _Driven:
                 text = f"it turns on the spot to the {_side(course.turn)}"
             faults.append(_RobotFault(text, course.speed, None, "m/s", at))
         slips: dict[str, float] = {}
-        for wheel, slip in zip(self._wheels, course.slips, strict=True):
+        for wheel, slip in zip(self.wheels, course.slips, strict=True):
             if slip > (_MAX_SLIP + SLACK) * wheel.radius:
                 slips[wheel.link] = slip / max(wheel.radius, slip)
         if slips:
@@ -440,13 +445,13 @@ class _Driven:
         """Return what is wrong with the way that the robot turns while its wheels turn against each
         other.
         """
-        sides = self._standing.drive(self._wheels, [0.0] * len(self._wheels), X_AXIS).sides
+        sides = self._standing.drive(self.wheels, [0.0] * len(self.wheels), X_AXIS).sides
         rates = [-1.0 if side > 0.0 else 1.0 for side in sides]
-        course = self._standing.drive(self._wheels, rates, X_AXIS)
+        course = self._standing.drive(self.wheels, rates, X_AXIS)
         width, rim_speed = max(sides) - min(sides), course.rim_speed
         if not width > _OFF_CENTRE * rim_speed:
             return [_RobotFault("its wheels are not on two sides, so it cannot turn")]
-        at = axis_place(self._wheels[0].joint)
+        at = axis_place(self.wheels[0].joint)
         faults = []
         if abs(course.turn) * width / 2.0 <= _SLOW * rim_speed:
             text = "it does not turn"
@@ -477,13 +482,13 @@ class _Driven:
         """Return the links of the wheels that do not drive as the others, each with how it
         differs, and where to look.
         """
-        rates = [1.0] * len(self._wheels)
-        headings = self._standing.drive(self._wheels, rates, forward).headings
+        rates = [1.0] * len(self.wheels)
+        headings = self._standing.drive(self.wheels, rates, forward).headings
         culprits: list[tuple[str, str, LazyLocation | None]] = []
         if any(abs(heading) > _ANGLE for heading in headings):
             if max(headings) - min(headings) <= _ANGLE:  # all alike
                 return []
-            for wheel, off in zip(self._wheels, headings, strict=True):
+            for wheel, off in zip(self.wheels, headings, strict=True):
                 at = axis_place(wheel.joint)
                 if abs(off) > 90.0:
                     culprits.append((wheel.link, "drives it backward", at))
@@ -491,9 +496,9 @@ class _Driven:
                     how = f"points {in_degrees(abs(off))} to the {_side(off)}"
                     culprits.append((wheel.link, how, at))
             return culprits
-        radii = sorted(wheel.radius for wheel in self._wheels)
+        radii = sorted(wheel.radius for wheel in self.wheels)
         usual = radii[len(radii) // 2]
-        for wheel in self._wheels:
+        for wheel in self.wheels:
             share = wheel.radius / usual - 1.0
             if abs(share) > _OTHER_SIZE:
                 size = "larger" if share > 0.0 else "smaller"

@@ -6,13 +6,11 @@ from math import atan2, hypot
 from typing import Any
 
 from grader.base.text import capitalised
-from grader.base.transforms import Rotation, Transform, Vector, cross, minus, rotation_about
+from grader.base.transforms import Rotation, Transform, Vector, rotation_about
 from grader.lab.checks.driving import plan_drive
 from grader.report.drawing.picture import Picture, Scene
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Link, Mesh, Origin, Visual
-from grader.ros.urdf.resting import level_directions
-from grader.ros.urdf.rolling import Course, middle_of
 
 _MAX_COORDINATE = 1e5  # metres, and rad/s
 _DIGITS = 5  # of metres and parts of 1
@@ -37,11 +35,12 @@ def drive_data(picture: Picture) -> dict[str, Any] | None:
     for up, height in drive.standing.list_fall():
         fall.append(rounded((*T_frame_base.rotate(up), height), _DIGITS))
     motion: Sequence[float] = ()
-    joints: list[str] = []
-    if drive.course is not None:
-        T_rest_base = Transform(_upright(T_frame_base.rotate(drive.course.up))) @ T_frame_base
-        motion = _find_motion(drive.course, T_rest_base, drive.standing.rest.mass_centre)
-        joints = [wheel.joint.name for wheel in drive.course.wheels]
+    if drive.joints:
+        T_rest_base = (
+            Transform(_upright(T_frame_base.rotate(drive.standing.rest.up))) @ T_frame_base
+        )
+        x, y, _ = T_rest_base.rotate(drive.velocity)
+        motion = (x, y, drive.turn)
     mass = T_frame_base.apply(drive.standing.rest.mass_centre)
     if not all(abs(value) < _MAX_COORDINATE for value in (*mass, *motion, *fall[0], *fall[-1])):
         return None
@@ -50,7 +49,7 @@ def drive_data(picture: Picture) -> dict[str, Any] | None:
         "mass": rounded(mass, _DIGITS),
         "fall": fall,
         "motion": rounded(motion, _DIGITS),
-        "joints": joints,
+        "joints": [*drive.joints],
         "text": f"{capitalised(text)}.",
     }
 
@@ -87,17 +86,6 @@ def _upright(up: Vector) -> Rotation:
     flat = hypot(up[0], up[1])
     axis = (up[1] / flat, -up[0] / flat, 0.0) if flat else (1.0, 0.0, 0.0)
     return rotation_about(axis, atan2(flat, up[2]))
-
-
-def _find_motion(course: Course, T_rest_base: Transform, mass_centre: Vector) -> Vector:
-    """Return the velocity of the mass along x and y of the ground, and the rate of the turn."""
-    ahead, aside = map(T_rest_base.rotate, level_directions(course.up))
-    middle = middle_of([wheel.contact for wheel in course.wheels])
-    lever = T_rest_base.rotate(minus(mass_centre, middle))
-    swept = cross((0.0, 0.0, course.turn), lever)
-    x = course.forward * ahead[0] + course.left * aside[0] + swept[0]
-    y = course.forward * ahead[1] + course.left * aside[1] + swept[1]
-    return (x, y, course.turn)
 
 
 def rounded(values: Iterable[float], digits: int = 8) -> list[float]:

@@ -19,7 +19,6 @@ from grader.report.drawing.views import (
     points_of,
 )
 from grader.ros.urdf.model import Box, Cylinder
-from grader.ros.urdf.shapes import bounding_radius
 
 Still = tuple[tuple[str, str], ...]  # the colour and the path data of each face
 
@@ -39,7 +38,7 @@ def still_of(scene: Scene) -> Still:
         return ()
     panel = _panel_of(scene)
     left, shown = MAX_SIZE, dict[Body, list[tuple[str, str]]]()
-    for body in sorted(scene.bodies, key=lambda one: -bounding_radius(one.shape)):
+    for body in sorted(scene.bodies, key=lambda one: -np.ptp(points_of(one), axis=0).max()):
         faces = [_face(body, panel, normal, points) for normal, points in _faces_of(body)]
         size = sum(len(fill) + len(data) + 8 for fill, data in faces)
         if size <= left:

@@ -105,6 +105,15 @@ class Course(NamedTuple):
         angle = degrees(atan2(dot(goal, y), dot(goal, x)))
         return cls(up, tuple(wheels), angle, *motion, tuple(slips))
 
+    def velocity_of(self, point: Vector) -> Vector:
+        """Return the velocity of a point of the base, in m/s."""
+        forward, left = level_directions(self.up)
+        middle = middle_of([wheel.contact for wheel in self.wheels])
+        swept = cross(self.up, minus(point, middle))
+        return moved(
+            (0.0, 0.0, 0.0), [(forward, self.forward), (left, self.left), (swept, self.turn)]
+        )
+
     @property
     def speed(self) -> float:
         """The speed of the middle between the contacts, m/s."""

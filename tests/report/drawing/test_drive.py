@@ -82,7 +82,7 @@ def test_a_wheel_that_hangs_does_not_drive() -> None:
         BODY, high, RIGHT, BALL, part("foot", '<sphere radius="0.05"/>', "0 0.2 -0.05")
     )
     assert (drive["joints"], drive["motion"]) == ([], [])
-    assert "'left' is 30 mm above the ground" in drive["text"]
+    assert drive["text"].endswith("and 'foot'; 'left' is 30 mm above the ground.")
 
 
 def test_page_of_a_robot_without_wheels_has_no_drive() -> None:
