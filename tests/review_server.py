@@ -11,8 +11,9 @@ from typing import Any, NamedTuple
 
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.review_items import ReviewFilter
-from grader.classroom.review.review_server import HOST, LocalServer, ReviewPage
+from grader.classroom.review.review_server import ReviewPage
 from grader.classroom.review.review_session import ReviewSession
+from grader.report.local_server import HOST, LocalServer
 
 _TIMEOUT = 60.0  # seconds, of a machine that is busy
 

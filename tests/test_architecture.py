@@ -62,6 +62,7 @@ ROOMS = {
         "explanations formats",
         "writing invocation",
         "open_browser repository",
+        "local_server",
     ),
     "classroom": (
         "tables",

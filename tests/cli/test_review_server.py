@@ -14,8 +14,8 @@ from urllib.request import urlopen
 import pytest
 
 from grader.classroom.gradebook.gradebook import Gradebook
-from grader.classroom.review import review_server
-from grader.classroom.review.review_server import HOST, MAX_BODY
+from grader.report import local_server
+from grader.report.local_server import HOST, MAX_BODY
 from tests.classroom.gradebooks import (
     ENVIRONMENT,
     PNG,
@@ -392,7 +392,7 @@ def test_faults_are_messages(review: Review, book: Path, monkeypatch: pytest.Mon
 
 def test_a_request_without_end_is_disconnected(book: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit of time is that of the whole request, not of each part that arrives; others are answered meanwhile."""
-    monkeypatch.setattr(review_server, "_PATIENCE", 0.5)
+    monkeypatch.setattr(local_server, "_PATIENCE", 0.5)
     with (
         running(book) as review,
         socket.create_connection((HOST, review.port), timeout=0.01) as slow,

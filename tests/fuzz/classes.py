@@ -12,13 +12,14 @@ from pathlib import Path
 from grader.base.errors import RubricError
 from grader.classroom.lms.fill import FillOptions, fill
 from grader.classroom.lms.forms import FORMS
-from grader.classroom.review import review_server
-from grader.classroom.review.review_server import LocalServer, ReviewPage
+from grader.classroom.review.review_server import ReviewPage
 from grader.classroom.review.review_session import ReviewSession
 from grader.classroom.roster.roster import People, read_roster
 from grader.classroom.tables import Table, TableRow, _split_rows, read_table
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import read_rubric
+from grader.report import local_server
+from grader.report.local_server import LocalServer
 from tests.classroom.gradebooks import ROSTER, batch, lab_text, make_class
 from tests.classroom.lms.lms_class import (
     CLASS,
@@ -148,7 +149,7 @@ def requests(data: bytes) -> None:
     server, book = _server()
     before = _marks(book)
     connection = _Connection(data)
-    review_server._Handler(connection, ("127.0.0.1", 1), server)  # type: ignore[arg-type]
+    local_server._Handler(connection, ("127.0.0.1", 1), server)  # type: ignore[arg-type]
     for status in re.findall(rb"(?:\A|\n)HTTP/1\.0 (\d{3}) ", bytes(connection.sent)):
         assert int(status) in _STATUSES, connection.sent
     if _marks(book) != before:
@@ -177,7 +178,7 @@ class _Server(LocalServer):
     """A server without a port."""
 
     def server_bind(self) -> None:
-        self.server_address = review_server.HOST, 80
+        self.server_address = local_server.HOST, 80
 
     def server_activate(self) -> None:
         """Nobody can connect."""
@@ -223,5 +224,5 @@ def sent_requests() -> Iterator[bytes]:
 
 def _answer(data: bytes) -> bytes:
     connection = _Connection(data)
-    review_server._Handler(connection, ("127.0.0.1", 1), _server()[0])  # type: ignore[arg-type]
+    local_server._Handler(connection, ("127.0.0.1", 1), _server()[0])  # type: ignore[arg-type]
     return bytes(connection.sent)
