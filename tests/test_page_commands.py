@@ -95,6 +95,7 @@ PLACEHOLDERS = {
 IN_TEXT = {  # commands in the text that are not run here: a test that does, or the reason
     "grader grade src/my_robot --watch": "cli/test_watch.py",
     "grader inspect . --watch": "cli/test_watch.py",
+    "grader view src/my_robot --rubric lab6": "cli/test_view.py",
     "grader --install-completion": "changes the files of the shell; corpus/refusals.toml",
     "grader rubric new my_lab.toml --from solution.urdf": "docs/index.md has the same",
 }

@@ -7,6 +7,7 @@ from html import escape
 from pathlib import Path
 from threading import Thread
 
+from grader.base.errors import InputError
 from grader.report.writing import save
 
 _PRIVATE = 0o600
@@ -14,19 +15,21 @@ _PRIVATE = 0o600
 
 @contextmanager
 def opened_in_browser(address: str, file: Path) -> Iterator[bool]:
-    """Open an address while a block runs; yields whether there is a browser that a window shows.
+    """Open an address while a block runs; yields whether there is a browser that a window shows,
+    and the file could be written.
 
     It opens a private file that leads to the address: all users of the machine see the arguments of
     a process. Some browsers cannot see the folder for temporary files.
     """
-    if not _has_window():
+    page = f'<!DOCTYPE html><meta http-equiv="refresh" content="0; url={escape(address)}">\n'
+    is_written = False
+    if _has_window():
+        with suppress(InputError):
+            save(file, page, mode=_PRIVATE)
+            is_written = True
+    if not is_written:
         yield False
         return
-    save(
-        file,
-        f'<!DOCTYPE html><meta http-equiv="refresh" content="0; url={escape(address)}">\n',
-        mode=_PRIVATE,
-    )
     try:
         Thread(
             target=webbrowser.open, args=[file.resolve().as_uri()], daemon=True

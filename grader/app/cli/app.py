@@ -23,6 +23,7 @@ from grader.report.writing import write_stdout
 COMMANDS = {
     "grade": "grade",
     "inspect": "inspect",
+    "view": "view",
     "batch": "batch",
     "mark": "review",
     "review": "review",

@@ -30,6 +30,7 @@ _FIX = (
     "Write the graded file with all proven edits to a file; of a folder or an archive, the "
     "changed files to a folder."
 )
+_WATCH = "Grade again after every change, until Ctrl-C; grader view shows the robot."
 _EXPECT = "Refuse a rubric with another hash (see grader rubric show)."
 
 
@@ -57,9 +58,7 @@ def grade(
         typer.Option(metavar="LEVEL", help="Maximum detail of hints: none, place, cause or edit."),
     ] = None,
     fix: Annotated[Path | None, typer.Option(metavar="FILE|FOLDER", help=_FIX)] = None,
-    watch: Annotated[
-        bool, typer.Option("--watch", help="Grade again after every change, until Ctrl-C.")
-    ] = False,
+    watch: Annotated[bool, typer.Option("--watch", help=_WATCH)] = False,
 ) -> int:
     """Grade a submission against a rubric.
 

@@ -15,6 +15,7 @@ from grader.ros.known.releases import Release
 _PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
 _ROBOT = "Show this robot of several whole: its name, or the end of its path."
 _JOINT = "Position of a joint, in radians or metres; repeatable."
+_WATCH = "Inspect again after every change, until Ctrl-C; grader view shows the robot."
 _SELECT = "Show only problems whose code begins so, such as REF or REF004; repeatable."
 _IGNORE = "Do not show problems whose code begins so; repeatable."
 _RELATIVE = "The frame of the poses; default: the root."
@@ -38,9 +39,7 @@ def inspect(
     save: SaveOption = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     arg: ArgOption = None,
-    watch: Annotated[
-        bool, typer.Option("--watch", help="Inspect again after every change, until Ctrl-C.")
-    ] = False,
+    watch: Annotated[bool, typer.Option("--watch", help=_WATCH)] = False,
     select: Annotated[
         list[str] | None, typer.Option(metavar="CODE", help=_SELECT, autocompletion=offer_codes)
     ] = None,

@@ -82,4 +82,16 @@ SaveOption = Annotated[
 ByOption = Annotated[
     str, typer.Option("--by", metavar="NAME", help="Your name in reports; default: none.")
 ]
+PortOption = Annotated[
+    int,
+    typer.Option(
+        "--port",
+        metavar="N",
+        min=0,
+        max=65535,
+        show_default=False,
+        help="The port of the page; default: any free port.",
+    ),
+]
+NoBrowserOption = Annotated[bool, typer.Option("--no-browser", help="Only print the address.")]
 FormatOption = Annotated[OutputFormat, typer.Option("--format", help="Output format.")]

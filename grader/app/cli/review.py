@@ -8,14 +8,19 @@ from typing import Annotated
 import typer
 
 from grader.app.cli.completion import offer_marked, offer_students
-from grader.app.cli.options import AnswersOption, ByOption, GradebookOption
+from grader.app.cli.options import (
+    AnswersOption,
+    ByOption,
+    GradebookOption,
+    NoBrowserOption,
+    PortOption,
+)
 from grader.app.cli.streams import TERMINAL, warn
 from grader.base.errors import InputError
 
 _CRITERION = "The id of the criterion; total: the whole submission; deadline: the student's own."
 _POINTS = "The points; with total also excused; with deadline a time; - withdraws a mark."
 _SHEET = "Write the open items into a new CSV file instead."
-_PORT = "The port of the page; default: any free port."
 
 
 def mark(
@@ -96,12 +101,8 @@ def review(
     by: ByOption = "",
     answers: AnswersOption = None,
     sheet: Annotated[Path | None, typer.Option(metavar="FILE", help=_SHEET)] = None,
-    port: Annotated[
-        int, typer.Option(metavar="N", min=0, max=65535, show_default=False, help=_PORT)
-    ] = 0,
-    no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Only print the address.")
-    ] = False,
+    port: PortOption = 0,
+    no_browser: NoBrowserOption = False,
 ) -> str:
     """Grade what needs manual grading on a page in the browser.
 

@@ -73,7 +73,7 @@ def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
     saves = request.saves
     check_saves(saves, (), request.path)
     if not request.watch:
-        inspection = _inspect(request, terminal.warn)
+        inspection = inspect_path(request, terminal.warn)
         _show_and_save(inspection, request, terminal)
         return inspection.is_passed
     # Late: few inspections are watched.
@@ -83,7 +83,7 @@ def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
     is_first = True
 
     def work() -> tuple[Inspection, Sequence[Path]]:
-        inspection = _inspect(request, terminal.warn)
+        inspection = inspect_path(request, terminal.warn)
         return inspection, inspection.besides
 
     def show(inspection: Inspection) -> None:
@@ -105,7 +105,7 @@ def _show_and_save(inspection: Inspection, request: InspectRequest, terminal: Te
     save_texts(texts, request.path, (*robots, *inspection.besides))
 
 
-def _inspect(request: InspectRequest, warn: Warn) -> Inspection:
+def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
     """Return the inspection of the robots and the packages at a path; of one robot, if it is named.
     Raises GraderError.
     """

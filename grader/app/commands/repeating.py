@@ -56,7 +56,7 @@ def repeat_on_change(
     """
     gc.enable()  # unlike other commands, this one may run for hours
     terminal.warn(f"watching {printable_path(watched[0])}; stop with Ctrl-C")
-    for besides in _changes(watched, frozenset(map(os.path.realpath, own))):
+    for besides in changes(watched, frozenset(map(os.path.realpath, own))):
         try:
             result, read = work()
         except (InputError, MachineError, RubricError) as error:
@@ -85,28 +85,38 @@ def drawn_rows(rows: list[Text], screen: Screen) -> str:
     return draw(print_rows, screen)
 
 
-def _changes(watched: Sequence[Path], own: Collection[str] = ()) -> Iterator[list[Path]]:
+def changes(
+    watched: Sequence[Path],
+    own: Collection[str] = (),
+    poll: float = _POLL,
+    wait: Callable[[float], object] | None = None,
+) -> Iterator[list[Path]]:
     """Yield at once and after every change of the watched files and folders, without end.
 
     What is yielded is a list for the files that were read besides, which are watched from then on.
-    `own` are the real paths of files that do not count: the reports that are written.
+
+    Args:
+        watched: The files and folders.
+        own: The real paths of files that do not count: the reports that are written.
+        poll: The seconds between two looks, at least.
+        wait: Waits for some seconds; if it returns true, the next look counts as a change.
     """
     besides: list[Path] = []
     seen: _Stamps | None = None
     before: _Stamps = {}
     looks = [math.inf]  # the times of the last two
+    is_asked: object = False
     while True:
         start = time.monotonic()
         now = _stamps([*watched, *besides], own)
         looks = [looks[-1], time.monotonic() - start]
-        pause = max(_POLL, _SHARE * min(looks))  # a look that a busy machine interrupts is longer
-        if (
-            seen is None or before == now != seen
-        ):  # what changed since the last look may be half written
+        pause = max(poll, _SHARE * min(looks))  # a look that a busy machine interrupts is longer
+        # What changed since the last look may be half written.
+        if is_asked or seen is None or before == now != seen:
             yield besides
             seen = {**_stamps(besides, own), **now}
         before = now
-        time.sleep(pause)
+        is_asked = (wait or time.sleep)(pause)
 
 
 def _stamps(paths: Iterable[Path], own: Collection[str] = ()) -> _Stamps:

@@ -77,11 +77,20 @@ def _watched(request: GradeRequest) -> list[Path]:
     refuse_watching(request.path, request.output_format)
     if request.fix is not None:
         raise GraderError("--watch writes no fix: use --fix without it")
-    file = find_rubric(request.rubric)
-    if file not in shipped_rubrics().values():
-        return [Path(request.path), file]
-    requested_rubric(request)  # an unknown part
-    return [Path(request.path)]
+    watched = files_to_watch(request.path, request.rubric)
+    if len(watched) == 1:
+        requested_rubric(request)  # an unknown part
+    return watched
+
+
+def files_to_watch(path: str, rubric: str) -> list[Path]:
+    """Return a submission, and a rubric that is no shipped one. Raises GraderError for an unknown
+    rubric.
+    """
+    file = find_rubric(rubric)
+    if file in shipped_rubrics().values():
+        return [Path(path)]
+    return [Path(path), file]
 
 
 def _show(report: Report, last: Report | None, terminal: Terminal, *, verbose: bool) -> None:

@@ -149,7 +149,8 @@ def _without_names(picture: Picture) -> Picture:
     them.
     """
     bodies = tuple(body._replace(link="") for body in picture.scene.bodies)
-    return replace(picture, scene=replace(picture.scene, bodies=bodies, missing=()), callouts=())
+    scene = replace(picture.scene, bodies=bodies, missing=(), boxed=())
+    return replace(picture, scene=scene, callouts=())
 
 
 def _deciding_place(report: Report, result: Result) -> Location | None:

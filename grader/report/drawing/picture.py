@@ -74,6 +74,15 @@ class Scene:
     bodies: tuple[Body, ...]  # the different shapes of these links
     wheels: tuple[Wheel, ...]
     missing: tuple[str, ...]  # sentences that say what is not shown, and why
+    boxed: tuple[str, ...] = ()  # the links that have boxes in place of meshes
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """Sentences that say what is not shown, or shown as a box."""
+        if not self.boxed:
+            return self.missing
+        shown = enumerated([quoted(link) for link in self.boxed], _MAX_OMITTED)
+        return (*self.missing, f"Shown as the boxes around them: the meshes of {shown}")
 
     def centre(self, link: str) -> Vector | None:
         """Return the centre of the first shape of a link, else the origin of its frame; None
@@ -122,13 +131,11 @@ def scene_of(
             else:
                 omitted.setdefault(body, {})[link.name] = None
     missing = _list_omitted(omitted)
-    boxed = dict.fromkeys(quoted(body.link) for body in bodies if body.mesh is not None)
-    if boxed:
-        shown = enumerated([*boxed], _MAX_OMITTED)
-        missing.append(f"Shown as the boxes around them: the meshes of {shown}")
+    boxed = dict.fromkeys(body.link for body in bodies if body.mesh is not None)
     if len(bodies) > _MAX_BODIES:
         missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")
-    scene = Scene(robot, frame, poses, tuple(bodies)[:_MAX_BODIES], (), tuple(missing))
+    shown = tuple(bodies)[:_MAX_BODIES]
+    scene = Scene(robot, frame, poses, shown, (), tuple(missing), tuple(boxed))
     turning = (_wheel(scene, link) for link in wheels)
     return replace(scene, wheels=tuple(wheel for wheel in turning if wheel is not None))
 

@@ -12,17 +12,19 @@ from grader.base.transforms import Transform, unit
 from grader.report.drawing.drive import drive_data, rounded
 from grader.report.drawing.picture import Body, Picture
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Box, Cylinder, Joint
+from grader.ros.urdf.model import Box, Cylinder, Joint, Mesh
 
 _MAX_LINKS = 500  # in software, a browser moves more only in seconds
 _WITHOUT_LIMITS = {"prismatic": 1.0}  # metres to each side; the other joints turn by half a turn
 
 
-def space_data(picture: Picture, cards: Mapping[str, str]) -> dict[str, Any] | None:
+def space_data(
+    picture: Picture, cards: Mapping[str, str], meshes: Mapping[Mesh, str] = {}
+) -> dict[str, Any] | None:
     """Return the robot of a picture; None if it has too many links.
 
     Poses are 12 numbers, row by row: the rotation and the translation in metres. `cards` are the
-    ids of the cards on the page, by criterion.
+    ids of the cards on the page, by criterion, and `meshes` the addresses of triangles.
     """
     scene = picture.scene
     if len(scene.poses) > _MAX_LINKS or len(scene.robot.known.joints) > _MAX_LINKS:
@@ -30,7 +32,7 @@ def space_data(picture: Picture, cards: Mapping[str, str]) -> dict[str, Any] | N
     shapes: dict[str, list[dict[str, Any]]] = {}
     for body in scene.bodies:
         T_link_frame = scene.poses[body.link].inverse()
-        shapes.setdefault(body.link, []).append(_shape(body, T_link_frame))
+        shapes.setdefault(body.link, []).append(_shape(body, T_link_frame, meshes))
     joints = [_joint(joint, scene.robot, scene.poses) for joint in scene.robot.known.joints]
     leaders = {joint["mimic"][0] for joint in joints if "mimic" in joint}
     for joint in joints:
@@ -95,7 +97,7 @@ def without_names(space: Mapping[str, Any]) -> dict[str, Any]:
     return robot
 
 
-def _shape(body: Body, T_link_frame: Transform) -> dict[str, Any]:
+def _shape(body: Body, T_link_frame: Transform, meshes: Mapping[Mesh, str]) -> dict[str, Any]:
     """Return a shape in the frame of its link; its size is that of the scaled unit shape of the
     script.
     """
@@ -107,12 +109,15 @@ def _shape(body: Body, T_link_frame: Transform) -> dict[str, Any]:
     else:
         kind, size = "sphere", (shape.radius, shape.radius, shape.radius)
     pose = T_link_frame @ body.T_frame_shape
-    return {
+    data = {
         "kind": kind,
         "size": rounded(size),
         "pose": _rows(pose),
         "rgba": rounded(body.rgba),
     }
+    if body.mesh is not None and body.mesh in meshes:
+        data["mesh"] = meshes[body.mesh]
+    return data
 
 
 def _joint(joint: Joint, robot: Configuration, poses: Mapping[str, Transform]) -> dict[str, Any]:

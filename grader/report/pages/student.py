@@ -3,13 +3,15 @@ inspection.
 """
 
 from base64 import b64encode
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import groupby
+from typing import Any
 
 from markupsafe import Markup
 
 from grader import __version__
 from grader.base.problems import Problem
+from grader.base.source import Source
 from grader.base.text import format_points, printable
 from grader.lab.documents.pictures import PDF, EmbeddedPicture
 from grader.lab.grading.criterion_pictures import may_have_pictures, pictures_of
@@ -39,15 +41,17 @@ from grader.report.inspection import (
 )
 from grader.report.locations import diff_lines, location_text, source_lines
 from grader.report.pages.shell import SPACE_SCRIPTS, Assets, render_page
+from grader.report.pages.viewing import SCRIPT, SOURCES, STYLES, ProblemCard, Viewing
 from grader.report.writers.svg import NO_PICTURE, STYLE, callout_lines, drawing_element
+from grader.ros.urdf.model import Mesh
 
 _MAX_PICTURES = 6 * 1024 * 1024  # bytes on a page
 _CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 
 
-def render_html(report: Report) -> str:
-    """Return the report as a page. Model answers are on it only if the rubric was loaded with
-    them.
+def render_html(report: Report, viewing: Viewing | None = None) -> str:
+    """Return the report as a page, of `grader view` with `viewing`. Model answers are on it only if
+    the rubric was loaded with them.
     """
     picture = picture_of(report) if not report.is_bare else None
     numbers = {}  # of the callouts in the picture, by criterion
@@ -91,7 +95,8 @@ def render_html(report: Report) -> str:
         "pictures": _pictures(report, entries),
         "no_picture": NO_PICTURE,
     }
-    return _render("student.html", values, picture, "student.js", "img-src data:", cards)
+    assets = Assets(scripts="student.js", sources="img-src data:")
+    return _render("student.html", values, picture, assets, cards, viewing)
 
 
 def _pictures(report: Report, entries: Sequence[Entry]) -> Mapping[str, list[tuple[str, str]]]:
@@ -124,8 +129,10 @@ def _part_cards(report: Report) -> list[tuple[str, str, list[CriteriaGroup]]]:
     return cards
 
 
-def inspection_html(inspection: Inspection) -> str:
-    """Return the inspection as an HTML page, with the joints at the given positions."""
+def inspection_html(inspection: Inspection, viewing: Viewing | None = None) -> str:
+    """Return the inspection as an HTML page, with the joints at the given positions; of `grader
+    view` with `viewing`.
+    """
     robot = inspection.robot
     configuration = robot.configuration if robot is not None else None
     path = robot.path if robot is not None else inspection.path
@@ -138,7 +145,7 @@ def inspection_html(inspection: Inspection) -> str:
         "extent": inspection.extent.words if inspection.extent is not None else "",
         "verdict": _CLASSES.get(look_of(inspection), "failed"),
         "problems": [
-            _problem_card(problem, inspection) for problem in inspection.problems[:MAX_LISTED]
+            problem_card(problem, inspection.source) for problem in inspection.problems[:MAX_LISTED]
         ],
         "lists": [("Robots", lines)] if robot is None and lines else lists(robot),
     }
@@ -146,32 +153,43 @@ def inspection_html(inspection: Inspection) -> str:
     meshes = robot.meshes if robot is not None else None
     wheels = robot.wheels if robot is not None else ()
     picture = plain_picture(configuration, relative_to, meshes, wheels)
-    return _render("inspection.html", values, picture)
+    return _render("inspection.html", values, picture, Assets(), {}, viewing)
 
 
-def _problem_card(problem: Problem, inspection: Inspection) -> tuple[str, str, object]:
-    """Return the severity of a problem, its line, and its place in the source."""
+def problem_card(problem: Problem, source_of: Callable[[str], Source | None]) -> ProblemCard:
+    """Return a problem with its line, and its place in the source."""
     line = content.problem_line(problem)
-    return problem.severity, line, source_lines(problem.location, inspection.source)
+    return ProblemCard(problem.severity, line, source_lines(problem.location, source_of))
 
 
 def _render(
     template: str,
     values: Mapping[str, object],
     picture: Picture | None,
-    script: str = "",
-    sources: str = "",
-    cards: Mapping[str, str] = {},
+    assets: Assets,
+    cards: Mapping[str, str],
+    viewing: Viewing | None,
 ) -> str:
     """Return a page about the robot of a picture, if there is one; `cards` are the entries of its
     criteria.
     """
     drawn = drawing_element(picture, legend=False) if picture is not None else ""
     views = Markup(drawn)  # noqa: S704  an element, whose text is escaped
-    space = space_data(picture, cards) if picture is not None else None
-    scripts = f"{script} {SPACE_SCRIPTS}" if space is not None else script
-    assets = Assets("text.css robot.css student.css", scripts, STYLE if drawn else "", sources)
+    meshes: Mapping[Mesh, str] = {}
+    if picture is not None and viewing is not None:
+        picture, meshes = viewing.with_meshes(picture)
+    space = space_data(picture, cards, meshes) if picture is not None else None
     legend = callout_lines(picture) if picture is not None else []
     shown = {"picture": picture, "views": views, "legend": legend, "has_space": space is not None}
-    data = {"robot": space} if space is not None else {}
-    return render_page(template, {**values, **shown}, data, assets)
+    data: dict[str, Any] = {"robot": space} if space is not None else {}
+    scripts, styles, rules = assets.scripts, "text.css robot.css student.css", STYLE
+    if viewing is not None:  # the same for each version: the policy of a page stays
+        scripts, styles = f"{scripts} {SPACE_SCRIPTS} {SCRIPT}", f"{styles} {STYLES}"
+        assets = assets._replace(sources=SOURCES)
+        data["view"] = viewing.data
+    elif space is not None:
+        scripts = f"{scripts} {SPACE_SCRIPTS}"
+    if not drawn and viewing is None:
+        rules = ""
+    assets = assets._replace(scripts=scripts, styles=styles, rules=rules)
+    return render_page(template, {**values, **shown, "viewing": viewing}, data, assets)

@@ -129,7 +129,7 @@ def callout_lines(picture: Picture) -> list[str]:
         what = f"{callout.number}: {callout.link or 'the robot'}"
         cost = f"{points_of(callout.results)} lost"
         lines.append(f"{what}: {cost}{place}, {enumerated(callout.names)}.")
-    lines += picture.scene.missing
+    lines += picture.scene.remarks
     if not picture.scene.bodies:
         lines.append(_NO_SHAPES)
     return [printable(line) for line in lines]

@@ -1,6 +1,7 @@
 """The triangles of a mesh file, their bounding box, and fewer of them for a page."""
 
 import posixpath
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isqrt
 from typing import Any
@@ -17,6 +18,7 @@ from grader.ros.mesh.stl import read_stl
 # libxml2 reads no longer text of one element; an array of coordinates is most of a file.
 _MAX_TEXT = 9 * 1024 * 1024  # bytes
 MAX_MESH_SIZE = 20 * 1024 * 1024  # bytes of a file of any format
+_STEPS = 65_535  # of a coordinate that is packed
 _READERS = {
     ".stl": (read_stl, MAX_MESH_SIZE),
     ".obj": (read_obj, _MAX_TEXT),
@@ -61,6 +63,21 @@ class Triangles:
             cells = max(1, int(cells * step))
             reduced = _clustered(self.corners, cells)
         return Triangles(reduced)
+
+    def packed(self, bounds: tuple[Vector, Vector], mirrored: Sequence[bool]) -> bytes:
+        """Return the triangles within bounds, for a page: of each corner x, y and z as unsigned
+        16-bit numbers, little-endian, from 0 at the least coordinate to 65535 at the largest;
+        `mirrored` says for each axis whether it is the other way round.
+        """
+        low, high = map(np.array, bounds)
+        size = np.where(high > low, high - low, 1.0)
+        steps = np.rint((self.corners - low) / size * _STEPS).clip(0, _STEPS)
+        is_mirrored = np.array(mirrored)
+        steps[..., is_mirrored] = _STEPS - steps[..., is_mirrored]
+        if sum(mirrored) % 2:
+            steps = steps[:, ::-1]  # counter-clockwise from outside again
+        data: bytes = steps.astype("<u2").tobytes()
+        return data
 
 
 def read_triangles(data: bytes, path: str) -> Triangles | str:

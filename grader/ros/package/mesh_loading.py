@@ -4,6 +4,7 @@ it.
 
 import posixpath
 from collections.abc import Callable, Collection
+from hashlib import sha256
 from typing import TYPE_CHECKING
 
 from grader.base.errors import InputError, NotDecided
@@ -30,10 +31,13 @@ _MAX_TRIANGLES = 1_500_000
 class MeshLoader:
     """Loads the meshes of a robot, within limits for all of them together.
 
-    The files are looked for when the first mesh is loaded, and each is read once.
+    The files are looked for when the first mesh is loaded, and each is read once. `kept` has what
+    was read of files before, by hash and ending: a command that shows a robot again and again gives
+    it to each of its loaders.
     """
 
     def __init__(self, robot: Read, read_around: Around) -> None:
+        self.kept: dict[tuple[bytes, str], Triangles | str] = {}
         self._robot = robot
         self._read_around = read_around
         self._around: tuple[tuple[Package, ...], Tree] | None = None
@@ -93,7 +97,10 @@ class MeshLoader:
             return f"cannot be read: {error}"
         if data.startswith(LFS_POINTER):
             return "is not here: this download holds only the pointer of Git LFS"
-        triangles = read_triangles(data, path)
+        content = (sha256(data).digest(), posixpath.splitext(path)[1])
+        if content not in self.kept:
+            self.kept[content] = read_triangles(data, path)
+        triangles = self.kept[content]
         if isinstance(triangles, str):
             return triangles
         if triangles.count > self._free_triangles:

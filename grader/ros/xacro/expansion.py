@@ -24,7 +24,7 @@ from grader.ros.xacro.expander import STOPS, Expander, UndeterminedUse
 from grader.ros.xacro.tags import CALL, HANDLERS
 from grader.ros.xacro.texts import OtherArguments, Texts
 from grader.ros.xacro.xacro_files import Files, SurroundingFiles
-from grader.ros.xacro.xacro_nodes import XacroNode, read_nodes, recovered_nodes
+from grader.ros.xacro.xacro_nodes import XacroNode, read_nodes, recovered_nodes, walk
 from grader.ros.xml.parsing import (
     Element,
     Unresolved,
@@ -39,6 +39,14 @@ if TYPE_CHECKING:
     from grader.ros.xacro.inventory import Inventory
 
 _READING_OF_SHORT = 1_500  # parts
+
+
+class _XacroArgument(NamedTuple):
+    """An argument that a xacro file declares."""
+
+    name: str
+    default: str  # as it is written
+    value: str | None  # that it has; None if it is known only at run time, or not reached
 
 
 class ExpandedSource(Source):
@@ -86,6 +94,18 @@ class ExpandedSource(Source):
         include them.
         """
         return self._expander.files.followed
+
+    @property
+    def declared_arguments(self) -> list[_XacroArgument]:
+        """The arguments that its files declare, in their order, each once."""
+        defaults: dict[str, str] = {}
+        for document in self.documents.values():
+            for node in walk(document):
+                if node.tag == "xacro:arg" and "name" in node.attributes:
+                    default = node.attributes.get("default", "")
+                    defaults.setdefault(node.attributes["name"], default)
+        values = self.texts.arguments
+        return [_XacroArgument(name, text, values.get(name)) for name, text in defaults.items()]
 
     @property
     def texts(self) -> Texts:

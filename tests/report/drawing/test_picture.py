@@ -132,7 +132,7 @@ def test_a_mesh_is_the_box_around_it(ending: str, tmp_path: Path) -> None:
     assert body.T_frame_shape.translation == pytest.approx((1.2, 0.05, 0.0))
     assert body.rgba == ((1.0, 0.0, 0.0, 1.0) if ending == "stl" else (0.7, 0.7, 0.7, 1.0))
     assert body.mesh == robot.links[0].visuals[0].geometry
-    assert scene.missing == ("Shown as the boxes around them: the meshes of 'a'",)
+    assert scene.remarks == ("Shown as the boxes around them: the meshes of 'a'",)
     assert scene_of(Configuration(robot), "a").bodies == ()
 
 

@@ -7,7 +7,10 @@
  * @typedef {{name: string, type: string, parent: string, child: string, origin?: Pose,
  *   axis?: Vector, range?: number[], start?: number, mimic?: [string, number, number]}} Joint
  */
-/** @typedef {{kind: string, size: Vector, pose: Pose, rgba: number[]}} Shape */
+/**
+ * A shape; `mesh` is the address of its triangles, of which it is the box.
+ * @typedef {{kind: string, size: Vector, pose: Pose, rgba: number[], mesh?: string}} Shape
+ */
 /**
  * A link; `pose` is that in the frame of the robot, of a link whose joint is not known.
  * @typedef {{name: string, shapes: Shape[], pose?: Pose}} Link

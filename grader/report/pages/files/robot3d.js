@@ -102,7 +102,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     ...{ model: uniform("model"), camera: uniform("camera"), turn: uniform("turn") },
     ...{ colour: uniform("colour"), lit: uniform("lit") },
   };
-  const solid = (/** @type {number[]} */ numbers) => {
+  const solid = (/** @type {number[] | Float32Array} */ numbers) => {
     const buffer = /** @type {WebGLBuffer} */ (gl.createBuffer());
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
     gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(numbers), gl.STATIC_DRAW);
@@ -201,10 +201,16 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
   };
 
   // --- Drawing ---
-  /** Return a colour of the page. @param {string} name @param {number} [alpha] */
+  /**
+   * Return a colour of the page.
+   * @param {string} name
+   * @param {number} [alpha]
+   * @returns {[number, number, number, number]}
+   */
   const colour = (name, alpha = 1) => {
     const value = getComputedStyle(canvas).getPropertyValue(name).trim();
-    return [...[1, 3, 5].map((i) => parseInt(value.slice(i, i + 2), 16) / 255), alpha];
+    const channel = (/** @type {number} */ i) => parseInt(value.slice(i, i + 2), 16) / 255;
+    return [channel(1), channel(3), channel(5), alpha];
   };
   const isMoved = () => began || [...positions].some(([name, value]) => value !== START.get(name));
   /** Return whether a shape is a cylinder that a joint turns about its own axis. */
@@ -240,10 +246,12 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     const late = [];
     /** @type {Item[]} */
     const outlined = [];
-    const [red, blue] = [colour("--failed"), colour("--focus")];
     for (const link of robot.links) {
       for (const { shape, at: pose } of shapesOf(link)) {
-        const item = { solid: solids[shape.kind], pose, size: shape.size, rgba: shape.rgba };
+        const item = {
+          solid: solids[shape.mesh || ""] || solids[shape.kind],
+          ...{ pose, size: shape.size, rgba: shape.rgba },
+        };
         if (shape.rgba[3] < 1) {
           late.push(item);
         } else {
@@ -254,7 +262,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
           draw({ ...item, solid: spoke, rgba: isLight ? [0, 0, 0, 1] : [1, 1, 1, 1] }, 0);
         }
         if (failed.has(link.name) || link.name === selected) {
-          const rgba = link.name === selected ? blue : red;
+          const rgba = colour(link.name === selected ? "--focus" : "--failed");
           outlined.push({ ...item, size: scaled(shape, 0.006 * size), rgba });
         }
       }
@@ -308,8 +316,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     }
     poses = Kinematics.poses(robot, positions);
     gl.viewport(0, 0, width, height);
-    const [red, green, blue] = colour("--sheet");
-    gl.clearColor(red, green, blue, 1);
+    gl.clearColor(...colour("--sheet"));
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
     gl.uniformMatrix4fv(at.camera, false, projection());
@@ -350,10 +357,9 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
         const T = first ? first.at : pose(link);
         point = [T[3], T[7], T[11]];
       }
-      const where = point && place(point);
-      const [x, y] = where || [-1, -1];
-      const at = `${x * canvas.clientWidth} ${y * canvas.clientHeight}`;
-      element.setAttribute("transform", `translate(${at})`);
+      const [x, y] = (point && place(point)) || [-1, -1];
+      const [right, down] = [x * canvas.clientWidth, y * canvas.clientHeight];
+      element.setAttribute("transform", `translate(${right} ${down})`);
     });
   };
 
@@ -370,9 +376,9 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     }
     const angles = Transforms.rpy(T).map((value) => (value * 180) / Math.PI);
     const joint = parents.get(selected);
-    const place = `at ${rounded([T[3], T[7], T[11]], 4)} m, rpy ${rounded(angles, 1)}° in ${robot.frame}`;
+    const position = rounded([T[3], T[7], T[11]], 4);
     const holder = joint ? `; ${joint.type} joint ${joint.name}, from ${joint.parent}` : "";
-    about.textContent = `${selected} ${place}${holder}`;
+    about.textContent = `${selected} at ${position} m, rpy ${rounded(angles, 1)}° in ${robot.frame}${holder}`;
   };
   const select = (/** @type {string} */ link) => {
     selected = link;
@@ -540,10 +546,17 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
   // --- Joints ---
   /** @type {Map<string, (position: number) => void>} */
   const sliders = new Map();
+  /** @template {keyof HTMLElementTagNameMap} Tag @param {Tag} tag */
+  const make = (tag) => document.createElement(tag);
+  const update = () => {
+    poses = Kinematics.poses(robot, positions);
+    describe();
+    redraw();
+  };
   const addSlider = (/** @type {Joint} */ joint, /** @type {number[]} */ [lower, upper]) => {
     const [factor, unit] = joint.type === "prismatic" ? [1000, " mm"] : [180 / Math.PI, "°"];
-    const [label, name] = [document.createElement("label"), document.createElement("span")];
-    const [input, output] = [document.createElement("input"), document.createElement("output")];
+    const [label, name] = [make("label"), make("span")];
+    const [input, output] = [make("input"), make("output")];
     name.textContent = name.title = joint.name;
     input.type = "range";
     input.step = "any";
@@ -561,9 +574,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     input.addEventListener("input", () => {
       stop();
       set(Number(input.value) / factor);
-      poses = Kinematics.poses(robot, positions);
-      describe();
-      redraw();
+      update();
     });
     show(joint.start || 0);
     label.append(name, input, output);
@@ -581,9 +592,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     const show = sliders.get(joint);
     if (show) {
       show(position);
-      poses = Kinematics.poses(robot, positions);
-      describe();
-      redraw();
+      update();
     }
   };
   const reset = () => {
@@ -630,6 +639,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
   render();
   return {
     ...{ camera, positions, move, select, render, reset, sliders, close, driveTo, stop },
+    ...{ solid, solids },
     poses: () => poses,
   };
 }

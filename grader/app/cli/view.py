@@ -1,0 +1,62 @@
+"""grader view: the robot in 3-D in the browser, beside the editor."""
+
+from typing import Annotated
+
+import typer
+
+from grader.app.cli.completion import offer_rubrics
+from grader.app.cli.options import (
+    RUBRIC_VARIABLE,
+    ArgOption,
+    MaxSizeOption,
+    NoBrowserOption,
+    PortOption,
+)
+from grader.app.cli.streams import TERMINAL
+from grader.files.reading import URDF_LIMIT
+
+_PATH = "A .urdf or .xacro file, package, workspace, repository, .zip or .tar.gz."
+_RUBRIC = "Show the mistakes under this rubric, an id or a .toml file; default: the problems."
+
+
+def view(
+    path: Annotated[
+        str, typer.Argument(metavar="[PATH]", help=_PATH, show_default="the current folder")
+    ] = ".",
+    rubric: Annotated[
+        str,
+        typer.Option(
+            metavar="ID|FILE",
+            envvar=RUBRIC_VARIABLE,
+            help=_RUBRIC,
+            show_default=False,
+            autocompletion=offer_rubrics,
+        ),
+    ] = "",
+    arg: ArgOption = None,
+    max_size: MaxSizeOption = URDF_LIMIT,
+    port: PortOption = 0,
+    no_browser: NoBrowserOption = False,
+) -> str:
+    """Show a robot in 3-D in the browser, again after every change.
+
+    The command prints the address of the page, which works on this machine only, and opens it.
+    Turn the robot, and move its joints; save a file, and the page follows, with the camera and the
+    joints as they were. Of a file that is broken, the page shows the problem with its line, above
+    the last robot that ROS 2 loads. Arguments of xacro can be tried on the page; no file changes.
+    With --rubric the page is the report of grade, with the mistakes in red and the reference;
+    otherwise it lists the problems of inspect. Ctrl-C ends it.
+
+    Examples:
+
+      grader view
+
+      grader view src/my_robot --rubric lab6
+
+      grader view my_robot.urdf.xacro --arg wheels=4
+    """
+    from grader.app.commands.view_server import view_in_browser
+    from grader.app.commands.viewed_robots import ViewRequest
+
+    request = ViewRequest(path, rubric, arg or (), max_size)
+    return view_in_browser(request, port, TERMINAL, opens=not no_browser)

@@ -1,0 +1,169 @@
+"""The robots that `grader view` shows: one that is graded against a rubric, or all that an
+inspection finds.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from grader.app.commands.inspect_urdf import InspectRequest, inspect_path
+from grader.app.grading import GradeRequest, grade_submission
+from grader.base.errors import GraderError, InputError
+from grader.base.problems import Problem
+from grader.base.source import Source
+from grader.base.text import printable_path
+from grader.report.formats import Format, InspectFormat
+from grader.report.inspection import InspectedRobot, Inspection
+from grader.report.pages.student import inspection_html, problem_card, render_html
+from grader.report.pages.viewing import ArgumentField, ProblemCard, Viewing
+from grader.ros.package.robot_file import Read, Unreadable
+
+if TYPE_CHECKING:
+    from grader.lab.grading.report import Report
+    from grader.ros.package.mesh_loading import MeshLoader
+    from grader.ros.urdf.reader import Reading
+
+_MAX_SHOWN = 5  # problems that break a robot
+
+
+class ViewRequest(NamedTuple):
+    """The options of `grader view`."""
+
+    path: str  # of a URDF or a workspace
+    rubric: str  # an id or a file; empty for the problems of an inspection
+    arg: Sequence[str]  # NAME=VALUE, of xacro
+    max_size: int  # of a URDF, in bytes
+
+
+@dataclass(frozen=True, slots=True)
+class ViewedRobot:
+    """A robot as the files are now.
+
+    `is_loaded` says whether ROS 2 loads it. `render` returns its page, and `broken` has what is
+    wrong with it otherwise.
+    """
+
+    path: str
+    is_loaded: bool
+    broken: Sequence[ProblemCard]
+    arguments: Sequence[ArgumentField]
+    meshes: "MeshLoader | None"
+    render: Callable[[Viewing], str]
+
+
+class ViewedFiles(NamedTuple):
+    """What was read at a path."""
+
+    robots: Sequence[ViewedRobot]
+    notes: Sequence[str]  # on how it was read
+    besides: Sequence[Path]  # the files that were read besides a single one
+
+
+def read_robots(request: ViewRequest, tried: Mapping[str, str]) -> ViewedFiles:
+    """Return the robots at a path, with the arguments of xacro that are tried. Raises GraderError,
+    also if there is no robot.
+    """
+    if request.path in ("", "-"):
+        raise GraderError("view takes a file or folder: standard input is read only once")
+    notes: dict[str, None] = {}
+    arg = [*request.arg, *(f"{name}={value}" for name, value in tried.items())]
+    read = _graded if request.rubric else _inspected
+    return read(request, arg, notes)
+
+
+def _inspected(request: ViewRequest, arg: Sequence[str], notes: dict[str, None]) -> ViewedFiles:
+    """Return the robots that an inspection finds."""
+    inspection = inspect_path(
+        InspectRequest(
+            path=request.path,
+            robot="",
+            joint=None,
+            relative_to=None,
+            distro=None,
+            output_format=InspectFormat.HTML,
+            save=None,
+            max_size=request.max_size,
+            arg=arg,
+            watch=True,
+            select=None,
+            ignore=None,
+        ),
+        notes.setdefault,
+    )
+    if not inspection.robots:
+        raise InputError(next(iter(notes), _no_robot(request.path)))
+    robots = [_inspected_robot(robot, inspection) for robot in inspection.robots]
+    return ViewedFiles(robots, [*notes], inspection.besides)
+
+
+def _inspected_robot(robot: InspectedRobot, inspection: Inspection) -> ViewedRobot:
+    shown = replace(inspection, robots=(robot,))
+    return ViewedRobot(
+        robot.path,
+        robot.configuration is not None and robot.verdict != "rejected",
+        _broken(robot.problems, shown.source),
+        _arguments(robot.reading),
+        robot.meshes,
+        partial(inspection_html, shown),
+    )
+
+
+def _graded(request: ViewRequest, arg: Sequence[str], notes: dict[str, None]) -> ViewedFiles:
+    """Return the robot that is graded."""
+    run = grade_submission(
+        GradeRequest(
+            path=request.path,
+            rubric=request.rubric,
+            expect_rubric=None,
+            part=None,
+            output_format=Format.HTML,
+            save=None,
+            fail_under=None,
+            max_size=request.max_size,
+            arg=arg,
+            answers=None,
+            verbose=False,
+            hints=None,
+            fix=None,
+            watch=True,
+        ),
+        notes.setdefault,
+    )
+    return ViewedFiles([_graded_robot(run.report, request.path)], [*notes], run.besides)
+
+
+def _graded_robot(report: "Report", path: str) -> ViewedRobot:
+    submission = report.submission
+    if isinstance(submission.urdf, Unreadable):
+        raise InputError(submission.urdf.reason)
+    if not isinstance(submission.urdf, Read):
+        raise InputError(_no_robot(path))
+    return ViewedRobot(
+        submission.urdf.path,
+        submission.robot is not None and submission.verdict != "rejected",
+        _broken(report.problems, submission.source),
+        _arguments(submission.urdf.reading),
+        submission.meshes,
+        partial(render_html, report),
+    )
+
+
+def _no_robot(path: str) -> str:
+    return f"{printable_path(path)} has no robot to show: no file in it has a <robot>"
+
+
+def _broken(
+    problems: Sequence[Problem], source_of: Callable[[str], Source | None]
+) -> list[ProblemCard]:
+    """Return what is wrong with a robot that ROS 2 does not load, the errors first."""
+    errors = [problem for problem in problems if problem.severity == "error"]
+    return [problem_card(problem, source_of) for problem in (errors or problems)[:_MAX_SHOWN]]
+
+
+def _arguments(reading: "Reading") -> list[ArgumentField]:
+    """Return the arguments of xacro that a robot has, without those that `--arg` cannot name."""
+    declared = getattr(reading.source, "declared_arguments", ())
+    fields = [ArgumentField(it.name, it.default, it.value) for it in declared]
+    return [field for field in fields if "=" not in field.name and not field.name.endswith(":")]

@@ -1,0 +1,84 @@
+"""What a page of `grader view` has besides the page of a report or an inspection: the list of
+robots, the arguments of xacro, what breaks the file, and the triangles of meshes.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from grader.report.drawing.mesh_data import MeshStore
+from grader.report.drawing.picture import Picture
+from grader.report.locations import SourceLine
+from grader.ros.urdf.model import Mesh
+
+if TYPE_CHECKING:
+    from grader.ros.package.mesh_loading import MeshLoader
+
+SCRIPT, STYLES = "view.js", "view.css"
+SOURCES = "img-src data:; connect-src 'self'"
+
+
+class RobotLink(NamedTuple):
+    """A robot in the list of a page."""
+
+    address: str
+    path: str
+    is_shown: bool  # on this page
+
+
+class ArgumentField(NamedTuple):
+    """An argument of xacro that can be tried on a page."""
+
+    name: str
+    default: str  # as it is written
+    value: str | None  # None if it is known only at run time
+
+
+class ProblemCard(NamedTuple):
+    """A problem on a page."""
+
+    severity: str
+    text: str
+    source: Sequence[SourceLine] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Viewing:
+    """What a page of `grader view` has besides the page of a report or an inspection."""
+
+    number: int  # of the version that is shown
+    address: str  # of the page
+    robots: Sequence[RobotLink]
+    arguments: Sequence[ArgumentField]
+    notes: Sequence[str]
+    is_broken: bool  # whether ROS 2 does not load the robot as the files are now
+    # What is wrong with the files now, if the page shows an earlier version.
+    broken: Sequence[ProblemCard]
+    store: MeshStore
+    meshes: "MeshLoader | None"  # of the robot
+
+    @property
+    def data(self) -> dict[str, Any]:
+        """What the script of the page reads."""
+        return {
+            "number": self.number,
+            "address": self.address,
+            "isBroken": self.is_broken,
+            "isStale": bool(self.broken),
+        }
+
+    def with_meshes(self, picture: Picture) -> tuple[Picture, Mapping[Mesh, str]]:
+        """Return a picture that says which meshes are shown as boxes, or with fewer triangles, and
+        the addresses of the triangles of the others.
+        """
+        scene = picture.scene
+        if self.meshes is None or not scene.boxed:
+            return picture, {}
+        addresses, sentences = self.store.pack(scene, self.meshes)
+        boxed: dict[str, None] = {}
+        for body in scene.bodies:
+            if body.mesh is not None and body.mesh not in addresses:
+                boxed[body.link] = None
+        missing = (*scene.missing, *sentences)
+        scene = replace(scene, missing=missing, boxed=tuple(boxed))
+        return replace(picture, scene=scene), addresses
