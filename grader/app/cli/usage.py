@@ -23,7 +23,8 @@ _COMMANDS = {
     "fix": "grade --fix fixed.urdf",
     "lint": "inspect",
     "validate": "inspect",
-    "view": "inspect",
+    "display": "view",
+    "rviz": "view",
     "class": "batch",
     "help": "--help",
     "version": "--version",
@@ -37,7 +38,7 @@ _EXAMPLES = {
     "--rubric": "my_robot.urdf --rubric lab6",
     "--save": "my_robot.urdf --save html=report.html",
 }
-_TAKES_A_RUBRIC = ("grade", "batch")
+_TAKES_A_RUBRIC = ("grade", "view", "batch")
 _DASHES = "\u2010\u2011\u2012\u2013\u2014\u2212-"  # in place of hyphens, as word processors write
 _QUOTES = "\u2018\u2019\u201c\u201d'\""
 _OUTPUTS = ("--output", "--out", "-o")
