@@ -1,6 +1,8 @@
 """Each attack of the corpus in every text of a student, on every page: it is text and nothing else."""
 
+import re
 from collections.abc import Callable
+from html import unescape
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,7 @@ from tests.browser.conftest import OpenPage
 from tests.command_line import run
 from tests.report.attacks import ATTACKS, AttackedClass, make_attacked_class
 from tests.review_server import running
+from tests.view_server import viewing
 
 pytestmark = pytest.mark.exhaustive
 # Opens what is folded, and searches; then returns what no page should have.
@@ -70,6 +73,15 @@ def test_pages_of_files(visit: Visit, attacked: AttackedClass, tmp_path: Path) -
         pages.append(page)
     found = {page.name: wrong for page in pages if (wrong := visit(page.as_uri()))}
     assert found == {}
+
+
+def test_pages_of_a_view(visit: Visit, attacked: AttackedClass) -> None:
+    """The page of each robot, and the list of all."""
+    with viewing(attacked.folders[0].parent) as view:
+        addresses = re.findall('<a href="(.*?)"', view.page().part("robots"))
+        assert len(addresses) > len(ATTACKS) // 2
+        found = {address: visit(view.server.url + unescape(address)) for address in addresses}
+    assert {address: wrong for address, wrong in found.items() if wrong} == {}
 
 
 def test_pages_of_a_review(visit: Visit, attacked: AttackedClass) -> None:
