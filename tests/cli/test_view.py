@@ -225,6 +225,7 @@ def test_arguments_of_xacro_are_tried(tmp_path: Path) -> None:
         page = view.next(page)
         assert page.sizes == {"base": [4, 1, 9]}
         assert 'value="true"' in page.part("arguments")
+        assert view.try_arguments(size="4") == 200  # nothing to do
         assert view.try_arguments(tall="perhaps") == 200
         broken = view.next(page)
         assert "XACRO" in broken.part("broken")
@@ -237,6 +238,22 @@ def test_arguments_of_xacro_are_tried(tmp_path: Path) -> None:
         assert page.sizes == {"base": [4, 1, 7]}
         assert view.server.post("arguments", {"do": "reset"}).status == 200
         assert view.next(page).sizes == {"base": [2, 1, 1]}
+
+
+def test_the_page_follows_what_a_file_includes(tmp_path: Path) -> None:
+    """Of a xacro file on its own, the files that it includes are watched as well."""
+    start = '<robot xmlns:xacro="http://www.ros.org/wiki/xacro"'
+    part = tmp_path / "part.xacro"
+    part.write_text(f'{start}><xacro:property name="size" value="2"/></robot>')
+    file = tmp_path / "r.urdf.xacro"
+    body = '<xacro:include filename="part.xacro"/>' + BOX.format("base", "${size}")
+    file.write_text(f'{start} name="r">{body}</robot>')
+    with viewing(file) as view:
+        page = view.page()
+        assert page.sizes == {"base": [2, 1, 1]}
+        assert "part.xacro was read besides r.urdf.xacro" in page.part("notes")
+        put(f'{start}><xacro:property name="size" value="3"/></robot>', part)
+        assert view.next(page).sizes == {"base": [3, 1, 1]}
 
 
 def test_an_argument_of_another_form_is_refused(tmp_path: Path) -> None:

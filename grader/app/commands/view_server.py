@@ -156,6 +156,7 @@ class RobotPages:
         with suppress(ValueError, RecursionError):
             sent = json.loads(body)
         with self._changed:
+            before = self.tried
             robots = [*self._files.robots, *self._loaded.values()]
             names = {field.name for robot in robots for field in robot.arguments}
             match sent:
@@ -168,7 +169,8 @@ class RobotPages:
                 case _:
                     why = "this request is not from the page"
                     return json_response(HTTPStatus.BAD_REQUEST, error=why)
-        self._asked.set()
+            if self.tried != before:
+                self._asked.set()
         return json_response()
 
 

@@ -76,7 +76,6 @@
     pressed: BUTTONS.map((id) => find(id)?.getAttribute("aria-pressed")),
     open: new Set(openParts().map(nameOf)),
     scroll: find("space-joints")?.scrollTop || 0,
-    focus: document.activeElement,
   });
   const restore = (/** @type {ReturnType<typeof keep>} */ kept) => {
     for (const one of document.querySelectorAll("#main details")) {
@@ -108,16 +107,12 @@
     if (!element || element.isConnected) {
       return;
     }
-    const name = element.getAttribute("name") || "";
-    const label = element.closest("#space-joints label")?.textContent || "";
-    const found =
-      (element.id && find(element.id)) ||
-      [...document.querySelectorAll("#view-arguments input")].find(
-        (one) => name && one.getAttribute("name") === name,
-      ) ||
-      [...document.querySelectorAll("#space-joints label")]
-        .find((one) => label && one.firstChild?.textContent === label.replace(/[-\d.]+\D*$/, ""))
-        ?.querySelector("input");
+    const titleOf = (/** @type {Element} */ input) =>
+      input.closest("label")?.firstChild?.textContent;
+    const inputs = document.querySelectorAll("#space-joints input, #view-arguments input");
+    const found = element.id
+      ? find(element.id)
+      : [...inputs].find((input) => titleOf(input) === titleOf(element));
     /** @type {HTMLElement | null | undefined} */ (found)?.focus({ preventScroll: true });
   };
 
@@ -194,7 +189,8 @@
   const form = /** @type {HTMLFormElement} */ (find("view-arguments"));
   const send = async (/** @type {object} */ action) => {
     const headers = { "Content-Type": "application/json" };
-    await fetch("arguments", { method: "POST", headers, body: JSON.stringify(action) });
+    const request = { method: "POST", headers, body: JSON.stringify(action) };
+    await fetch("arguments", request).catch(() => {}); // the page says that there is no connection
   };
   form.addEventListener("submit", (event) => {
     event.preventDefault();
