@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 _MAX_TRIANGLES = 50_000  # of one mesh
 _MAX_OF_ROBOT = 300_000
-_MAX_KEPT = 64 * 1024 * 1024  # bytes of what is served
+_MAX_KEPT = 192 * 1024 * 1024  # bytes of what was read and of what is served
+_TRIANGLE = 36  # bytes of one that was read
 _DIGITS = 24  # of an address
 
 
@@ -39,8 +40,12 @@ class MeshStore:
         return self._data.get(address)
 
     def lend(self, meshes: "MeshLoader") -> None:
-        """Let a loader know what was read of mesh files before."""
-        if sum(map(len, self._data.values())) > _MAX_KEPT:
+        """Let a loader know what was read of mesh files before, unless that is too much."""
+        size = sum(map(len, self._data.values()))
+        for triangles in self._read.values():
+            if not isinstance(triangles, str):
+                size += _TRIANGLE * triangles.count
+        if size > _MAX_KEPT:
             for store in (self._read, self._packed, self._data):
                 store.clear()
         meshes.kept = self._read
