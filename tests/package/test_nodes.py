@@ -4,14 +4,14 @@ import pytest
 
 from grader.files.tree import make_tree, overlaid
 from grader.ros.package.finding import read_packages
-from grader.ros.package.python_nodes import (
+from grader.ros.package.node_facts import (
     Endpoint,
+    NodeFacts,
     NodeParameter,
-    PythonNode,
-    PythonNodes,
+    PackageNodes,
     Timer,
-    read_nodes,
 )
+from grader.ros.package.python_nodes import read_nodes
 from grader.ros.python.values import Unknown
 
 _SETUP = """
@@ -36,7 +36,7 @@ class Talker(Node):
 """
 
 
-def nodes_of(text: str, **files: str) -> PythonNodes:
+def nodes_of(text: str, **files: str) -> PackageNodes:
     """Return the nodes of a package whose module talker has this text; other modules are given by their names."""
     texts = {
         "package.xml": "<package format='3'><name>hub</name></package>",
@@ -51,7 +51,7 @@ def nodes_of(text: str, **files: str) -> PythonNodes:
     return read_nodes(package)
 
 
-def node_of(*statements: str) -> PythonNode:
+def node_of(*statements: str) -> NodeFacts:
     """Return a node whose __init__ has these statements."""
     [node] = nodes_of(_HEAD + _CLASS + "".join(f"        {it}\n" for it in statements)).nodes
     return node
@@ -352,4 +352,4 @@ def test_a_package_without_a_build_file_has_no_nodes() -> None:
         {"hub/package.xml": b"<package format='3'><name>hub</name></package>"},
     )
     [package] = read_packages(tree, "urdf/hub.urdf")
-    assert read_nodes(package) == PythonNodes((), (), ())
+    assert read_nodes(package) == PackageNodes((), (), ())

@@ -17,7 +17,7 @@ from grader.ros.xml.urdf_format import numbers_in
 if TYPE_CHECKING:
     from grader.lab.submission.submission import Submission
     from grader.ros.launch.launch_model import Launch, StartedNode
-    from grader.ros.package.python_nodes import Endpoint
+    from grader.ros.package.node_facts import Endpoint
     from grader.ros.workspace.workspace import Workspace
 
 _VERBS = {"publisher": "publishes", "subscription": "subscribes to"}
@@ -195,10 +195,10 @@ class _NodeTopics:
         self._is_open = bool(launch.unknown)
         self._unread: list[Fault] = []  # programs that Python cannot read publish nothing
         for node in launch.nodes:
-            package, python_node = workspace.package_of(node), workspace.python_node(node)
+            package, own_node = workspace.package_of(node), workspace.own_node(node)
             if package is None:
                 continue
-            own = workspace.python_nodes.get(package.name)
+            own = workspace.nodes_by_package.get(package.name)
             programs = own.programs if own is not None else ()
             started = [it.syntax for it in programs if it.name == node.executable]
             syntax = next(filter(None, started), None)
@@ -207,10 +207,10 @@ class _NodeTopics:
                 message = f"Python cannot read the file: {syntax.message}"
                 self._unread.append(Fault(message, syntax.location))
                 doubts = [it for it in doubts if it.location.path != syntax.location.path]
-            elif python_node is None or python_node.doubts:
+            elif own_node is None or own_node.doubts:
                 self._is_open = True
             self._is_open = self._is_open or bool(doubts)
-            self._add(node, python_node.endpoints if python_node is not None else ())
+            self._add(node, own_node.endpoints if own_node is not None else ())
 
     def _add(self, node: "StartedNode", endpoints: "Iterable[Endpoint]") -> None:
         for endpoint in [endpoint for endpoint in endpoints if endpoint.kind in _VERBS]:

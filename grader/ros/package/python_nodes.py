@@ -8,7 +8,7 @@ What is opened under a condition is listed as well; actions and the topics of tf
 import ast
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cached_property, partial
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
 from grader.base.errors import InputError
 from grader.base.slips import Slip
@@ -20,6 +20,17 @@ from grader.ros.package.entry_points import (
     read_module,
     unreadable_module,
 )
+from grader.ros.package.node_facts import (
+    Doubt,
+    Endpoint,
+    EndpointKind,
+    NodeFacts,
+    NodeParameter,
+    NodeProgram,
+    PackageNodes,
+    Qos,
+    Timer,
+)
 from grader.ros.package.node_slips import Program as StartedProgram
 from grader.ros.package.node_slips import node_slips
 from grader.ros.package.package import Package
@@ -29,7 +40,6 @@ from grader.ros.python.evaluation import record
 from grader.ros.python.parse import (
     START,
     Code,
-    SyntaxFault,
     location_in,
     own_nodes,
     parse,
@@ -54,8 +64,7 @@ _NODES = frozenset(
     )
 )
 _CREATES = frozenset({"rclpy.create_node", *_NODES})
-_Kind = Literal["publisher", "subscription", "service", "client", "action client"]
-_KINDS: dict[str, _Kind] = {
+_KINDS: dict[str, EndpointKind] = {
     "create_publisher": "publisher",
     "create_lifecycle_publisher": "publisher",
     "create_subscription": "subscription",
@@ -114,108 +123,25 @@ _OPTIONS = (
 )
 
 
-class _Qos(NamedTuple):
-    """A quality of service; None for what is not known."""
-
-    depth: int | None = None
-    reliability: str | None = None
-    durability: str | None = None
-
-
-class Endpoint(NamedTuple):
-    """A publisher, subscription, service or client, also of an action. `type` is a full name:
-    std_msgs.msg.Float32.
-    """
-
-    kind: _Kind
-    type: str | None
-    name: str | None  # of the topic or service, as it is written
-    location: Location
-    qos: _Qos = _Qos()
-
-
-class NodeParameter(NamedTuple):
-    """A parameter that a node declares, with its default, or that it reads."""
-
-    name: str | None
-    default: Value  # Unknown where it is computed, None where there is none
-    location: Location
-    is_declared: bool = True
-    is_plain: bool = True  # without a descriptor, which may allow values of other types
-    is_needed: bool = True  # False where it is read, and need not be declared
-
-
-class Timer(NamedTuple):
-    """A timer, with its period in seconds."""
-
-    period: float | None
-    location: Location
-
-
-class _Doubt(NamedTuple):
-    """What may declare or open more, and where."""
-
-    reason: str
-    location: Location
-
-
 class _Name(NamedTuple):
     """The name that a node is given."""
 
     name: str | None
 
 
-_Fact = Endpoint | NodeParameter | Timer | _Doubt | _Name
+_Fact = Endpoint | NodeParameter | Timer | Doubt | _Name
 
 
-class PythonNode(NamedTuple):
-    """A node: a subclass of rclpy's Node, or what rclpy.create_node makes; then `class_name` is
-    empty.
-
-    With `doubts`, it may declare or open more than is listed.
-    """
-
-    class_name: str  # in full: sensor_hub.alarm.Alarm
-    name: str | None
-    location: Location
-    endpoints: tuple[Endpoint, ...]
-    parameters: tuple[NodeParameter, ...]
-    timers: tuple[Timer, ...]
-    doubts: tuple[_Doubt, ...]
-
-
-class _Program(NamedTuple):
-    """A program, and the nodes that its function creates, as far as they are known."""
-
-    name: str
-    nodes: tuple[PythonNode, ...]
-    location: Location
-    path: str  # of its file in the package
-    function: str  # that setup.py names; empty for a file that is a program
-    syntax: SyntaxFault | None = None  # why Python cannot read the file
-
-
-class PythonNodes(NamedTuple):
-    """The nodes of a package, and its programs. With `doubts`, a node may declare or open more,
-    or be missing.
-    """
-
-    nodes: tuple[PythonNode, ...]
-    programs: tuple[_Program, ...]
-    doubts: tuple[_Doubt, ...]
-    has_loose_declarations: bool = False  # of parameters, of a node that is not known
-
-
-def read_nodes(package: Package) -> PythonNodes:
+def read_nodes(package: Package) -> PackageNodes:
     """Return the nodes in the Python modules that a build of a package installs. Never raises."""
     modules: dict[str, _Module] = {}
-    doubts: list[_Doubt] = []
+    doubts: list[Doubt] = []
     unread: set[str] = set()
     for name, path in _module_paths(package).items():
         code = read_module(package, path)
         if code is None:
             unread.add(path)
-            doubts.append(_Doubt("the file is not read", Location(package.path(path), 1, 1)))
+            doubts.append(Doubt("the file is not read", Location(package.path(path), 1, 1)))
         else:
             is_package = path.endswith("/__init__.py")
             modules[name] = _Module(code, name, package.work, is_package=is_package)
@@ -235,14 +161,14 @@ def read_nodes(package: Package) -> PythonNodes:
     for program in _programs(package, modules, nodes):
         slips = _slips_of(package, program)
         if slips is None:
-            doubts.append(_Doubt("not all programs are read", program.location))
+            doubts.append(Doubt("not all programs are read", program.location))
             programs.append(program._replace(nodes=()))
             continue
-        doubts += [_Doubt(slip.reaction, slip.location) for slip in slips]
+        doubts += [Doubt(slip.reaction, slip.location) for slip in slips]
         syntax = unreadable_module(package, program.path) if program.path in unread else None
         programs.append(program._replace(nodes=() if slips else program.nodes, syntax=syntax))
     is_loose = any(module.has_loose_declarations for module in modules.values())
-    return PythonNodes(tuple(nodes), tuple(programs), tuple(doubts), is_loose)
+    return PackageNodes(tuple(nodes), tuple(programs), tuple(doubts), is_loose)
 
 
 def program_slips(package: Package) -> Iterator[Slip]:
@@ -254,7 +180,7 @@ def program_slips(package: Package) -> Iterator[Slip]:
     yield from found.values()
 
 
-def _slips_of(package: Package, program: "_Program") -> list[Slip] | None:
+def _slips_of(package: Package, program: NodeProgram) -> list[Slip] | None:
     """Return the slips of a program; None where too many programs are in a file to search each."""
     data = package.tree.read(program.path, _MAX_SEARCHED)
     if not package.budget.take_of_whole(len(data or b"") // _BYTES_A_PART):
@@ -306,10 +232,10 @@ def _is_python(package: Package, path: str) -> bool:
 
 
 def _programs(
-    package: Package, modules: "dict[str, _Module]", nodes: Sequence[PythonNode]
-) -> Iterator[_Program]:
+    package: Package, modules: "dict[str, _Module]", nodes: Sequence[NodeFacts]
+) -> Iterator[NodeProgram]:
     """Yield the entry points, and the files that are programs, with the nodes that they create."""
-    by_key: dict[object, list[PythonNode]] = {}
+    by_key: dict[object, list[NodeFacts]] = {}
     for node in nodes:
         by_key.setdefault(node.location, []).append(node)
         by_key.setdefault(node.class_name, []).append(node)
@@ -317,27 +243,27 @@ def _programs(
     for entry in entry_points(package):
         created = created_by(entry.module, entry.function)
         path = module_path(package, entry.module) or ""
-        yield _Program(entry.name, created, entry.location, path, entry.function)
+        yield NodeProgram(entry.name, created, entry.location, path, entry.function)
     for copy in _scripts(package):
         at = Location(package.path(copy.source), 1, 1)
         name = copy.target.rpartition("/")[2]
         created = created_by(copy.source, "")
-        yield _Program(name, created, at, copy.source, "")
+        yield NodeProgram(name, created, at, copy.source, "")
 
 
 def _created_by(
     budget: Budget,
     modules: "dict[str, _Module]",
-    nodes: Mapping[object, Sequence[PythonNode]],
+    nodes: Mapping[object, Sequence[NodeFacts]],
     module: str,
     function: str,
-) -> tuple[PythonNode, ...]:
+) -> tuple[NodeFacts, ...]:
     """Return the nodes that a function creates, also in those that it calls; without a name, the
     module's body. None are known where too many functions call others.
 
     `nodes` are those at a place, and those of a class by its full name.
     """
-    found: dict[Location, PythonNode] = {}
+    found: dict[Location, NodeFacts] = {}
     pending, seen = [f"{module}.{function}"], set[str]()
     while pending:
         name = pending.pop(0)
@@ -381,7 +307,7 @@ class _Module:
         self._constants = Constants(syntax, name, functions, work, is_package=is_package)
         # Of the classes, by full names; None for a base that is not known.
         self.bases: dict[str, list[str | None]] = {}
-        self.doubts: list[_Doubt] = []
+        self.doubts: list[Doubt] = []
         self.has_loose_declarations = _has_alias(code.tree)
         self._classes: dict[Location, str] = {}
         self._facts: dict[Location, list[_Fact]] = {}  # of each node
@@ -435,13 +361,13 @@ class _Module:
                 )
             self._parts.append(_ModulePart(method.name, _find_calls(nodes), local, at))
 
-    def read_nodes(self, kinds: Collection[str]) -> list[PythonNode]:
+    def read_nodes(self, kinds: Collection[str]) -> list[NodeFacts]:
         """Return the nodes, once the full names of all classes of nodes are known."""
         for at, full in self._classes.items():
             if full in kinds:
                 is_own = _NODES.issuperset(self.bases[full])
                 self._facts[at] = (
-                    [] if is_own else [_Doubt("what another base class does is not added", at)]
+                    [] if is_own else [Doubt("what another base class does is not added", at)]
                 )
         calls = [(part, call) for part in self._parts for call in part.calls]
         for part, call in calls:
@@ -454,15 +380,15 @@ class _Module:
             if self._called(part, call) in _MAKES_A_NODE:
                 for facts in self._facts.values():
                     facts.append(
-                        _Doubt("another node takes the parameters of the process", self._at(call))
+                        Doubt("another node takes the parameters of the process", self._at(call))
                     )
         if self._constants.budget.is_spent:
             self.doubts.append(
-                _Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
+                Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
             )
         return [self._node(at, facts) for at, facts in self._facts.items()]
 
-    def _node(self, at: Location, facts: "Sequence[_Fact]") -> PythonNode:
+    def _node(self, at: Location, facts: "Sequence[_Fact]") -> NodeFacts:
         names: set[str | None] = set()
         endpoints, parameters, timers, doubts = [], [], [], []
         for fact in facts:
@@ -475,9 +401,9 @@ class _Module:
                     parameters.append(fact)
                 case Timer():
                     timers.append(fact)
-                case _Doubt():
+                case Doubt():
                     doubts.append(fact)
-        return PythonNode(
+        return NodeFacts(
             class_name=self._classes.get(at, ""),
             name=names.pop() if len(names) == 1 else None,
             location=at,
@@ -548,7 +474,7 @@ class _Module:
                 if facts is None:
                     self.has_loose_declarations |= method in _DECLARES
                     reason = f"the node of this {method}() is not known"
-                    self.doubts.append(_Doubt(reason, self._at(call)))
+                    self.doubts.append(Doubt(reason, self._at(call)))
                 else:
                     facts += self._read_method(part, call, method)
             case function:
@@ -560,7 +486,7 @@ class _Module:
                     if name == "ActionClient":
                         self._facts[at].append(self._action_client(part, call))
                     elif name not in _HARMLESS:
-                        self._facts[at].append(_Doubt(f"{name} is given the node", self._at(call)))
+                        self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
 
     def _action_client(self, part: _ModulePart, call: ast.Call) -> Endpoint:
         made = self._argument(part, call, 1, "action_type")
@@ -583,7 +509,7 @@ class _Module:
             yield _Name(_text(name))
             for keyword in call.keywords:
                 if keyword.arg in _OPTIONS:
-                    yield _Doubt(f"{keyword.arg or 'more arguments'} of its Node", self._at(call))
+                    yield Doubt(f"{keyword.arg or 'more arguments'} of its Node", self._at(call))
 
     def _read_method(self, part: _ModulePart, call: ast.Call, method: str) -> "Iterator[_Fact]":
         """Yield what a method of a node declares, opens or reads."""
@@ -656,18 +582,18 @@ def _declared(namespace: Value, parameters: Value, at: Location) -> Iterator[Nod
         )
 
 
-def _qos(value: Value) -> _Qos:
+def _qos(value: Value) -> Qos:
     """Return a quality of service: a depth, a QoSProfile, or one of the profiles of rclpy."""
     match value:
         case bool():
-            return _Qos()
+            return Qos()
         case int():
-            return _Qos(value, "reliable", "volatile")
+            return Qos(value, "reliable", "volatile")
         case QualifiedName(name=name) if name.startswith("rclpy.qos."):
             profile = (
                 name.removesuffix(".value").rpartition(".")[2].lower().removeprefix("qos_profile_")
             )
-            return _Qos(*_PROFILES.get(profile, ()))
+            return Qos(*_PROFILES.get(profile, ()))
         case Call(name="rclpy.qos.QoSProfile", kwargs=given):
             depth = given.get("depth")
             reliability: str | None = "reliable"
@@ -676,8 +602,8 @@ def _qos(value: Value) -> _Qos:
             durability: str | None = "volatile"
             if "durability" in given:
                 durability = _policy(given["durability"])
-            return _Qos(depth if isinstance(depth, int) else None, reliability, durability)
-    return _Qos()
+            return Qos(depth if isinstance(depth, int) else None, reliability, durability)
+    return Qos()
 
 
 def _policy(value: Value) -> str | None:

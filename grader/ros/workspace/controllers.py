@@ -14,7 +14,7 @@ from grader.ros.known.known import known
 from grader.ros.known.releases import releases_with
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import controllers_of
-from grader.ros.package.python_nodes import Endpoint
+from grader.ros.package.node_facts import Endpoint
 from grader.ros.workspace.names import (
     Correction,
     Definition,
@@ -285,8 +285,8 @@ def _action_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers whose actions own nodes ask for."""
     namespaces = _namespaces(workspace)
     for _, node in workspace.nodes:
-        python_node = workspace.python_node(node)
-        for endpoint in python_node.endpoints if python_node is not None else ():
+        own_node = workspace.own_node(node)
+        for endpoint in own_node.endpoints if own_node is not None else ():
             topic = node.topic(endpoint.name or "") if endpoint.kind == "action client" else None
             controller, _, action = (topic or "").rpartition("/")
             namespace, _, name = controller.strip("/").rpartition("/")

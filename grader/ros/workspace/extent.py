@@ -50,11 +50,11 @@ class Extent(NamedTuple):
 
 def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) -> Extent:
     """Return what of a workspace was read; `unread_robots` are not even opened."""
-    nodes = [node for found in workspace.python_nodes.values() for node in found.nodes]
+    nodes = [node for found in workspace.nodes_by_package.values() for node in found.nodes]
     unread = set()
     for node in [node for _, launch in workspace.roots for node in launch.nodes]:
         owner = workspace.package_of(node)
-        if owner is None or workspace.python_node(node) is not None:
+        if owner is None or workspace.own_node(node) is not None:
             continue
         if owner.has_program(node.package, node.executable) is not False:
             unread.add((node.package, node.executable))

@@ -22,8 +22,8 @@ from grader.ros.known.known import known
 from grader.ros.known.releases import RELEASES, Release, releases_with
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.package.mesh_content import LFS_POINTER
+from grader.ros.package.node_facts import NodeFacts
 from grader.ros.package.package import Package
-from grader.ros.package.python_nodes import PythonNode
 from grader.ros.workspace.bridges import bridge_files
 from grader.ros.workspace.controllers import defined_controllers
 from grader.ros.workspace.names import (
@@ -84,9 +84,9 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _file_given(workspace, path, nodes)
     yield from _controllers_given(workspace)
     for package, node in workspace.nodes:
-        python_node = workspace.python_node(node)
-        if python_node is not None:
-            yield from _declared(workspace, package, node, python_node)
+        own_node = workspace.own_node(node)
+        if own_node is not None:
+            yield from _declared(workspace, package, node, own_node)
     yield from _without_time(workspace)
     yield from _types_of_controllers(workspace)
     for path in workspace.parameter_files:
@@ -259,33 +259,33 @@ def _misplaced(tree: YamlNode) -> Iterator[Fact]:
 
 
 def _declared(
-    workspace: Workspace, package: Package, node: StartedNode, python_node: PythonNode
+    workspace: Workspace, package: Package, node: StartedNode, own_node: NodeFacts
 ) -> Iterator[Fact]:
     """Yield the parameters that a node of the workspace declares, reads and is given."""
     owner = f"{node.package}/{node.executable}"
-    for parameter in python_node.parameters:
+    for parameter in own_node.parameters:
         if parameter.name is None:
             yield Open("parameter", owner)
         elif parameter.is_declared:
             yield Definition("parameter", parameter.name, parameter.location, owner)
     for name in _OF_EVERY_NODE:
-        yield Definition("parameter", name, python_node.location, owner)
-    if python_node.doubts or workspace.python_nodes[node.package].has_loose_declarations:
+        yield Definition("parameter", name, own_node.location, owner)
+    if own_node.doubts or workspace.nodes_by_package[node.package].has_loose_declarations:
         yield Open("parameter", owner)
-    for parameter in python_node.parameters:
+    for parameter in own_node.parameters:
         if parameter.name is not None and not parameter.is_declared:
             is_optional = not parameter.is_needed
             at = parameter.location
             yield Use("parameter", parameter.name, at, "get_parameter", owner, is_optional)
-    yield from _given(workspace, package, node, python_node)
+    yield from _given(workspace, package, node, own_node)
 
 
 def _given(
-    workspace: Workspace, package: Package, node: StartedNode, python_node: PythonNode
+    workspace: Workspace, package: Package, node: StartedNode, own_node: NodeFacts
 ) -> Iterator[Fact]:
     """Yield the parameters that a node of the workspace is given."""
     owner = f"{node.package}/{node.executable}"
-    given = workspace.read_given(package, node, python_node.name or "")
+    given = workspace.read_given(package, node, own_node.name or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
     # What a file gives to every node need not be declared by this one.
@@ -294,10 +294,10 @@ def _given(
         if value.location not in for_all and not name.startswith("qos_overrides."):
             said = f"the node {workspace.name_of(node) or node.executable!r}"
             yield Use("parameter", name, value.named_at or value.location, said, owner)
-    yield from _types_given(python_node, given.values)
+    yield from _types_given(own_node, given.values)
 
 
-def _types_given(node: PythonNode, values: Mapping[str, ParameterValue]) -> Iterator[Mismatch]:
+def _types_given(node: NodeFacts, values: Mapping[str, ParameterValue]) -> Iterator[Mismatch]:
     """Yield the values of other types than a node declares."""
     for parameter in node.parameters:
         name = parameter.name or ""

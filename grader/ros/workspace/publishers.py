@@ -33,10 +33,10 @@ def _may_publish(workspace: Workspace, node: StartedNode, topic: str) -> bool:
         if node.package == BRIDGE:
             return not _is_plain_bridge(workspace, node)
         return node.package not in known()["without_frames"] or _is_remapped_to(node, topic)
-    python_node = workspace.python_node(node)
-    if python_node is not None:
-        publishers = [each for each in python_node.endpoints if each.kind == "publisher"]
-        return bool(python_node.doubts) or any(each.name is None for each in publishers)
+    own_node = workspace.own_node(node)
+    if own_node is not None:
+        publishers = [each for each in own_node.endpoints if each.kind == "publisher"]
+        return bool(own_node.doubts) or any(each.name is None for each in publishers)
     texts = [source.text for source in workspace.sources_of(package, _SOURCES)]
     last = topic.rpartition("/")[2]
     return not texts or any(last in text for text in texts) or _is_remapped_to(node, topic)

@@ -127,8 +127,8 @@ def _topics(workspace: Workspace) -> Iterator[tuple[str, Location]]:
         for names in node.remaps or ():
             for topic in names:
                 yield topic, node.location
-        python_node = workspace.python_node(node)
-        for endpoint in python_node.endpoints if python_node is not None else ():
+        own_node = workspace.own_node(node)
+        for endpoint in own_node.endpoints if own_node is not None else ():
             yield node.topic(endpoint.name or "") or "", endpoint.location
 
 

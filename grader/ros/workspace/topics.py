@@ -10,7 +10,7 @@ from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.package.python_nodes import Endpoint
+from grader.ros.package.node_facts import Endpoint
 from grader.ros.workspace.bridges import bridge_rows
 from grader.ros.workspace.controllers import controller_endpoints
 from grader.ros.workspace.gazebo import BRIDGE
@@ -115,11 +115,11 @@ def _count(workspace: Workspace, opened: Iterable[_OpenedTopic]) -> Counted:
         owner = workspace.package_of(node)
         if node.when is False or owner is None:
             continue
-        python_node = workspace.python_node(node)
-        if python_node is None and owner.has_program(node.package, node.executable):
+        own_node = workspace.own_node(node)
+        if own_node is None and owner.has_program(node.package, node.executable):
             unread.add(node.executable)
-        elif python_node is not None:
-            computed += sum(each.kind in _ENDS for each in python_node.endpoints)
+        elif own_node is not None:
+            computed += sum(each.kind in _ENDS for each in own_node.endpoints)
     reasons = []
     if computed:
         reasons.append(f"{computed} {'is' if computed == 1 else 'are'} computed")
@@ -130,8 +130,8 @@ def _count(workspace: Workspace, opened: Iterable[_OpenedTopic]) -> Counted:
 
 def _endpoints(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str, Endpoint]]:
     """Yield the publishers and subscriptions of an own Python node, with the names of topics."""
-    python_node = workspace.python_node(node)
-    endpoints = python_node.endpoints if python_node is not None else ()
+    own_node = workspace.own_node(node)
+    endpoints = own_node.endpoints if own_node is not None else ()
     workspace.charge(len(endpoints) * (1 + len(node.remaps or ())))
     for endpoint in endpoints:
         # What begins with ~ is below the name of the node.
@@ -220,13 +220,13 @@ def _remappings(
     workspace: Workspace, node: StartedNode, rules: Iterable[tuple[str, ...]]
 ) -> Iterator[Fact]:
     """Yield the names that a node has, and those that these remappings, of it alone, replace."""
-    python_node = workspace.python_node(node)
-    if python_node is None or node.remaps is None:
+    own_node = workspace.own_node(node)
+    if own_node is None or node.remaps is None:
         return
     owner = f"{node.package}/{node.executable} {node.location.file_and_line}"
-    if python_node.doubts or any(endpoint.name is None for endpoint in python_node.endpoints):
+    if own_node.doubts or any(endpoint.name is None for endpoint in own_node.endpoints):
         yield Open("topic", owner)
-    for endpoint in python_node.endpoints:
+    for endpoint in own_node.endpoints:
         if endpoint.name is not None:
             yield Definition("topic", _bare(endpoint.name), endpoint.location, owner)
     for rule in rules:
@@ -316,8 +316,8 @@ def _is_known(workspace: Workspace, launch: int) -> bool:
         return False
     for number, node in workspace.launched:
         if number == launch and node.package not in known()["without_commands"]:
-            python_node = workspace.python_node(node)
-            if python_node is None or python_node.doubts:
+            own_node = workspace.own_node(node)
+            if own_node is None or own_node.doubts:
                 return False
     return True
 

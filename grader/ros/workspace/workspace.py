@@ -36,8 +36,9 @@ from grader.ros.launch.node_parameters import (
 )
 from grader.ros.package.finding import is_backup
 from grader.ros.package.installed_files import are_installs_known, open_meant
+from grader.ros.package.node_facts import NodeFacts, PackageNodes
 from grader.ros.package.package import Package
-from grader.ros.package.python_nodes import PythonNode, PythonNodes, read_nodes
+from grader.ros.package.python_nodes import read_nodes
 from grader.ros.package.robot_file import Read
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.urdf.model import Robot
@@ -314,7 +315,7 @@ class Workspace:
         return False
 
     @cached_property
-    def python_nodes(self) -> Mapping[str, PythonNodes]:
+    def nodes_by_package(self) -> Mapping[str, PackageNodes]:
         """The nodes of the installed Python modules, by the names of packages."""
         return {package.name: read_nodes(package) for package in self.packages}
 
@@ -346,23 +347,23 @@ class Workspace:
         written = len(_SYSTEM.findall(text))
         return written <= sum(len(robot.systems) for robot in self.robots)
 
-    def python_node(self, node: StartedNode) -> PythonNode | None:
+    def own_node(self, node: StartedNode) -> NodeFacts | None:
         """Return the Python node of the workspace that a program starts, if it starts one that
         is known.
         """
         owner = self.package_of(node)
-        if owner is None or owner.name not in self.python_nodes:
+        if owner is None or owner.name not in self.nodes_by_package:
             return None
-        return self._python_nodes_by_program.get((owner.name, node.executable))
+        return self._nodes_by_program.get((owner.name, node.executable))
 
     @cached_property
-    def _python_nodes_by_program(self) -> Mapping[tuple[str, str], PythonNode]:
+    def _nodes_by_program(self) -> Mapping[tuple[str, str], NodeFacts]:
         """The Python nodes by their packages and programs, of programs with one node."""
-        programs: dict[tuple[str, str], list[Sequence[PythonNode]]] = {}
-        for package, found in self.python_nodes.items():
+        programs: dict[tuple[str, str], list[Sequence[NodeFacts]]] = {}
+        for package, found in self.nodes_by_package.items():
             for program in found.programs:
                 programs.setdefault((package, program.name), []).append(program.nodes)
-        nodes: dict[tuple[str, str], PythonNode] = {}
+        nodes: dict[tuple[str, str], NodeFacts] = {}
         for key, of_programs in programs.items():
             if len(of_programs) == 1 and len(of_programs[0]) == 1:
                 nodes[key] = of_programs[0][0]
@@ -378,7 +379,7 @@ class Workspace:
         """Return the name that a node has, without its namespace; None where it is not known."""
         if node.node_name is None or node.node_name:
             return node.node_name
-        own = self.python_node(node)
+        own = self.own_node(node)
         if own is not None:
             return own.name
         names: Mapping[str, str] = known()["node_names"]

@@ -1,0 +1,108 @@
+"""What the code of a node declares and opens, in whatever language it is written.
+
+The readers of the languages make these facts; names and parameters are compared by them.
+"""
+
+from typing import Literal, NamedTuple
+
+from grader.base.source import Location
+from grader.ros.python.parse import SyntaxFault
+from grader.ros.python.values import Value
+
+EndpointKind = Literal[
+    "publisher", "subscription", "service", "client", "action server", "action client"
+]
+
+
+class NamePart(NamedTuple):
+    """A part of a name that depends on the node as it is started.
+
+    `text` is the text itself, or the parameter whose value is the part: an "item" is each entry of
+    its list, in one name always the same one.
+    """
+
+    kind: Literal["text", "node name", "namespace", "parameter", "item", "unknown"]
+    text: str = ""
+
+
+class Qos(NamedTuple):
+    """A quality of service; None for what is not known."""
+
+    depth: int | None = None
+    reliability: str | None = None
+    durability: str | None = None
+
+
+class Endpoint(NamedTuple):
+    """A publisher, subscription, service or client, also of an action. `type` is a full name:
+    std_msgs.msg.Float32.
+    """
+
+    kind: EndpointKind
+    type: str | None
+    name: str | None  # of the topic or service, as it is written; None where it is made of `parts`
+    location: Location
+    qos: Qos = Qos()
+    parts: tuple[NamePart, ...] = ()  # of a name that is no plain text; none if it is not known
+
+
+class NodeParameter(NamedTuple):
+    """A parameter that a node declares, with its default, or that it reads."""
+
+    name: str | None
+    default: Value  # Unknown where it is computed, None where there is none
+    location: Location
+    is_declared: bool = True
+    is_plain: bool = True  # without a descriptor, which may allow values of other types
+    is_needed: bool = True  # False where it is read, and need not be declared
+
+
+class Timer(NamedTuple):
+    """A timer, with its period in seconds."""
+
+    period: float | None
+    location: Location
+
+
+class Doubt(NamedTuple):
+    """What may declare or open more, and where."""
+
+    reason: str
+    location: Location
+
+
+class NodeFacts(NamedTuple):
+    """A node: a class of nodes, or one that is made by a function; then `class_name` is empty.
+
+    With `doubts`, it may declare or open more than is listed.
+    """
+
+    class_name: str  # in full: sensor_hub.alarm.Alarm
+    name: str | None
+    location: Location
+    endpoints: tuple[Endpoint, ...]
+    parameters: tuple[NodeParameter, ...]
+    timers: tuple[Timer, ...]
+    doubts: tuple[Doubt, ...]
+
+
+class NodeProgram(NamedTuple):
+    """A program, and the nodes that its function creates, as far as they are known."""
+
+    name: str
+    nodes: tuple[NodeFacts, ...]
+    location: Location
+    path: str  # of its file in the package
+    function: str  # that setup.py names; empty for a file that is a program
+    syntax: SyntaxFault | None = None  # why Python cannot read the file
+
+
+class PackageNodes(NamedTuple):
+    """The nodes of a package, and its programs. With `doubts`, a node may declare or open more,
+    or be missing.
+    """
+
+    nodes: tuple[NodeFacts, ...]
+    programs: tuple[NodeProgram, ...]
+    doubts: tuple[Doubt, ...]
+    has_loose_declarations: bool = False  # of parameters, of a node that is not known
