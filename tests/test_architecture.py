@@ -36,7 +36,7 @@ ROOMS = {
     ),
     "ros": (
         "known python xml",
-        "xacro urdf build mesh",
+        "xacro urdf build mesh interfaces",
         "config",
         "launch",
         "package",

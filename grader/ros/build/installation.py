@@ -55,6 +55,20 @@ class IgnoredArgument(NamedTuple):
         )
 
 
+class GeneratedInterfaces(NamedTuple):
+    """What rosidl_generate_interfaces() makes code of: the paths of .msg, .srv and .action files,
+    of which those in `files` are there, and the packages whose messages these may use.
+
+    Where it is not certain that it is called, or with what, `is_certain` is False.
+    """
+
+    at: Position
+    files: tuple[str, ...] = ()
+    dependencies: tuple[str, ...] = ()
+    is_certain: bool = True
+    needs_group: bool = True  # whether package.xml has to make the package a member of a group
+
+
 class KnownPrograms(NamedTuple):
     """The programs that a build installs: paths below the prefix, and names in setup.py."""
 
@@ -96,6 +110,7 @@ class Installation(NamedTuple):
         str, ...
     ] = ()  # likewise, of files that CMake installs with the right to execute them
     packages: tuple[str, ...] = ()  # the Python packages, as far as they are known
+    interfaces: tuple[GeneratedInterfaces, ...] = ()  # one for each call in CMakeLists.txt
 
     @property
     def console_scripts(self) -> Value:

@@ -29,6 +29,7 @@ class Manifest(NamedTuple):
     type_location: Location
     unread: str = ""  # why the file was not read at all: too large, damaged
     dependencies: frozenset[str] = frozenset()  # the packages that it depends on, in any way
+    groups: frozenset[str] = frozenset()  # of packages, of which it is a member
 
     @property
     def refusals(self) -> tuple[Problem, ...]:
@@ -70,8 +71,10 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         is_used = evaluate_condition(element.get("condition")) is not False
         if tag_of(element) == "build_type" and is_used:
             build_types.append(element)
-    dependencies = set()
+    dependencies, groups = set[str](), set[str]()
     for element in root.iterchildren("*"):
+        if tag_of(element) == "member_of_group":
+            groups.add(text_of(element))
         if tag_of(element).endswith("depend"):
             dependencies.add(text_of(element))
     problems = [*_problems(file)]
@@ -87,6 +90,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         file.location(name if name is not None else root),
         file.location(build_types[0] if build_types else root),
         dependencies=frozenset(dependencies),
+        groups=frozenset(groups),
     )
 
 

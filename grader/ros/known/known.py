@@ -126,6 +126,20 @@ def node_attributes() -> frozenset[str]:
     return frozenset(_read("rclpy")["node_attributes"].split())
 
 
+def interface_table(package: str) -> Mapping[str, Mapping[str, Any]] | None:
+    """Return the messages, services and actions of a package, by kind and name; None for a package
+    without a table.
+    """
+    if package in _packages_with_interfaces():
+        return _read(f"interfaces/{package}")
+    return None
+
+
+@cache
+def _packages_with_interfaces() -> frozenset[str]:
+    return frozenset(path.stem for path in (_FOLDER / "interfaces").glob("*.toml"))
+
+
 def is_imported_by_launch(module: str) -> bool:
     """Return whether `ros2 launch` imports a Python package of this name."""
     return module in _machine()["imported_by_launch"]

@@ -71,6 +71,28 @@ class Doubt(NamedTuple):
     location: Location
 
 
+class TypeImport(NamedTuple):
+    """A message, service or action that code certainly imports: chat_msgs.srv.Ask."""
+
+    name: str
+    location: Location
+
+
+class FieldUse(NamedTuple):
+    """A field that code uses of a value whose type is certain.
+
+    `type` has the name of the section, as in Python: chat_msgs.srv.Ask.Request; GoalHandle is what
+    has the goal as its `request`. `path` are the names of fields down to the one that is used; `[]`
+    is an item of a list. `literal` is what the field is set to: one value, or none if it is not
+    known.
+    """
+
+    type: str
+    path: tuple[str, ...]
+    location: Location
+    literal: tuple[Value, ...] = ()
+
+
 class NodeFacts(NamedTuple):
     """A node: a class of nodes, or one that is made by a function; then `class_name` is empty.
 
@@ -106,3 +128,5 @@ class PackageNodes(NamedTuple):
     programs: tuple[NodeProgram, ...]
     doubts: tuple[Doubt, ...]
     has_loose_declarations: bool = False  # of parameters, of a node that is not known
+    imports: tuple[TypeImport, ...] = ()
+    field_uses: tuple[FieldUse, ...] = ()

@@ -20,16 +20,19 @@ from grader.ros.package.entry_points import (
     read_module,
     unreadable_module,
 )
+from grader.ros.package.message_uses import CodePart, field_uses, type_imports
 from grader.ros.package.node_facts import (
     Doubt,
     Endpoint,
     EndpointKind,
+    FieldUse,
     NodeFacts,
     NodeParameter,
     NodeProgram,
     PackageNodes,
     Qos,
     Timer,
+    TypeImport,
 )
 from grader.ros.package.node_slips import Program as StartedProgram
 from grader.ros.package.node_slips import node_slips
@@ -168,7 +171,11 @@ def read_nodes(package: Package) -> PackageNodes:
         syntax = unreadable_module(package, program.path) if program.path in unread else None
         programs.append(program._replace(nodes=() if slips else program.nodes, syntax=syntax))
     is_loose = any(module.has_loose_declarations for module in modules.values())
-    return PackageNodes(tuple(nodes), tuple(programs), tuple(doubts), is_loose)
+    imports = [found for module in modules.values() for found in module.type_imports()]
+    uses = [use for module in modules.values() for use in module.field_uses()]
+    return PackageNodes(
+        tuple(nodes), tuple(programs), tuple(doubts), is_loose, tuple(imports), tuple(uses)
+    )
 
 
 def program_slips(package: Package) -> Iterator[Slip]:
@@ -284,17 +291,6 @@ def _find_calls(nodes: Sequence[ast.AST]) -> list[ast.Call]:
     return sorted((it for it in nodes if isinstance(it, ast.Call)), key=offset_of)
 
 
-class _ModulePart(NamedTuple):
-    """A function or method, or the module without these: its calls, its scope and the place of
-    its class.
-    """
-
-    name: str
-    calls: Sequence[ast.Call]
-    scope: Scope
-    of: Location | None = None
-
-
 class _Module:
     """A module: first its scopes and the bases of its classes, then, once all nodes are known,
     their calls.
@@ -311,7 +307,7 @@ class _Module:
         self.has_loose_declarations = _has_alias(code.tree)
         self._classes: dict[Location, str] = {}
         self._facts: dict[Location, list[_Fact]] = {}  # of each node
-        self._parts: list[_ModulePart] = []
+        self._parts: list[CodePart] = []
         body = own_nodes(code.tree)
         scope = self._constants.bound(body, Scope({}))
         for part in body:
@@ -320,13 +316,14 @@ class _Module:
                 and part.name in scope.names
             ):
                 scope.names[part.name] = QualifiedName(f"{name}.{part.name}")
-        self._parts.append(_ModulePart("", _find_calls(body), scope))
+        self._parts.append(CodePart("", code.tree, _find_calls(body), scope))
         for part in body:
             if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef):
                 inner = [*ast.walk(part)]
                 self._parts.append(
-                    _ModulePart(
+                    CodePart(
                         part.name,
+                        part,
                         _find_calls(inner),
                         self._constants.bound(inner, Scope({}, scope)),
                     )
@@ -359,7 +356,7 @@ class _Module:
                 attributes.names[name] = (
                     value if is_first else Unknown("it is not bound once", START)
                 )
-            self._parts.append(_ModulePart(method.name, _find_calls(nodes), local, at))
+            self._parts.append(CodePart(method.name, method, _find_calls(nodes), local, at))
 
     def read_nodes(self, kinds: Collection[str]) -> list[NodeFacts]:
         """Return the nodes, once the full names of all classes of nodes are known."""
@@ -387,6 +384,14 @@ class _Module:
                 Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
             )
         return [self._node(at, facts) for at, facts in self._facts.items()]
+
+    def type_imports(self) -> Iterator[TypeImport]:
+        """Yield the messages, services and actions that the module certainly imports."""
+        return type_imports(self._code.tree, self._code.source)
+
+    def field_uses(self) -> Iterator[FieldUse]:
+        """Yield the fields that the module uses of messages, services and actions."""
+        return field_uses(self._code, self._parts, self._constants.value_of)
 
     def _node(self, at: Location, facts: "Sequence[_Fact]") -> NodeFacts:
         names: set[str | None] = set()
@@ -428,14 +433,14 @@ class _Module:
                 calls.setdefault(part.name, []).extend(of_part)
         return calls
 
-    def _called(self, part: _ModulePart, call: ast.Call) -> str:
+    def _called(self, part: CodePart, call: ast.Call) -> str:
         first, dot, rest = dotted(call.func).partition(".")
         found = constant_in(part.scope, first)
         if isinstance(found, QualifiedName):
             return f"{found.name}{dot}{rest}"
         return ""
 
-    def _argument(self, part: _ModulePart, call: ast.Call, position: int, name: str) -> Value:
+    def _argument(self, part: CodePart, call: ast.Call, position: int, name: str) -> Value:
         """Return an argument of a call; None where it is missing, Unknown where * or ** may give
         it.
         """
@@ -447,7 +452,7 @@ class _Module:
             return Unknown("it is unpacked", position_of(call))
         return self._constants.value_of(given[0] if given else None, part.scope)
 
-    def _receiver(self, part: _ModulePart, node: ast.expr) -> Location | None:
+    def _receiver(self, part: CodePart, node: ast.expr) -> Location | None:
         """Return the place of the node that an expression is; None where that is not known."""
         name = dotted(node)
         if name == "self":
@@ -461,7 +466,7 @@ class _Module:
             at = None
         return at if at in self._facts else None
 
-    def _read_call(self, part: _ModulePart, call: ast.Call) -> None:
+    def _read_call(self, part: CodePart, call: ast.Call) -> None:
         """Add what a call declares or opens to the facts of its node."""
         match call.func:
             case ast.Attribute(value=owner, attr="__init__") if (
@@ -488,7 +493,7 @@ class _Module:
                     elif name not in _HARMLESS:
                         self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
 
-    def _action_client(self, part: _ModulePart, call: ast.Call) -> Endpoint:
+    def _action_client(self, part: CodePart, call: ast.Call) -> Endpoint:
         made = self._argument(part, call, 1, "action_type")
         name = _text(self._argument(part, call, 2, "action_name"))
         return Endpoint(
@@ -498,7 +503,7 @@ class _Module:
             self._at(call),
         )
 
-    def _read_init(self, part: _ModulePart, call: ast.Call, owner: ast.expr) -> "Iterator[_Fact]":
+    def _read_init(self, part: CodePart, call: ast.Call, owner: ast.expr) -> "Iterator[_Fact]":
         """Yield the name that a class gives its node, if its base is rclpy's Node itself."""
         assert part.of is not None
         is_super = isinstance(owner, ast.Call) and dotted(owner.func) == "super"
@@ -511,7 +516,7 @@ class _Module:
                 if keyword.arg in _OPTIONS:
                     yield Doubt(f"{keyword.arg or 'more arguments'} of its Node", self._at(call))
 
-    def _read_method(self, part: _ModulePart, call: ast.Call, method: str) -> "Iterator[_Fact]":
+    def _read_method(self, part: CodePart, call: ast.Call, method: str) -> "Iterator[_Fact]":
         """Yield what a method of a node declares, opens or reads."""
         at, argument = self._at(call), partial(self._argument, part, call)
         if method in _KINDS:

@@ -24,6 +24,9 @@ _NO_DEPENDENCY = _warning("REF008", "Package that package.xml does not declare")
 _SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
 _UNUSED = _warning("REF010", "File that no other file names")
 OTHER_RELEASE = _warning("REF011", "Name of another release of ROS 2")
+_NO_SERVICE = _error("REF013", "Service or action with another name or type")
+_NO_INTERFACE = _error("REF014", "Message, service, action or field that does not exist")
+_NO_RUN = _error("REF015", "Node that certainly stops, or does nothing")
 UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
 
 _KINDS: Mapping[Family, Kind] = {
@@ -35,6 +38,9 @@ _KINDS: Mapping[Family, Kind] = {
     "programs": _NO_PROGRAM,
     "topics": _NO_TOPIC,
     "dependencies": _NO_DEPENDENCY,
+    "services": _NO_SERVICE,
+    "interfaces": _NO_INTERFACE,
+    "code": _NO_RUN,
 }
 NAME_CATALOGUE = kinds_in(globals().values())
 

@@ -19,6 +19,9 @@ Family = Literal[
     "programs",
     "topics",
     "dependencies",
+    "services",
+    "interfaces",
+    "code",
 ]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 _Kind = Literal[
@@ -114,6 +117,7 @@ class Mismatch(NamedTuple):
         Correction, ...
     ] = ()  # with each of which it agrees: first of the use, then of the definition
     is_of_type: bool = False  # whether a value or a topic has another type
+    rule: str = ""  # of the family code: what is wrong
 
 
 class Compared(NamedTuple):

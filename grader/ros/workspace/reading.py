@@ -13,6 +13,7 @@ from grader.ros.workspace.dependencies import dependency_facts
 from grader.ros.workspace.files import file_facts
 from grader.ros.workspace.frames import frame_facts
 from grader.ros.workspace.gazebo import gazebo_facts
+from grader.ros.workspace.interfaces import interface_facts
 from grader.ros.workspace.moveit import moveit_facts
 from grader.ros.workspace.names import (
     FAMILY_OF,
@@ -47,6 +48,7 @@ _READERS = (
     srdf_facts,
     moveit_facts,
     dependency_facts,
+    interface_facts,
 )
 
 

@@ -38,6 +38,7 @@ from grader.ros.package.finding import is_backup
 from grader.ros.package.installed_files import are_installs_known, open_meant
 from grader.ros.package.node_facts import NodeFacts, PackageNodes
 from grader.ros.package.package import Package
+from grader.ros.package.package_interfaces import PackageInterfaces, read_interfaces
 from grader.ros.package.python_nodes import read_nodes
 from grader.ros.package.robot_file import Read
 from grader.ros.python.budget import Budget, OutOfBudget
@@ -318,6 +319,11 @@ class Workspace:
     def nodes_by_package(self) -> Mapping[str, PackageNodes]:
         """The nodes of the installed Python modules, by the names of packages."""
         return {package.name: read_nodes(package) for package in self.packages}
+
+    @cached_property
+    def interfaces(self) -> Mapping[str, PackageInterfaces]:
+        """The messages, services and actions of the packages, by the names of these."""
+        return {package.name: read_interfaces(package) for package in self.packages}
 
     @cached_property
     def command_interfaces(self) -> Mapping[str, tuple[frozenset[str], Location]] | None:

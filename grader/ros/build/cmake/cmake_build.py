@@ -13,7 +13,12 @@ from grader.files.limits import ignored_part
 from grader.ros.build.cmake.cmake_values import ROOT, Text, Values
 from grader.ros.build.cmake.language import Command
 from grader.ros.build.file_search import EmptyGlob, PackageListing
-from grader.ros.build.installation import Installation, InstalledFile, InstallError
+from grader.ros.build.installation import (
+    GeneratedInterfaces,
+    Installation,
+    InstalledFile,
+    InstallError,
+)
 from grader.ros.build.places import PREFIX
 from grader.ros.known.known import cmake_words
 from grader.ros.python.parse import START, Position
@@ -35,6 +40,7 @@ class Build:
         self.programs: set[str] = set()  # paths below the prefix
         self.scripts: set[str] = set()  # likewise, of files
         self.modules: list[str] = []  # Python packages
+        self.interfaces: list[GeneratedInterfaces] = []
         self.stops: list[InstallError] = []
         self.unknown: list[Unknown] = []
         self.doubts: list[Unknown] = []
@@ -64,6 +70,7 @@ class Build:
             called_at=self._package_at or self.last,
             files_at=self._package_at or self.last,
             packages=tuple(self.modules),
+            interfaces=tuple(self.interfaces),
         )
 
     def give_up(self, reason: str, at: Position) -> None:
@@ -233,21 +240,35 @@ class Build:
         """Install the message, service and action files of a package."""
         texts = self.values.texts(command.arguments)
         keywords = cmake_words("interface_keywords")
-        texts = [*takewhile(lambda text: text not in keywords, texts)]
-        known = [text for text in texts if isinstance(text, str)]
-        if not texts or len(known) < len(texts):
+        words = [*takewhile(lambda text: text not in keywords, texts)]
+        known = [text for text in words if isinstance(text, str)]
+        if not words or len(known) < len(words):
+            self.interfaces.append(GeneratedInterfaces(command.at, is_certain=False))
             self.give_up("the arguments of rosidl_generate_interfaces() are not known", command.at)
             return
         name, *files = known
         self.targets[name] = "interfaces"
+        made = []
         for text in files:
-            path = self.inside(text)
+            path = self.inside(text.replace(f"{ROOT}:", f"{ROOT}/"))
             if path is None:
                 self.give_up(f"{text} is not in the package", command.at)
             elif self._has(path) is False:
                 self._stop_missing(command, path)
             else:
-                self._copy(path, f"{self._share()}/{path}", command.at)
+                made.append(path)
+                self._copy(path, f"{self._share()}/{'/'.join(path.split('/')[-2:])}", command.at)
+        rest = texts[len(words) :]
+        groups = dict(_groups([str(text) for text in rest], keywords))
+        is_known = len(made) == len(files) and all(isinstance(text, str) for text in rest)
+        found = GeneratedInterfaces(
+            command.at,
+            tuple(made),
+            tuple(groups.get("DEPENDENCIES", ())),
+            is_certain=is_known and self.values.uncertain is None,
+            needs_group=groups.keys().isdisjoint(("SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK")),
+        )
+        self.interfaces.append(found)
 
     # --- Installed files
     # ----------------------------------------------------------------------

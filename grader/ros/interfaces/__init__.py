@@ -1,0 +1,3 @@
+"""Messages, services and actions: their files as rosidl reads them, and the types of well-known
+packages.
+"""

@@ -1,0 +1,86 @@
+"""The messages, services and actions of well-known packages, by release: the tables of
+known/interfaces, each of which is read when it is needed.
+"""
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from functools import cache
+from typing import get_args
+
+from grader.ros.interfaces.interface_file import read_type
+from grader.ros.interfaces.interface_types import (
+    FieldType,
+    Interface,
+    InterfaceField,
+    InterfaceKind,
+    Section,
+)
+from grader.ros.known.known import interface_table
+from grader.ros.known.releases import RELEASES, Release
+
+_ABSENT = "absent"
+_OF_SEVERAL = FieldType("", "")  # of a field that has other types in other releases
+
+
+@cache
+def known_interfaces(
+    package: str, releases: Collection[Release] = ()
+) -> Mapping[str, Interface] | None:
+    """Return the interfaces of a package by their names, msg.Twist, with the fields that they have
+    in any of some releases, or of all; None for a package that is not known.
+    """
+    table = interface_table(package)
+    if table is None:
+        return None
+    found: dict[str, Interface] = {}
+    for kind in get_args(InterfaceKind):
+        for name, row in table.get(kind, {}).items():
+            forms = [form for form in _forms(row, releases or RELEASES) if form != _ABSENT]
+            if forms:
+                found[f"{kind}.{name}"] = _merged(kind, package, forms)
+    return found
+
+
+def _forms(row: str | Mapping[str, str], releases: Collection[Release]) -> Iterator[str]:
+    """Yield the texts of a type in some releases, each once."""
+    if isinstance(row, str):
+        yield row
+        return
+    said = set[str]()
+    text = _ABSENT
+    for release in RELEASES:
+        text = row.get(release, text)
+        if release in releases and text not in said:
+            said.add(text)
+            yield text
+
+
+def _merged(kind: InterfaceKind, package: str, forms: Iterable[str]) -> Interface:
+    """Return an interface with the fields of all its forms."""
+    sections: list[Section] = []
+    for form in forms:
+        for number, text in enumerate(form.split("---")):
+            section = _section(text, package)
+            if number < len(sections):
+                section = _with(sections[number], section)
+                sections[number] = section
+            else:
+                sections.append(section)
+    return Interface(kind, tuple(sections))
+
+
+def _section(text: str, package: str) -> Section:
+    fields, _, constants = text.partition("|")
+    found = {}
+    for written in fields.split(";"):
+        if written.strip():
+            type_text, name = written.split()
+            found[name] = InterfaceField(name, read_type(type_text, package))
+    return Section(found, frozenset(constants.split()))
+
+
+def _with(one: Section, other: Section) -> Section:
+    fields = {**one.fields, **other.fields}
+    for name in one.fields.keys() & other.fields.keys():
+        if one.fields[name].type != other.fields[name].type:
+            fields[name] = InterfaceField(name, _OF_SEVERAL)
+    return Section(fields, one.constants | other.constants)

@@ -1,0 +1,100 @@
+"""The messages, services and actions that a package of a submission generates code for."""
+
+import posixpath
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.ros.build.installation import Installation
+from grader.ros.interfaces.interface_file import INTERFACE_ENDINGS, read_interface
+from grader.ros.interfaces.interface_types import Interface
+from grader.ros.package.package import Package
+
+_MAX_FILES = 200
+_MAX_FILE = 32 * 1024  # bytes
+_BYTES_A_PART = 8
+
+
+class OwnInterface(NamedTuple):
+    """A message, service or action of a package, and the path of its file in the submission."""
+
+    interface: Interface
+    path: str
+
+
+class PackageInterfaces(NamedTuple):
+    """The messages, services and actions of a package by their names, msg.Twist.
+
+    Without `is_complete`, the package may have more of them.
+    """
+
+    types: Mapping[str, OwnInterface] = {}
+    unlisted: Mapping[str, str] = {}  # those of files that nothing generates, and their paths
+    dependencies: frozenset[str] = frozenset()  # packages whose messages they may use
+    location: Location | None = None  # of rosidl_generate_interfaces()
+    needs_group: bool = False
+    is_complete: bool = True
+
+
+def read_interfaces(package: Package) -> PackageInterfaces:
+    """Return the messages, services and actions of a package. Never raises."""
+    setup = package.installation
+    if setup is None or setup.fault is not None:
+        return PackageInterfaces(is_complete=False)
+    files = _interface_files(package)
+    is_complete = setup.doubt is None and len(files) <= _MAX_FILES
+    types: dict[str, OwnInterface] = {}
+    listed: set[str] = set()
+    for path in _generated(setup):
+        listed.add(path)
+        if not path.endswith(INTERFACE_ENDINGS):
+            is_complete = False  # .idl is not read
+            continue
+        data = package.tree.read(path, _MAX_FILE)
+        if data is None or not package.budget.take_of_whole(len(data) // _BYTES_A_PART):
+            is_complete = False
+            continue
+        interface = read_interface(data, package.path(path), package.name)
+        types[_name_of(path)] = OwnInterface(interface, package.path(path))
+    is_complete = is_complete and all(call.is_certain for call in setup.interfaces)
+    unlisted = {_name_of(path): package.path(path) for path in files if path not in listed}
+    calls = setup.interfaces
+    dependencies = {name for call in calls for name in call.dependencies}
+    return PackageInterfaces(
+        types,
+        {name: path for name, path in unlisted.items() if name not in types},
+        frozenset(dependencies),
+        setup.location(calls[0].at) if calls else None,
+        needs_group=any(call.needs_group and call.is_certain for call in calls),
+        is_complete=is_complete and not _has_modules(package),
+    )
+
+
+def _generated(setup: Installation) -> Iterator[str]:
+    """Yield the files of which CMake generates code, as far as they are known."""
+    for call in setup.interfaces:
+        yield from call.files[:_MAX_FILES]
+
+
+def _interface_files(package: Package) -> Sequence[str]:
+    inner = (*package.inner, "test/")
+    return [
+        path
+        for path in package.tree.files
+        if path.endswith(INTERFACE_ENDINGS) and not path.startswith(inner)
+    ]
+
+
+def _name_of(path: str) -> str:
+    """Return the name of the type that a file defines: its folder, as rosidl does, and its name."""
+    folder, name = posixpath.split(posixpath.splitext(path)[0])
+    return f"{posixpath.basename(folder)}.{name}"
+
+
+def _has_modules(package: Package) -> bool:
+    """Return whether a package has own Python modules in the place of generated ones."""
+    folder = f"{package.name}/"
+    starts = tuple(
+        f"{folder}{kind}{end}" for kind in ("msg", "srv", "action") for end in ("/", ".py")
+    )
+    return any(path.startswith(starts) and path.endswith(".py") for path in package.tree.files)

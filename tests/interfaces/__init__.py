@@ -1,0 +1,1 @@
+"""Tests of the readers of messages, services and actions."""
