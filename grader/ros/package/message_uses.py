@@ -149,8 +149,8 @@ def _types_given(
     for part in parts:
         for call in part.calls:
             row = _CALLBACKS.get(_last_name(call.func))
-            callback = _argument(call, row.callback_at, row.callback_name) if row else None
-            made = _argument(call, row.type_at, row.type_name) if row else None
+            callback = given_argument(call, row.callback_at, row.callback_name) if row else None
+            made = given_argument(call, row.type_at, row.type_name) if row else None
             if row is None or callback is None or made is None:
                 continue
             name, kind = dotted(callback), interface_name(value_of(made, part.scope))
@@ -171,7 +171,8 @@ def _last_name(node: ast.expr) -> str:
     return ""
 
 
-def _argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
+def given_argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
+    """Return the expression of an argument; None where it is missing, or may be unpacked."""
     for keyword in call.keywords:
         if keyword.arg == name:
             return keyword.value

@@ -6,21 +6,22 @@ What is opened under a condition is listed as well; actions and the topics of tf
 """
 
 import ast
-from collections.abc import Collection, Iterator, Mapping, Sequence
-from functools import cached_property, partial
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from functools import cache, cached_property, partial
 from typing import NamedTuple
 
 from grader.base.errors import InputError
 from grader.base.slips import Slip
 from grader.base.source import Edits, Location
 from grader.ros.build.installation import InstalledFile
+from grader.ros.package.endpoint_names import Bindings, EndpointNames, bindings
 from grader.ros.package.entry_points import (
     entry_points,
     module_path,
     read_module,
     unreadable_module,
 )
-from grader.ros.package.message_uses import CodePart, field_uses, type_imports
+from grader.ros.package.message_uses import CodePart, field_uses, given_argument, type_imports
 from grader.ros.package.node_facts import (
     Doubt,
     Endpoint,
@@ -74,6 +75,10 @@ _KINDS: dict[str, EndpointKind] = {
     "create_service": "service",
     "create_client": "client",
 }
+_ACTIONS: dict[str, EndpointKind] = {
+    "ActionClient": "action client",
+    "ActionServer": "action server",
+}
 _READS_IF_DECLARED = ("get_parameter_or", "has_parameter")
 _READS = ("get_parameter", *_READS_IF_DECLARED)
 _DECLARES = ("declare_parameter", "declare_parameters")
@@ -91,7 +96,6 @@ _HARMLESS = frozenset(
         "print",
         "hasattr",
         "getattr",
-        "ActionServer",
         "TransformListener",
         "TransformBroadcaster",
         "StaticTransformBroadcaster",
@@ -306,6 +310,7 @@ class _Module:
         self.doubts: list[Doubt] = []
         self.has_loose_declarations = _has_alias(code.tree)
         self._classes: dict[Location, str] = {}
+        self._class_nodes: dict[Location, ast.ClassDef] = {}
         self._facts: dict[Location, list[_Fact]] = {}  # of each node
         self._parts: list[CodePart] = []
         body = own_nodes(code.tree)
@@ -342,6 +347,7 @@ class _Module:
             base.name if isinstance(base, QualifiedName) else None for base in bases
         ]
         self._classes[at] = full
+        self._class_nodes[at] = node
         own = own_nodes(node)
         constants = self._constants.bound(own, Scope({}, scope)).names
         attributes = Scope({f"self.{name}": value for name, value in constants.items()}, scope)
@@ -444,13 +450,44 @@ class _Module:
         """Return an argument of a call; None where it is missing, Unknown where * or ** may give
         it.
         """
-        given: list[ast.expr | None] = [it.value for it in call.keywords if it.arg == name]
         if any(isinstance(it, ast.Starred) for it in call.args[: position + 1]):
             return Unknown("it is unpacked", position_of(call))
-        given += call.args[position : position + 1]
-        if not given and any(it.arg is None for it in call.keywords):
+        given = given_argument(call, position, name)
+        if given is None and any(it.arg is None for it in call.keywords):
             return Unknown("it is unpacked", position_of(call))
-        return self._constants.value_of(given[0] if given else None, part.scope)
+        return self._constants.value_of(given, part.scope)
+
+    def _endpoints(
+        self, part: CodePart, call: ast.Call, position: int, name: str, endpoint: Endpoint
+    ) -> Iterator[Endpoint]:
+        """Yield an endpoint for each name that an argument of a call gives it."""
+        value = self._argument(part, call, position, name)
+        given = given_argument(call, position, name)
+        if isinstance(value, str) or given is None:
+            yield endpoint._replace(name=_text(value))
+            return
+        known = self._bindings_in(part.of).within(self._bindings_of(part.node))
+        names = EndpointNames(known, partial(self._value_in, part.scope))
+        for parts in names.read(given):
+            kinds = {it.kind for it in parts}
+            if kinds == {"text"}:
+                yield endpoint._replace(name=parts[0].text)
+            else:
+                yield endpoint._replace(parts=parts if kinds != {"unknown"} else ())
+
+    def _value_in(self, scope: Scope, node: ast.expr) -> Value:
+        return self._constants.value_of(node, scope)
+
+    def _bindings_in(self, of: Location | None) -> Bindings:
+        """Return what the attributes of self in a class are bound to once."""
+        if of is None:
+            return Bindings({}, {})
+        return self._bindings_of(self._class_nodes[of])
+
+    @cached_property
+    def _bindings_of(self) -> Callable[[ast.AST], Bindings]:
+        """What the names in a function, or the attributes of self in a class, are bound to."""
+        return cache(_bindings_of)
 
     def _receiver(self, part: CodePart, node: ast.expr) -> Location | None:
         """Return the place of the node that an expression is; None where that is not known."""
@@ -488,20 +525,16 @@ class _Module:
                     at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
                     if at is None:
                         continue
-                    if name == "ActionClient":
-                        self._facts[at].append(self._action_client(part, call))
+                    if name in _ACTIONS:
+                        self._facts[at] += self._action(part, call, _ACTIONS[name])
                     elif name not in _HARMLESS:
                         self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
 
-    def _action_client(self, part: CodePart, call: ast.Call) -> Endpoint:
+    def _action(self, part: CodePart, call: ast.Call, kind: EndpointKind) -> Iterator[Endpoint]:
         made = self._argument(part, call, 1, "action_type")
-        name = _text(self._argument(part, call, 2, "action_name"))
-        return Endpoint(
-            "action client",
-            made.name if isinstance(made, QualifiedName) else None,
-            name,
-            self._at(call),
-        )
+        type_name = made.name if isinstance(made, QualifiedName) else None
+        endpoint = Endpoint(kind, type_name, None, self._at(call))
+        yield from self._endpoints(part, call, 2, "action_name", endpoint)
 
     def _read_init(self, part: CodePart, call: ast.Call, owner: ast.expr) -> "Iterator[_Fact]":
         """Yield the name that a class gives its node, if its base is rclpy's Node itself."""
@@ -523,13 +556,13 @@ class _Module:
             kind = _KINDS[method]
             is_topic = kind in ("publisher", "subscription")
             made = argument(0, "msg_type" if is_topic else "srv_type")
-            name = _text(argument(1, "topic" if is_topic else "srv_name"))
             qos = None
             if is_topic:
                 qos = argument(2 if kind == "publisher" else 3, "qos_profile")
-            yield Endpoint(
-                kind, made.name if isinstance(made, QualifiedName) else None, name, at, _qos(qos)
-            )
+            type_name = made.name if isinstance(made, QualifiedName) else None
+            endpoint = Endpoint(kind, type_name, None, at, _qos(qos))
+            name = "topic" if is_topic else "srv_name"
+            yield from self._endpoints(part, call, 1, name, endpoint)
         elif method == "create_timer":
             period = argument(0, "timer_period_sec")
             yield Timer(float(period) if isinstance(period, int | float) else None, at)
@@ -558,6 +591,10 @@ def _has_alias(tree: ast.AST) -> bool:
         isinstance(node, ast.Attribute) and node.attr in _DECLARES and node not in called
         for node in ast.walk(tree)
     )
+
+
+def _bindings_of(node: ast.AST) -> Bindings:
+    return bindings(ast.walk(node), of_self=isinstance(node, ast.ClassDef))
 
 
 def _text(value: Value) -> str | None:

@@ -2,8 +2,11 @@
 in vain.
 """
 
+from fnmatch import fnmatchcase
+
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
+from grader.ros.workspace.endpoints import ANY, opened_by
 from grader.ros.workspace.gazebo import BRIDGE
 from grader.ros.workspace.workspace import Workspace
 
@@ -35,8 +38,9 @@ def _may_publish(workspace: Workspace, node: StartedNode, topic: str) -> bool:
         return node.package not in known()["without_frames"] or _is_remapped_to(node, topic)
     own_node = workspace.own_node(node)
     if own_node is not None:
-        publishers = [each for each in own_node.endpoints if each.kind == "publisher"]
-        return bool(own_node.doubts) or any(each.name is None for each in publishers)
+        opened = opened_by(workspace, node)
+        names = [each.name or ANY for each in opened if each.endpoint.kind == "publisher"]
+        return bool(own_node.doubts) or any(ANY in it and fnmatchcase(topic, it) for it in names)
     texts = [source.text for source in workspace.sources_of(package, _SOURCES)]
     last = topic.rpartition("/")[2]
     return not texts or any(last in text for text in texts) or _is_remapped_to(node, topic)

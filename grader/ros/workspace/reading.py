@@ -28,6 +28,7 @@ from grader.ros.workspace.names import (
 )
 from grader.ros.workspace.parameters import parameter_facts
 from grader.ros.workspace.programs import program_facts
+from grader.ros.workspace.services import service_facts
 from grader.ros.workspace.spawners import spawner_facts
 from grader.ros.workspace.srdf import srdf_facts
 from grader.ros.workspace.topics import topic_facts
@@ -43,6 +44,7 @@ _READERS = (
     argument_facts,
     program_facts,
     topic_facts,
+    service_facts,
     gazebo_facts,
     bridge_facts,
     srdf_facts,

@@ -13,6 +13,7 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.node_facts import Endpoint
 from grader.ros.workspace.bridges import bridge_rows
 from grader.ros.workspace.controllers import controller_endpoints
+from grader.ros.workspace.endpoints import opened_by
 from grader.ros.workspace.gazebo import BRIDGE
 from grader.ros.workspace.names import (
     Compared,
@@ -55,13 +56,17 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
     that no node has.
     """
     opened: list[_OpenedTopic] = []
+    computed = 0
     for launch, node in workspace.launched:
         if node.when is False:
             continue
         for topic, endpoint in controller_endpoints(workspace, launch, node):
             opened.append(_OpenedTopic(topic, endpoint, launch, node))
-        for topic, endpoint in _endpoints(workspace, node):
-            opened.append(_OpenedTopic(topic, endpoint, launch, node))
+        for found in opened_by(workspace, node):
+            if found.endpoint.kind in _ENDS and found.is_known:
+                opened.append(_OpenedTopic(found.name or "", found.endpoint, launch, node))
+            elif found.endpoint.kind in _ENDS:
+                computed += 1
     yield from _all_remappings(workspace)
     distinct = _distinct(opened)
     publishers = _by_topic(_opened_as("publisher", distinct))
@@ -75,7 +80,7 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _bridged_types(workspace, distinct)
     yield from _unconnected(workspace, distinct)
     yield from _unheard(workspace, distinct)
-    yield _count(workspace, opened)
+    yield _count(workspace, opened, computed)
 
 
 def _distinct(opened: Iterable[_OpenedTopic]) -> list[_OpenedTopic]:
@@ -95,9 +100,9 @@ def _by_topic(opened: Iterable[_OpenedTopic]) -> dict[str, list[_OpenedTopic]]:
     return by_topic
 
 
-def _count(workspace: Workspace, opened: Iterable[_OpenedTopic]) -> Counted:
+def _count(workspace: Workspace, opened: Iterable[_OpenedTopic], computed: int) -> Counted:
     """Return how many topics of own nodes have another end, which a node, a controller or a bridge
-    of the workspace opens.
+    of the workspace opens; the names of others are `computed`.
     """
     rows = list(bridge_rows(workspace))
     published = {f"/{row.ros}" for row in rows if row.is_published}
@@ -110,7 +115,7 @@ def _count(workspace: Workspace, opened: Iterable[_OpenedTopic]) -> Counted:
         for each in own
         if each.topic in (subscribed if each.endpoint.kind == "publisher" else published)
     ]
-    unread, computed = set[str](), -len(own)
+    unread = set[str]()
     for _, node in workspace.launched:
         owner = workspace.package_of(node)
         if node.when is False or owner is None:
@@ -118,27 +123,12 @@ def _count(workspace: Workspace, opened: Iterable[_OpenedTopic]) -> Counted:
         own_node = workspace.own_node(node)
         if own_node is None and owner.has_program(node.package, node.executable):
             unread.add(node.executable)
-        elif own_node is not None:
-            computed += sum(each.kind in _ENDS for each in own_node.endpoints)
     reasons = []
     if computed:
         reasons.append(f"{computed} {'is' if computed == 1 else 'are'} computed")
     if unread:
         reasons.append(f"the source of {enumerated(sorted(unread), _MAX_NAMED)} is not read")
     return Counted("topics", len(compared), len(own) + computed, ", and ".join(reasons))
-
-
-def _endpoints(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str, Endpoint]]:
-    """Yield the publishers and subscriptions of an own Python node, with the names of topics."""
-    own_node = workspace.own_node(node)
-    endpoints = own_node.endpoints if own_node is not None else ()
-    workspace.charge(len(endpoints) * (1 + len(node.remaps or ())))
-    for endpoint in endpoints:
-        # What begins with ~ is below the name of the node.
-        is_plain = endpoint.name is not None and not endpoint.name.startswith("~")
-        topic = node.topic(endpoint.name or "") if is_plain else None
-        if topic is not None and endpoint.kind in _ENDS:
-            yield topic, endpoint
 
 
 def _opened_as(kind: str, opened: Iterable[_OpenedTopic]) -> list[_OpenedTopic]:
@@ -224,11 +214,16 @@ def _remappings(
     if own_node is None or node.remaps is None:
         return
     owner = f"{node.package}/{node.executable} {node.location.file_and_line}"
-    if own_node.doubts or any(endpoint.name is None for endpoint in own_node.endpoints):
+    plain = node._replace(remaps=(), namespace="")
+    opened = [*opened_by(workspace, plain)]
+    if own_node.doubts or not all(found.is_known for found in opened):
         yield Open("topic", owner)
     for endpoint in own_node.endpoints:
         if endpoint.name is not None:
             yield Definition("topic", _bare(endpoint.name), endpoint.location, owner)
+    for found in opened:
+        if found.name is not None and found.is_known:
+            yield Definition("topic", _bare(found.name), found.endpoint.location, owner)
     for rule in rules:
         name = _bare(rule[0])
         if not name.startswith("__") and ":" not in name:

@@ -1,0 +1,243 @@
+"""The names of topics, services and actions that Python code makes of what depends on the node as
+it is started: its name, its namespace, and the values of its parameters.
+"""
+
+import ast
+import re
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import NamedTuple
+
+from grader.ros.package.node_facts import NamePart
+from grader.ros.python.constants import dotted, offset_of
+from grader.ros.python.values import Value
+
+_MAX_DEPTH = 12  # of names that are bound to expressions with names
+_MAX_ITEMS = 20  # of a list that a loop goes through
+_MAX_PARTS = 20
+_UNKNOWN = NamePart("unknown")
+_FIELD = re.compile(r"\{(\d*)\}|\{\{|\}\}|\{[^{}]*\}")
+_PERCENT = re.compile(r"%([sdi%])|%")
+_OF_NODE = ("self.get_name", "self.get_namespace")
+_VALUES = ("value", "string_value", "string_array_value", "integer_value")
+Parts = tuple[NamePart, ...]
+
+
+class Bindings(NamedTuple):
+    """What names are bound to once: the expressions, and those of lists that loops go through."""
+
+    values: Mapping[str, ast.expr]
+    loops: Mapping[str, ast.expr]
+
+    def within(self, inner: "Bindings") -> "Bindings":
+        """Return these names with those of a scope inside of theirs, which hide them."""
+        return Bindings({**self.values, **inner.values}, {**self.loops, **inner.loops})
+
+
+def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
+    """Return what the names in a function are bound to once, or the attributes of self in a
+    class.
+    """
+    counts, values, loops = Counter[str](), dict[str, ast.expr](), dict[str, ast.expr]()
+    for node in sorted(nodes, key=offset_of):
+        match node:
+            case (
+                ast.Assign(targets=[target], value=value)
+                | ast.AnnAssign(target=target, value=ast.expr() as value)
+            ):
+                values[dotted(target)] = value
+            case ast.For(target=target, iter=items) | ast.comprehension(target=target, iter=items):
+                name, listed = _looped(target, items)
+                loops[name] = listed
+        match node:
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+                counts[name] += 1
+            case ast.Attribute(ctx=ast.Store() | ast.Del()):
+                counts[dotted(node)] += 1
+    once = {name for name, count in counts.items() if count == 1}
+    if of_self:
+        once = {name for name in once if name.startswith("self.")}
+    return Bindings(
+        {name: value for name, value in values.items() if name in once},
+        {name: items for name, items in loops.items() if name in once},
+    )
+
+
+def _looped(target: ast.expr, items: ast.expr) -> tuple[str, ast.expr]:
+    """Return the name that a loop gives each item of a list; of enumerate() that of the item."""
+    match target, items:
+        case ast.Tuple(elts=[_, named]), ast.Call(func=ast.Name(id="enumerate"), args=[listed]):
+            return dotted(named), listed
+    return dotted(target), items
+
+
+class EndpointNames:
+    """Reads names in one function."""
+
+    def __init__(self, known: Bindings, evaluate: Callable[[ast.expr], Value]) -> None:
+        self._known, self._evaluate = known, evaluate
+
+    def read(self, node: ast.expr) -> Iterator[Parts]:
+        """Yield the parts of a name, once for each item of a list in the code that a loop goes
+        through.
+        """
+        names = {name.id for name in ast.walk(node) if isinstance(name, ast.Name)}
+        for name in sorted(names):
+            items = self._items(self._known.loops.get(name))
+            if items is not None:
+                for item in items[:_MAX_ITEMS]:
+                    yield self._joined(self._parts(node, {name: item}))
+                return
+        yield self._joined(self._parts(node, {}))
+
+    def _items(self, node: ast.expr | None) -> list[ast.expr] | None:
+        """Return the items of a list that is written in the code; None for any other list."""
+        for _ in range(_MAX_DEPTH):
+            match node:
+                case ast.List(elts=items) | ast.Tuple(elts=items):
+                    return items
+                case ast.Dict(keys=keys):
+                    return [key for key in keys if key is not None]
+                case ast.Name() | ast.Attribute():
+                    node = self._known.values.get(dotted(node))
+                case _:
+                    return None
+        return None
+
+    def _joined(self, parts: Iterable[NamePart]) -> Parts:
+        """Return parts, of which no two texts follow each other."""
+        found: list[NamePart] = []
+        for part in parts:
+            if found and found[-1].kind == part.kind == "text":
+                found[-1] = NamePart("text", found[-1].text + part.text)
+            elif len(found) < _MAX_PARTS:
+                found.append(part)
+            else:
+                found[-1] = _UNKNOWN
+        return tuple(found)
+
+    def _parts(
+        self, node: ast.expr, items: Mapping[str, ast.expr], depth: int = 0
+    ) -> Iterator[NamePart]:
+        """Yield the parts of an expression; `items` are what the names of loops are."""
+        value = self._evaluate(node)
+        if isinstance(value, str | int) and not isinstance(value, bool):
+            yield NamePart("text", str(value))
+            return
+        if depth > _MAX_DEPTH:
+            yield _UNKNOWN
+            return
+        match node:
+            case ast.JoinedStr(values=values):
+                for each in values:
+                    yield from self._parts(each, items, depth + 1)
+            case ast.FormattedValue(value=inner, conversion=-1, format_spec=None):
+                yield from self._parts(inner, items, depth + 1)
+            case ast.BinOp(left=left, op=ast.Add(), right=right):
+                yield from self._parts(left, items, depth + 1)
+                yield from self._parts(right, items, depth + 1)
+            case ast.BinOp(left=ast.Constant(value=str(text)), op=ast.Mod(), right=right):
+                given = right.elts if isinstance(right, ast.Tuple) else [right]
+                yield from self._formatted(_PERCENT, text, given, items, depth)
+            case ast.Name() | ast.Attribute():
+                yield from self._of_name(node, items, depth)
+            case ast.Call():
+                yield from self._of_call(node, items, depth)
+            case _:
+                yield _UNKNOWN
+
+    def _of_name(
+        self, node: ast.Name | ast.Attribute, items: Mapping[str, ast.expr], depth: int
+    ) -> Iterator[NamePart]:
+        name = dotted(node)
+        parameter = _parameter(node)
+        if name in items:
+            yield from self._parts(items[name], {}, depth + 1)
+        elif parameter is not None:
+            yield self._of_parameter("parameter", parameter)
+        elif name in self._known.values:
+            yield from self._parts(self._known.values[name], items, depth + 1)
+        elif name in self._known.loops:
+            yield self._item_of(self._known.loops[name])
+        else:
+            yield _UNKNOWN
+
+    def _item_of(self, node: ast.expr) -> NamePart:
+        """Return the part that an item of a list is: of a parameter, or not known."""
+        for _ in range(_MAX_DEPTH):
+            parameter = _parameter(node)
+            if parameter is not None:
+                return self._of_parameter("item", parameter)
+            if dotted(node) not in self._known.values:
+                break
+            node = self._known.values[dotted(node)]
+        return _UNKNOWN
+
+    def _of_parameter(self, kind: str, name: ast.expr) -> NamePart:
+        value = self._evaluate(name)
+        if not isinstance(value, str):
+            return _UNKNOWN
+        return NamePart("item" if kind == "item" else "parameter", value)
+
+    def _of_call(
+        self, node: ast.Call, items: Mapping[str, ast.expr], depth: int
+    ) -> Iterator[NamePart]:
+        match node:
+            case ast.Call(func=ast.Name(id="str"), args=[inner], keywords=[]):
+                yield from self._parts(inner, items, depth + 1)
+            case ast.Call(
+                func=ast.Attribute(value=ast.Constant(value=str(text)), attr="format"),
+                args=given,
+                keywords=[],
+            ):
+                yield from self._formatted(_FIELD, text, given, items, depth)
+            case ast.Call(func=made, args=[]) if dotted(made) in _OF_NODE:
+                is_name = dotted(made) == "self.get_name"
+                yield NamePart("node name" if is_name else "namespace")
+            case _:
+                yield _UNKNOWN
+
+    def _formatted(
+        self,
+        pattern: re.Pattern[str],
+        text: str,
+        given: list[ast.expr],
+        items: Mapping[str, ast.expr],
+        depth: int,
+    ) -> Iterator[NamePart]:
+        """Yield the parts of a text with places for what is given."""
+        start = number = 0
+        for place in pattern.finditer(text):
+            yield NamePart("text", text[start : place.start()])
+            start = place.end()
+            if place[0] in ("{{", "}}", "%%"):
+                yield NamePart("text", place[0][0])
+                continue
+            at = int(place[1]) if (place[1] or "").isdigit() else number
+            number += 1
+            if place[1] is not None and at < len(given):
+                yield from self._parts(given[at], items, depth + 1)
+            else:
+                yield _UNKNOWN
+        yield NamePart("text", text[start:])
+
+
+def _parameter(node: ast.expr) -> ast.expr | None:
+    """Return the name of the parameter whose value an expression is; None if it is no
+    parameter's.
+    """
+    match node:
+        case ast.Attribute(value=ast.Call(func=made, args=[name, *_]), attr="value"):
+            method = dotted(made)
+        case ast.Attribute(
+            value=ast.Call(
+                func=ast.Attribute(
+                    value=ast.Call(func=made, args=[name, *_]), attr="get_parameter_value"
+                )
+            ),
+            attr=attribute,
+        ) if attribute in _VALUES:
+            method = dotted(made)
+        case _:
+            return None
+    return name if method in ("self.get_parameter", "self.declare_parameter") else None

@@ -1,0 +1,107 @@
+"""What nodes open, with the full names that it has for each node as it is started."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.package.node_facts import Endpoint, NamePart, NodeFacts
+from grader.ros.python.values import Value
+from grader.ros.workspace.workspace import Workspace
+
+ANY = "*"  # in a name, in place of a part that is not known
+_MAX_NAMES = 20  # of one endpoint
+
+
+class OpenedName(NamedTuple):
+    """An endpoint of a node as it is started, with its full name, in which ANY stands for what is
+    not known; None where nothing of the name is known.
+    """
+
+    name: str | None
+    endpoint: Endpoint
+
+    @property
+    def is_known(self) -> bool:
+        """Whether all of the name is known."""
+        return self.name is not None and ANY not in self.name
+
+
+def opened_by(workspace: Workspace, node: StartedNode) -> Iterator[OpenedName]:
+    """Yield what an own node opens as it is started. Raises NotDecided."""
+    own_node = workspace.own_node(node)
+    if own_node is None:
+        return
+    workspace.charge(len(own_node.endpoints) * (1 + len(node.remaps or ())))
+    values: Mapping[str, Value] = {}
+    if any(part.kind in ("parameter", "item") for it in own_node.endpoints for part in it.parts):
+        values = _values_given(workspace, node, own_node)
+    named = node._replace(node_name=workspace.name_of(node))
+    for endpoint in own_node.endpoints:
+        for name in _names(endpoint, named, values):
+            full = named.topic(name) if name is not None else None
+            is_open = name is not None and ANY in name and node.remaps != ()
+            if full is None or is_open or "~" in full or "//" in full:
+                yield OpenedName(None, endpoint)
+            else:
+                yield OpenedName(full, endpoint)
+
+
+def _values_given(
+    workspace: Workspace, node: StartedNode, own_node: NodeFacts
+) -> Mapping[str, Value]:
+    """Return the values of the parameters that a node declares, as it is started."""
+    values = {
+        declared.name: declared.default
+        for declared in own_node.parameters
+        if declared.name is not None and declared.is_declared
+    }
+    package = workspace.package_of(node)
+    if package is None:
+        return {}
+    given = workspace.read_given(package, node, own_node.name or "")
+    if given.unknown:
+        return {}
+    return {**values, **{name: it.value for name, it in given.values.items()}}
+
+
+def _names(
+    endpoint: Endpoint, node: StartedNode, values: Mapping[str, Value]
+) -> Sequence[str | None]:
+    """Return the names that an endpoint has in the code of a node; None for one of which nothing is
+    known.
+    """
+    if endpoint.name is not None or not endpoint.parts:
+        return [endpoint.name]
+    lists = [part.text for part in endpoint.parts if part.kind == "item"]
+    items: Value = [ANY]
+    if len({*lists}) == 1:
+        items = values.get(lists[0])
+    if not isinstance(items, list | tuple):
+        items = [ANY]
+    names: list[str | None] = []
+    for item in items[:_MAX_NAMES]:
+        name = "".join(_text_of(part, node, values, item) for part in endpoint.parts)
+        names.append(name if name.strip(f"{ANY}/") else None)
+    return names
+
+
+def _text_of(part: NamePart, node: StartedNode, values: Mapping[str, Value], item: Value) -> str:
+    """Return the text that a part is for a node, where `item` is the one of its list."""
+    match part.kind:
+        case "text":
+            return part.text
+        case "node name" if node.node_name:
+            return node.node_name
+        case "namespace" if node.namespace is not None:
+            return f"/{node.namespace.strip('/')}"
+        case "parameter":
+            return _written(values.get(part.text))
+        case "item":
+            return _written(item)
+    return ANY
+
+
+def _written(value: Value) -> str:
+    """Return a value as it is in a text, if it surely is written so."""
+    is_plain = isinstance(value, str | int) and not isinstance(value, bool)
+    return str(value) if is_plain else ANY
