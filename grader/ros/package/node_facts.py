@@ -45,6 +45,11 @@ class Endpoint(NamedTuple):
     qos: Qos = Qos()
     parts: tuple[NamePart, ...] = ()  # of a name that is no plain text; none if it is not known
 
+    @property
+    def is_computed(self) -> bool:
+        """Whether its name is computed in a way that is not known for any node."""
+        return self.name is None and (not self.parts or ("unknown", "") in self.parts)
+
 
 class NodeParameter(NamedTuple):
     """A parameter that a node declares, with its default, or that it reads."""
@@ -93,6 +98,27 @@ class FieldUse(NamedTuple):
     literal: tuple[Value, ...] = ()
 
 
+CodeRule = Literal[
+    "undefined name",
+    "callback is called",
+    "no response",
+    "nothing spins",
+    "no rclpy.init",
+    "waits in a callback",
+    "sleeps in a callback",
+]
+
+
+class CodeFault(NamedTuple):
+    """Why a node stops, or does nothing; it fails no criterion unless it is certain."""
+
+    rule: CodeRule
+    message: str
+    location: Location
+    related: Location | None = None
+    is_certain: bool = True
+
+
 class NodeFacts(NamedTuple):
     """A node: a class of nodes, or one that is made by a function; then `class_name` is empty.
 
@@ -130,3 +156,4 @@ class PackageNodes(NamedTuple):
     has_loose_declarations: bool = False  # of parameters, of a node that is not known
     imports: tuple[TypeImport, ...] = ()
     field_uses: tuple[FieldUse, ...] = ()
+    faults: tuple[CodeFault, ...] = ()

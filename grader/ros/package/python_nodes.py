@@ -14,6 +14,7 @@ from grader.base.errors import InputError
 from grader.base.slips import Slip
 from grader.base.source import Edits, Location
 from grader.ros.build.installation import InstalledFile
+from grader.ros.package.code_faults import ModuleText, code_faults
 from grader.ros.package.endpoint_names import Bindings, EndpointNames, bindings
 from grader.ros.package.entry_points import (
     entry_points,
@@ -177,8 +178,16 @@ def read_nodes(package: Package) -> PackageNodes:
     is_loose = any(module.has_loose_declarations for module in modules.values())
     imports = [found for module in modules.values() for found in module.type_imports()]
     uses = [use for module in modules.values() for use in module.field_uses()]
+    texts = {name: module.text() for name, module in modules.items()}
+    faults = [fault for text in texts.values() for fault in code_faults(text, texts)]
     return PackageNodes(
-        tuple(nodes), tuple(programs), tuple(doubts), is_loose, tuple(imports), tuple(uses)
+        nodes=tuple(nodes),
+        programs=tuple(programs),
+        doubts=tuple(doubts),
+        has_loose_declarations=is_loose,
+        imports=tuple(imports),
+        field_uses=tuple(uses),
+        faults=tuple(faults),
     )
 
 
@@ -390,6 +399,10 @@ class _Module:
                 Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
             )
         return [self._node(at, facts) for at, facts in self._facts.items()]
+
+    def text(self) -> ModuleText:
+        """Return the module as it is searched for faults."""
+        return ModuleText(self._name, self._code, self._parts, self._constants.imported)
 
     def type_imports(self) -> Iterator[TypeImport]:
         """Yield the messages, services and actions that the module certainly imports."""

@@ -69,6 +69,7 @@ class Constants(Interpreter):
         """
         super().__init__(functions, {}, budget=Budget(_MAX_STEPS, whole=work))
         self._full_name, self._is_package, self._is_open = name, is_package, binds_unseen(nodes)
+        self.imported: set[str] = set()  # the full names of what the scopes so far import
         self._shared: set[str] = set()  # names that functions of the module may bind
         for node in nodes:
             if isinstance(node, ast.Global | ast.Nonlocal):
@@ -105,6 +106,7 @@ class Constants(Interpreter):
                 last_star = max(last_star, node.lineno)
             if isinstance(node, ast.Import | ast.ImportFrom):
                 imported = self._imported_names(node)
+                self.imported.update(value.name for value in imported.values())
                 scope.names |= {
                     name: value for name, value in imported.items() if counts[name] == 1
                 }

@@ -75,7 +75,7 @@ def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) 
         all_nodes=len(nodes) + len(unread),
         unread_robots=unread_robots,
         cpp_files=cpp_files,
-        computed_names=sum(endpoint.name is None for endpoint in endpoints),
+        computed_names=sum(endpoint.is_computed for endpoint in endpoints),
         expressions=expressions,
         stated=stated,
     )

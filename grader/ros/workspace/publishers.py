@@ -13,13 +13,23 @@ from grader.ros.workspace.workspace import Workspace
 _SOURCES = (".cpp", ".cc", ".cxx", ".c", ".hpp", ".hh", ".h")
 
 
-def may_be_published(workspace: Workspace, topic: str) -> bool:
-    """Return whether something may publish a topic for which no publisher is known."""
+def is_own_type(workspace: Workspace, kind: str | None) -> bool:
+    """Return whether a package of the workspace defines a type, so that programs of other packages
+    do not know it.
+    """
+    return (kind or "").partition(".")[0] in workspace.interfaces
+
+
+def may_be_published(workspace: Workspace, topic: str, kind: str | None) -> bool:
+    """Return whether something may publish a topic of a type for which no publisher is known."""
+    if any(launch.more for _, _, launch in workspace.launches):
+        return True
+    if is_own_type(workspace, kind):
+        own = [node for _, node in workspace.nodes if workspace.package_of(node) is not None]
+        return any(_may_publish(workspace, node, topic) for node in own)
     name = topic.strip("/")
     first, last = name.partition("/")[0], topic.rpartition("/")[2]
     if last in known()["topics_of_others"] or first in workspace.controllers:
-        return True
-    if any(launch.more for _, _, launch in workspace.launches):
         return True
     # A parameter, or a remapping of a plugin, may name what something publishes.
     if any(name in tree.source.text for _, tree in workspace.trees):

@@ -8,6 +8,7 @@ from grader.base.errors import NotDecided
 from grader.ros.package.package import Package
 from grader.ros.workspace.arguments import argument_facts
 from grader.ros.workspace.bridges import bridge_facts
+from grader.ros.workspace.code import code_facts
 from grader.ros.workspace.controllers import controller_facts
 from grader.ros.workspace.dependencies import dependency_facts
 from grader.ros.workspace.files import file_facts
@@ -51,6 +52,7 @@ _READERS = (
     moveit_facts,
     dependency_facts,
     interface_facts,
+    code_facts,
 )
 
 

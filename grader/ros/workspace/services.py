@@ -17,6 +17,7 @@ from grader.ros.workspace.names import (
     Mismatch,
     corrections,
 )
+from grader.ros.workspace.publishers import is_own_type
 from grader.ros.workspace.workspace import Workspace
 
 _SERVERS: dict[EndpointKind, EndpointKind] = {
@@ -109,9 +110,7 @@ def _without_server(
     if len(names) != 1 or _may_be_served(workspace, client):
         return
     [name] = names
-    own_types = workspace.interfaces.keys()
-    is_own = (client.endpoint.type or "").partition(".")[0] in own_types
-    if not is_own and closest(client.name, names) is None:
+    if not is_own_type(workspace, client.endpoint.type) and closest(client.name, names) is None:
         return
     server = alike[0]
     at, noun = server.endpoint.location, _NOUNS[client.endpoint.kind]
@@ -125,7 +124,7 @@ def _may_be_served(workspace: Workspace, client: _Opened) -> bool:
     """Return whether something that is not read may serve what a client calls."""
     if any(launch.more for _, _, launch in workspace.launches):
         return True
-    is_own = (client.endpoint.type or "").partition(".")[0] in workspace.interfaces
+    is_own = is_own_type(workspace, client.endpoint.type)
     last = client.name.rpartition("/")[2]
     for _, node in workspace.nodes:
         if workspace.package_of(node) is None:

@@ -25,7 +25,7 @@ from grader.ros.workspace.names import (
     Use,
     corrections,
 )
-from grader.ros.workspace.publishers import may_be_published
+from grader.ros.workspace.publishers import is_own_type, may_be_published
 from grader.ros.workspace.workspace import Workspace
 
 _ENDS = ("publisher", "subscription")
@@ -258,12 +258,13 @@ def _unconnected(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[F
         alike = by_type.get(endpoint.type, [])
         workspace.charge(len(alike))
         alike = [offer for offer in alike if subscription.launch in offer.launches]
-        names = {offer.topic for offer in alike}
-        is_one = len(names) == 1 and closest(topic, names)
-        if not is_one or may_be_published(workspace, topic):
+        names = {offer.topic: offer.location for offer in alike}
+        meant = closest(topic, names)
+        is_one = len(names) == 1 or is_own_type(workspace, endpoint.type)
+        if meant is None or not is_one or may_be_published(workspace, topic, endpoint.type):
             yield Use("topic", topic, endpoint.location, "create_subscription")
             continue
-        meant, at = alike[0].topic, alike[0].location
+        at = names[meant]
         if any(node.topic(rule[1]) == meant for rule in node.remaps or ()):
             continue  # a remapping of another name, which is said of it
         message = f"nothing publishes {topic}; did you mean {meant} ({at.file_and_line})?"

@@ -1,0 +1,30 @@
+"""Code: what stops own nodes, or keeps them from doing anything."""
+
+from collections.abc import Iterator
+
+from grader.ros.workspace.names import Compared, Fact, Mismatch, Undecided
+from grader.ros.workspace.workspace import Workspace
+
+
+def code_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what is wrong in the code of nodes."""
+    for nodes in workspace.nodes_by_package.values():
+        if nodes.nodes:
+            yield Compared("code")
+        for program in nodes.programs:
+            if program.syntax is not None:
+                at = program.syntax.location
+                message = f"Python cannot read the file: {program.syntax.message}"
+                if program.syntax.is_certain:
+                    yield Mismatch("code", message, at, rule="syntax")
+                else:
+                    yield Undecided("code", f"{at.path} is not read")
+        for fault in nodes.faults:
+            yield Mismatch(
+                "code",
+                fault.message,
+                fault.location,
+                fault.related,
+                fault.is_certain,
+                rule=fault.rule,
+            )
