@@ -105,6 +105,7 @@ LIBRARIES = {
     "distributed": {"workers"},
     "csv": {"classroom.tables"},
     "xlsxwriter": {"classroom.spreadsheet"},
+    "pyflakes": {"ros.package"},
 }
 
 

@@ -65,6 +65,7 @@ FOLDERS = {
     ".xacro": "urdf",
     ".rviz": "rviz",
     ".yaml": "config",
+    ".py": "rover",
 }
 WHEEL = """\
 <robot xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -116,6 +117,15 @@ PACKAGE = {
 }
 
 
+# The files of the package that start its node, for an example in the code of this.
+STARTED = {
+    "setup.py": PACKAGE["setup.py"].rstrip().removesuffix(")")
+    + "    entry_points={'console_scripts': ['pilot = rover.pilot:main']},\n)\n",
+    "setup.cfg": "[install]\ninstall_scripts=$base/lib/rover\n",
+    "launch/rover.launch.py": framed("LCH001", "Node(package='rover', executable='pilot'),")[0],
+}
+
+
 def files_of(name: str, side: str) -> tuple[dict[str, bytes], range]:
     """Return the files of a submission with one side of an example, its own file first, and the lines of the example there."""
     text, lines = framed(name, ENTRIES[name][side])
@@ -130,9 +140,12 @@ def files_of(name: str, side: str) -> tuple[dict[str, bytes], range]:
     if file.endswith((".urdf", ".md")):
         return {file: own}, lines
     folder = "launch" if file.endswith(".launch.py") else FOLDERS.get(PurePath(file).suffix, "")
+    if file == "setup.py":
+        folder = ""
+    package = PACKAGE | STARTED if folder == "rover" else PACKAGE
     others = {
         path: content.encode()
-        for path, content in PACKAGE.items()
+        for path, content in package.items()
         if not (folder == "urdf" == path[:4])
     }
     return {str(PurePath("rover", folder, file)): own} | {

@@ -17,7 +17,12 @@ from pathlib import Path
 from typing import Any, get_args
 
 from grader.ros.interfaces.interface_file import INTERFACE_ENDINGS, read_interface
-from grader.ros.interfaces.interface_types import FieldType, Interface, InterfaceKind, Section
+from grader.ros.interfaces.interface_types import (
+    FieldType,
+    Interface,
+    InterfaceKind,
+    InterfaceSection,
+)
 from grader.ros.known.releases import RELEASES, Release
 
 FOLDER = Path("grader/ros/known/interfaces")
@@ -187,7 +192,7 @@ def _text_of(interface: Interface) -> str:
     return " --- ".join(map(_text_of_section, interface.sections)).strip()
 
 
-def _text_of_section(section: Section) -> str:
+def _text_of_section(section: InterfaceSection) -> str:
     fields = "; ".join(
         f"{text_of_type(field.type)} {field.name}" for field in section.fields.values()
     )

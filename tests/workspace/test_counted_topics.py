@@ -3,7 +3,7 @@
 from tests.workspace.carts import Edit, agreement_of, edited
 
 _ALARM, _DETECTOR = "cart_nodes/alarm.py", "cart_nodes/detector.py"
-_COMPUTED: Edit = (_ALARM, '(Bool, "obstacle",', '(Bool, self.get_name() + "/obstacle",')
+_COMPUTED: Edit = (_ALARM, '(Bool, "obstacle",', '(Bool, self.find_name() + "/obstacle",')
 _NOT_PUBLISHED: Edit = (_DETECTOR, 'self.create_publisher(Bool, "obstacle", 10)', "print")
 _NO_IMAGE: Edit = (_DETECTOR, 'self.create_subscription(Image, "image", self.on_image, 10)', "pass")
 

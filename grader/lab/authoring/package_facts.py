@@ -19,6 +19,7 @@ from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
+from grader.ros.workspace.endpoints import opened_by
 from grader.ros.workspace.names import FAMILIES, Family, Mismatch
 from grader.ros.workspace.reading import read_agreement, wrong_names
 
@@ -32,6 +33,9 @@ _NAME_TITLES: Mapping[Family, str] = {
     "programs": "every program, entry point and node that is named exists",
     "topics": "topics have the same names, types and quality of service in all nodes",
     "dependencies": "each package.xml declares the packages that the files use",
+    "services": "services and actions have the same names and types in all nodes",
+    "interfaces": "every message, service, action and field that is used exists",
+    "code": "nothing in the code certainly stops a node, or keeps it from working",
 }
 # What is odd in a reference, and so is no criterion: a text, and what is counted in it.
 _ODD: Mapping[Family, tuple[str, str]] = {
@@ -43,6 +47,9 @@ _ODD: Mapping[Family, tuple[str, str]] = {
     "programs": ("{} of programs, entry points and nodes that do not exist", "use"),
     "topics": ("{} in the names, types and quality of service of topics", "fault"),
     "dependencies": ("package.xml does not declare {} that the files use", "package"),
+    "services": ("{} in the names and types of services and actions", "fault"),
+    "interfaces": ("{} in messages, services, actions and their fields", "fault"),
+    "code": ("{} in the code of nodes", "fault"),
 }
 _WHEEL = re.compile("wheel|axle|tire|tyre")
 _DISTANCE = re.compile("separation|wheel_?base|wheel_?track|track_?width")
@@ -50,6 +57,9 @@ _EXACT = 1e-6
 # What keeps launch files from starting, and nodes from their parameters.
 _STOPPING = ("files names_agree", "arguments names_agree", "programs names_agree")
 _OF_PARAMETERS = (*_STOPPING, "controllers names_agree", "parameters names_agree")
+_OF_CODE = ("code names_agree", "interfaces names_agree")
+# What of the nodes of a lab is seen from outside, by what they open.
+_OPENING = {"publisher": "publishes", "service": "serves", "action server": "serves"}
 _TURNED: Mapping[str, str | bool] = {"true": False, "false": True, "True": "False", "False": "True"}
 _OWN_KINDS = (".urdf", ".xacro", ".rviz", ".py", ".xml", ".msg", ".srv", ".action")
 _OF_BUILDS: tuple[Family, ...] = ("files", "programs")
@@ -105,7 +115,8 @@ def _facts_of(
     """
     path = submission.path or ""
     yield _package_fact("package_found", name=package.name)
-    if package.manifest is not None and package.manifest.build_type:
+    # Nodes in Python may be built in either way, and interfaces by CMake only.
+    if submission.path and package.manifest is not None and package.manifest.build_type:
         yield _package_fact("package_type", build_type=package.manifest.build_type)
     yield _package_fact("setup_imports")._replace(title="`colcon build` of the package succeeds")
     yield from _installs(
@@ -276,11 +287,32 @@ def _launch_facts(
     nodes = _nodes_that_start(launch)
     if nodes:
         yield _package_fact("node_runs", name, launch=name, nodes=nodes)._replace(carried=(found,))
+    unrun = after._replace(causes=(*after.causes, *_OF_CODE))
+    for fact in _opened_facts(submission, launch, name):
+        yield fact._replace(carried=(unrun,))
     for fact in _turned_facts(package, path):
         yield fact._replace(carried=(after,))
     if launch.named("urdf", "rviz", "include"):
         unread = after._replace(causes=(*after.causes, "parameters names_agree"))
         yield _package_fact("launch_finds_files", name, name=name)._replace(carried=(unread,))
+
+
+def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator[Fact]:
+    """Yield what the nodes of a lab without a robot publish and serve."""
+    if submission.path:
+        return
+    asked: dict[str, dict[str, str]] = {"publishes": {}, "serves": {}}
+    for node in launch.nodes:
+        for found in opened_by(submission.workspace, node) if node.when else ():
+            verb = _OPENING.get(found.endpoint.kind)
+            kind = found.endpoint.type
+            if verb is not None and kind is not None and found.name is not None and found.is_known:
+                asked[verb][found.name] = kind.replace(".", "/")
+    for verb, names in asked.items():
+        if names:
+            fact = _package_fact("node_runs", f"{name} {verb}", launch=name, **{verb: names})
+            done = "publish" if verb == "publishes" else "serve"
+            yield fact._replace(title=f"the nodes {done} {enumerated([*names])}")
 
 
 def _turned_facts(package: Package, path: str) -> Iterator[Fact]:

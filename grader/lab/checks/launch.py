@@ -32,7 +32,7 @@ ABOUT = {
         causes={
             **_STOPS,
             "given": "a node has other remappings or arguments, or another file is included",
-            "topic": "no node publishes a topic, or subscribes to it",
+            "topic": "no node opens a topic, service or action",
             "type": "a topic has another type",
             "program": "an entry point in setup.py names no function",
         },
@@ -81,6 +81,8 @@ def node_runs(
     includes: list[str] | None = None,
     publishes: list[str] | Mapping[str, str] | None = None,
     subscribes: list[str] | Mapping[str, str] | None = None,
+    serves: list[str] | Mapping[str, str] | None = None,
+    calls: list[str] | Mapping[str, str] | None = None,
     built: bool = True,
 ) -> Outcome:
     """The launch file starts these nodes, with the defaults of its arguments or those of the
@@ -105,6 +107,8 @@ def node_runs(
         publishes: Topics that nodes of the submission in Python publish, after remapping; a table
             gives their types.
         subscribes: Topics that they subscribe to.
+        serves: Services and actions that they serve.
+        calls: Services and actions that they call.
         built: Whether it must find the files that it reads; if not, only what else stops it counts.
     """
     found = _launch_of(package, launch)
@@ -123,7 +127,16 @@ def node_runs(
     missing = _missing_nodes(found, choices)
     if missing and not _may_start(found, missing):
         return _fail_missing(found, missing, nodes or ())
-    wanted = Wanted(_names_in(found, not_ or ()), remap, arguments, includes, publishes, subscribes)
+    wanted = Wanted(
+        absent=_names_in(found, not_ or ()),
+        remap=remap,
+        arguments=arguments,
+        includes=includes,
+        publishes=publishes,
+        subscribes=subscribes,
+        serves=serves,
+        calls=calls,
+    )
     faults = find_faults(submission, found, choices, wanted) if any(wanted) else []
     if wrong := next((it for it in faults if it.is_certain), None):
         return failed(wrong.message, wrong.at, detail=wrong.detail, cause=wrong.cause)

@@ -27,8 +27,10 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
     count.
 
     Args:
-        of: What is named: files, frames, controllers, parameters, arguments, programs, topics or
-            dependencies.
+        of: What is named: files, frames, controllers, parameters, arguments, programs, topics,
+            dependencies, services (and actions) or interfaces (messages, services, actions and
+            their fields); or code, of which nothing may certainly stop a node, or keep it from
+            working.
     """
     from grader.ros.workspace.reading import (  # late: few rubrics ask for it
         read_agreement,

@@ -20,7 +20,16 @@ if TYPE_CHECKING:
     from grader.ros.package.node_facts import Endpoint
     from grader.ros.workspace.workspace import Workspace
 
-_VERBS = {"publisher": "publishes", "subscription": "subscribes to"}
+_VERBS: Mapping[str, str] = {
+    "publisher": "publishes",
+    "subscription": "subscribes to",
+    "service": "serves",
+    "action server": "serves",
+    "client": "calls",
+    "action client": "calls",
+}
+# Faults in the code of a node that do not keep it from opening what it opens.
+_HARMLESS = frozenset({"no response"})
 _Topics = Sequence[str] | Mapping[str, str] | None  # a table has their types
 
 
@@ -35,6 +44,8 @@ class Wanted(NamedTuple):
     includes: Sequence[str] | None
     publishes: _Topics
     subscribes: _Topics
+    serves: _Topics = None
+    calls: _Topics = None
 
 
 class Fault(NamedTuple):
@@ -69,10 +80,14 @@ def find_faults(
         faults += [_ill_started(launch, names, wanted) for names in choices]
     faults += [_not_included(launch, end) for end in wanted.includes or ()]
     topics = _NodeTopics(launch, workspace)
-    for name, kind in _typed(wanted.publishes).items():
-        faults.append(topics.fault_of("publisher", name, kind))
-    for name, kind in _typed(wanted.subscribes).items():
-        faults.append(topics.fault_of("subscription", name, kind))
+    asked = {
+        "publishes": wanted.publishes,
+        "subscribes to": wanted.subscribes,
+        "serves": wanted.serves,
+        "calls": wanted.calls,
+    }
+    for verb, names in asked.items():
+        faults += [topics.fault_of(verb, name, kind) for name, kind in _typed(names).items()]
     return [fault for fault in faults if fault is not None]
 
 
@@ -180,7 +195,7 @@ def _not_included(launch: "Launch", end: str) -> Fault | None:
 
 
 class _NodeTopic(NamedTuple):
-    """A publisher or subscription of a node; `name` is empty where it is not known."""
+    """What a node opens; `name` is empty where it is not known."""
 
     name: str
     endpoint: "Endpoint"
@@ -188,12 +203,20 @@ class _NodeTopic(NamedTuple):
 
 
 class _NodeTopics:
-    """The topics of the nodes of a workspace that a launch file starts."""
+    """The topics, services and actions of the nodes of a workspace that a launch file starts."""
 
     def __init__(self, launch: "Launch", workspace: "Workspace") -> None:
+        from grader.ros.workspace.endpoints import opened_by  # late: few rubrics ask for it
+        from grader.ros.workspace.reading import read_agreement
+
         self._topics: list[_NodeTopic] = []
         self._is_open = bool(launch.unknown)
-        self._unread: list[Fault] = []  # programs that Python cannot read publish nothing
+        self._unread: list[Fault] = []  # of programs that cannot run, and so open nothing
+        stopping = {
+            it.location.path: it
+            for it in reversed(read_agreement(workspace).mismatches)
+            if it.family in ("code", "interfaces") and it.is_certain and it.rule not in _HARMLESS
+        }
         for node in launch.nodes:
             package, own_node = workspace.package_of(node), workspace.own_node(node)
             if package is None:
@@ -203,26 +226,27 @@ class _NodeTopics:
             started = [it.syntax for it in programs if it.name == node.executable]
             syntax = next(filter(None, started), None)
             doubts = list(own.doubts) if own is not None else []
+            wrong = stopping.get(own_node.location.path) if own_node is not None else None
             if syntax is not None:
                 message = f"Python cannot read the file: {syntax.message}"
                 self._unread.append(Fault(message, syntax.location))
                 doubts = [it for it in doubts if it.location.path != syntax.location.path]
             elif own_node is None or own_node.doubts:
                 self._is_open = True
+            elif wrong is not None:
+                self._unread.append(Fault(f"a node cannot run: {wrong.message}", wrong.location))
+                own_node = None
             self._is_open = self._is_open or bool(doubts)
-            self._add(node, own_node.endpoints if own_node is not None else ())
+            for found in opened_by(workspace, node) if own_node is not None else ():
+                self._is_open = self._is_open or not found.is_known
+                name = found.name or "" if found.is_known else ""
+                self._topics.append(_NodeTopic(name, found.endpoint, node))
 
-    def _add(self, node: "StartedNode", endpoints: "Iterable[Endpoint]") -> None:
-        for endpoint in [endpoint for endpoint in endpoints if endpoint.kind in _VERBS]:
-            topic = node.topic(endpoint.name) if endpoint.name is not None else None
-            self._is_open = self._is_open or topic is None or "~" in topic
-            self._topics.append(_NodeTopic(topic or "", endpoint, node))
-
-    def fault_of(self, kind: str, name: str, message_type: str) -> Fault | None:
-        """Return that no node publishes a topic, or subscribes to it, with a type."""
-        full_name, verb = f"/{name.removeprefix('/')}", _VERBS[kind]
+    def fault_of(self, verb: str, name: str, message_type: str) -> Fault | None:
+        """Return that no node publishes, subscribes to, serves or calls a name with a type."""
+        full_name = f"/{name.removeprefix('/')}"
         python_type = re.sub("[/:]+", ".", message_type)
-        of_kind = [topic for topic in self._topics if topic.endpoint.kind == kind]
+        of_kind = [topic for topic in self._topics if _VERBS[topic.endpoint.kind] == verb]
         same = [topic for topic in of_kind if topic.name == full_name]
         is_certain = not self._is_open
         for topic in same:

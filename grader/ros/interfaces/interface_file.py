@@ -21,7 +21,7 @@ from grader.ros.interfaces.interface_types import (
     InterfaceFault,
     InterfaceField,
     InterfaceKind,
-    Section,
+    InterfaceSection,
 )
 
 INTERFACE_ENDINGS = tuple(f".{kind}" for kind in get_args(InterfaceKind))
@@ -148,7 +148,7 @@ class _Reading:
         else:
             self._fault(message, lines[ends[-1]].number if ends else 1)
 
-    def _section(self, lines: Sequence[_Line]) -> Section:
+    def _section(self, lines: Sequence[_Line]) -> InterfaceSection:
         fields: dict[str, InterfaceField] = {}
         constants: set[str] = set()
         for line in _without_comments(lines):
@@ -166,7 +166,7 @@ class _Reading:
                     self._add_field(fields, type_text, rest, line.number)
             except _Wrong as wrong:
                 self._fault(str(wrong), line.number, wrong.written, wrong.meant)
-        return Section(fields, frozenset(constants))
+        return InterfaceSection(fields, frozenset(constants))
 
     def _add_constant(self, known: set[str], kind: str, name: str, value: str) -> None:
         if kind not in PRIMITIVES:

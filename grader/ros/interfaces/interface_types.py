@@ -49,7 +49,7 @@ class InterfaceField(NamedTuple):
     location: Location | None = None
 
 
-class Section(NamedTuple):
+class InterfaceSection(NamedTuple):
     """The fields and the names of the constants of a message, or of a part of a service or
     action.
     """
@@ -75,10 +75,10 @@ class Interface(NamedTuple):
     """
 
     kind: InterfaceKind
-    sections: tuple[Section, ...]
+    sections: tuple[InterfaceSection, ...]
     faults: tuple[InterfaceFault, ...] = ()
 
-    def section(self, name: str) -> Section | None:
+    def section(self, name: str) -> InterfaceSection | None:
         """Return a section by its name in Python, such as Request; None where there is none."""
         names = SECTIONS[self.kind]
         if name in names and len(self.sections) == len(names):

@@ -12,7 +12,7 @@ from grader.ros.interfaces.interface_types import (
     Interface,
     InterfaceField,
     InterfaceKind,
-    Section,
+    InterfaceSection,
 )
 from grader.ros.known.known import interface_table
 from grader.ros.known.releases import RELEASES, Release
@@ -56,7 +56,7 @@ def _forms(row: str | Mapping[str, str], releases: Collection[Release]) -> Itera
 
 def _merged(kind: InterfaceKind, package: str, forms: Iterable[str]) -> Interface:
     """Return an interface with the fields of all its forms."""
-    sections: list[Section] = []
+    sections: list[InterfaceSection] = []
     for form in forms:
         for number, text in enumerate(form.split("---")):
             section = _section(text, package)
@@ -68,19 +68,19 @@ def _merged(kind: InterfaceKind, package: str, forms: Iterable[str]) -> Interfac
     return Interface(kind, tuple(sections))
 
 
-def _section(text: str, package: str) -> Section:
+def _section(text: str, package: str) -> InterfaceSection:
     fields, _, constants = text.partition("|")
     found = {}
     for written in fields.split(";"):
         if written.strip():
             type_text, name = written.split()
             found[name] = InterfaceField(name, read_type(type_text, package))
-    return Section(found, frozenset(constants.split()))
+    return InterfaceSection(found, frozenset(constants.split()))
 
 
-def _with(one: Section, other: Section) -> Section:
+def _with(one: InterfaceSection, other: InterfaceSection) -> InterfaceSection:
     fields = {**one.fields, **other.fields}
     for name in one.fields.keys() & other.fields.keys():
         if one.fields[name].type != other.fields[name].type:
             fields[name] = InterfaceField(name, _OF_SEVERAL)
-    return Section(fields, one.constants | other.constants)
+    return InterfaceSection(fields, one.constants | other.constants)

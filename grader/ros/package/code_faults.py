@@ -268,10 +268,11 @@ class _Search:
         reached = self._reached_modules()
         if reached is None or not self._registered:
             return
-        names = set[str]()
+        names, loops = set[str](), 0
         for module in reached:
             for node in ast.walk(module.code.tree):
                 names.add(getattr(node, "attr", "") or getattr(node, "id", ""))
+                loops += isinstance(node, ast.While)
         if any("spin" in name or "WaitSet" in name or "wait_for" in name for name in names):
             return
         for part in self._module.parts:
@@ -281,7 +282,7 @@ class _Search:
                         "nothing spins the node, so none of its callbacks runs; write "
                         "rclpy.spin(node)"
                     )
-                    yield CodeFault("nothing spins", message, self._at(call))
+                    yield CodeFault("nothing spins", message, self._at(call), is_certain=not loops)
                     return
 
     def _reached_modules(self) -> list[ModuleText] | None:

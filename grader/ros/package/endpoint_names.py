@@ -4,6 +4,7 @@ it is started: its name, its namespace, and the values of its parameters.
 
 import ast
 import re
+import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import NamedTuple
@@ -23,11 +24,19 @@ _VALUES = ("value", "string_value", "string_array_value", "integer_value")
 Parts = tuple[NamePart, ...]
 
 
+class Loop(NamedTuple):
+    """A loop through a list; its name is not bound to one item outside of these lines."""
+
+    items: ast.expr
+    first: int
+    last: int
+
+
 class Bindings(NamedTuple):
     """What names are bound to once: the expressions, and those of lists that loops go through."""
 
     values: Mapping[str, ast.expr]
-    loops: Mapping[str, ast.expr]
+    loops: Mapping[str, Loop]
 
     def within(self, inner: "Bindings") -> "Bindings":
         """Return these names with those of a scope inside of theirs, which hide them."""
@@ -38,7 +47,7 @@ def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
     """Return what the names in a function are bound to once, or the attributes of self in a
     class.
     """
-    counts, values, loops = Counter[str](), dict[str, ast.expr](), dict[str, ast.expr]()
+    counts, values, loops = Counter[str](), dict[str, ast.expr](), dict[str, Loop]()
     for node in sorted(nodes, key=offset_of):
         match node:
             case (
@@ -46,9 +55,13 @@ def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
                 | ast.AnnAssign(target=target, value=ast.expr() as value)
             ):
                 values[dotted(target)] = value
-            case ast.For(target=target, iter=items) | ast.comprehension(target=target, iter=items):
+            case ast.For(target=target, iter=items):
                 name, listed = _looped(target, items)
-                loops[name] = listed
+                last = max(it.end_lineno or it.lineno for it in node.body)
+                loops[name] = Loop(listed, node.lineno, last)
+            case ast.comprehension(target=target, iter=items):
+                name, listed = _looped(target, items)
+                loops[name] = Loop(listed, 0, sys.maxsize)
         match node:
             case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
                 counts[name] += 1
@@ -83,12 +96,20 @@ class EndpointNames:
         """
         names = {name.id for name in ast.walk(node) if isinstance(name, ast.Name)}
         for name in sorted(names):
-            items = self._items(self._known.loops.get(name))
+            loop = self._loop(name, node)
+            items = self._items(loop.items if loop is not None else None)
             if items is not None:
                 for item in items[:_MAX_ITEMS]:
                     yield self._joined(self._parts(node, {name: item}))
                 return
         yield self._joined(self._parts(node, {}))
+
+    def _loop(self, name: str, node: ast.expr) -> Loop | None:
+        """Return the loop that an expression is in and that binds a name."""
+        loop = self._known.loops.get(name)
+        if loop is not None and loop.first <= node.lineno <= loop.last:
+            return loop
+        return None
 
     def _items(self, node: ast.expr | None) -> list[ast.expr] | None:
         """Return the items of a list that is written in the code; None for any other list."""
@@ -157,8 +178,8 @@ class EndpointNames:
             yield self._of_parameter("parameter", parameter)
         elif name in self._known.values:
             yield from self._parts(self._known.values[name], items, depth + 1)
-        elif name in self._known.loops:
-            yield self._item_of(self._known.loops[name])
+        elif (loop := self._loop(name, node)) is not None:
+            yield self._item_of(loop.items)
         else:
             yield _UNKNOWN
 

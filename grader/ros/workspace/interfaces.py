@@ -15,7 +15,7 @@ from grader.ros.interfaces.interface_types import (
     FieldType,
     Interface,
     InterfaceField,
-    Section,
+    InterfaceSection,
 )
 from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.known import cmake_table
@@ -35,6 +35,8 @@ _OF_PYTHON = ("get_fields_and_field_types", "SLOT_TYPES")  # besides what begins
 # Releases whose setters check the type of what is assigned: rosidl_generator_py of Foxy to Iron.
 _CHECKING = RELEASES[: RELEASES.index("jazzy")]
 _GOAL_HANDLE = "GoalHandle"
+# Releases that have the headers of all packages in one folder, where a compiler finds them.
+_OF_ONE_FOLDER: frozenset[Release] = frozenset({"foxy", "galactic"})
 
 
 def interface_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -84,13 +86,13 @@ def _unknown_field_type(
     """Yield that nothing defines the type of a field, or that CMakeLists.txt does not name its
     package.
     """
-    kind, at = field.type, field.location
+    kind, at, releases = field.type, field.location, {*workspace.releases}
     if not kind.package or at is None:
         return
     absent = _absent(workspace, f"{kind.package}.msg.{kind.name}", at)
     if absent is not None:
         yield absent
-    elif kind.package != package.name and own.is_complete:
+    elif kind.package != package.name and own.is_complete and not _OF_ONE_FOLDER & releases:
         reached = _reached(workspace, own)
         if reached is not None and kind.package not in reached:
             message = (
@@ -135,6 +137,8 @@ def _absent(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
     """Return that nothing defines a type, such as chat_msgs.srv.Ask, if this is certain."""
     package, _, own_name = name.partition(".")
     kind, _, short = own_name.partition(".")
+    if "_" in short:
+        return None  # of a section or an event, which rosidl generates too
     own = workspace.interfaces.get(package)
     if own is not None:
         if own_name in own.types or not own.is_complete:
@@ -215,7 +219,7 @@ def _used_field(workspace: Workspace, use: FieldUse) -> Iterator[Fact]:
 
 
 def _used_at(
-    workspace: Workspace, shown: str, section: Section, path: Sequence[str], use: FieldUse
+    workspace: Workspace, shown: str, section: InterfaceSection, path: Sequence[str], use: FieldUse
 ) -> Iterator[Fact]:
     """Yield what is wrong with the last name of a path of fields that begins in a section."""
     attribute, *rest = path
@@ -238,14 +242,14 @@ def _used_at(
         yield from _used_at(workspace, shown, inner_section, rest, use)
 
 
-def _is_of_python(section: Section, attribute: str) -> bool:
+def _is_of_python(section: InterfaceSection, attribute: str) -> bool:
     """Return whether the class that rosidl generates has an attribute that is no field."""
     is_known = attribute in section.constants or attribute in _OF_PYTHON
     return is_known or attribute.startswith("_") or attribute.endswith("__DEFAULT")
 
 
 def _without_field(
-    workspace: Workspace, shown: str, section: Section, attribute: str, at: Location
+    workspace: Workspace, shown: str, section: InterfaceSection, attribute: str, at: Location
 ) -> Mismatch:
     names = [*section.fields]
     inside = []

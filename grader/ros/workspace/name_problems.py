@@ -27,6 +27,7 @@ OTHER_RELEASE = _warning("REF011", "Name of another release of ROS 2")
 _NO_SERVICE = _error("REF013", "Service or action with another name or type")
 _NO_INTERFACE = _error("REF014", "Message, service, action or field that does not exist")
 _NO_RUN = _error("REF015", "Node that certainly stops, or does nothing")
+_MAY_WAIT = _warning("REF016", "Node that may stop or wait")
 UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
 
 _KINDS: Mapping[Family, Kind] = {
@@ -49,7 +50,9 @@ def name_problems(agreement: Agreement) -> tuple[Problem, ...]:
     """Return what does not agree as problems, in the order of files and lines."""
     problems = []
     for wrong in agreement.mismatches:
-        kind = _KINDS[wrong.family] if wrong.is_certain else _SIMILAR
+        kind = _KINDS[wrong.family]
+        if not wrong.is_certain:
+            kind = _MAY_WAIT if wrong.family == "code" else _SIMILAR
         problems.append(Problem(kind, wrong.message, wrong.location, wrong.family))
     for at in agreement.unused:
         message = "no other file of the workspace names this file"

@@ -322,8 +322,15 @@ class Workspace:
 
     @cached_property
     def interfaces(self) -> Mapping[str, PackageInterfaces]:
-        """The messages, services and actions of the packages, by the names of these."""
-        return {package.name: read_interfaces(package) for package in self.packages}
+        """The messages, services and actions of the packages, by the names of these. Of a name that
+        several packages have nothing is known.
+        """
+        found = {}
+        for package in self.packages:
+            is_one = self._counts[package.name] < 2
+            unknown = PackageInterfaces(is_complete=False)
+            found[package.name] = read_interfaces(package) if is_one else unknown
+        return found
 
     @cached_property
     def command_interfaces(self) -> Mapping[str, tuple[frozenset[str], Location]] | None:

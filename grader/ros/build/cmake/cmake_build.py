@@ -259,7 +259,9 @@ class Build:
                 made.append(path)
                 self._copy(path, f"{self._share()}/{'/'.join(path.split('/')[-2:])}", command.at)
         rest = texts[len(words) :]
-        groups = dict(_groups([str(text) for text in rest], keywords))
+        groups: dict[str, list[str]] = {}
+        for keyword, items in _groups([str(text) for text in rest], keywords):
+            groups.setdefault(keyword, []).extend(items)
         is_known = len(made) == len(files) and all(isinstance(text, str) for text in rest)
         found = GeneratedInterfaces(
             command.at,
