@@ -11,6 +11,7 @@ from decimal import Decimal
 from difflib import unified_diff
 from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache
+from itertools import chain
 from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
@@ -22,6 +23,7 @@ from grader.lab.authoring.equivalents import Equivalent, RewritingRules, equival
 from grader.lab.authoring.file_equivalents import EVERY_NODE, file_equivalents
 from grader.lab.authoring.mutants import Mutant, MutantEdit, mutants, package_mutants
 from grader.lab.authoring.name_mutants import compared_names, name_changes
+from grader.lab.authoring.node_mutants import node_changes
 from grader.lab.authoring.samples import Loss, Sample, SampleResults, tested_samples
 from grader.lab.checks.manual import MANUAL_CHECKS
 from grader.lab.grading.deciding import decide
@@ -177,7 +179,8 @@ class Trial:
         """Return the changes of names and values in a file, if a criterion compares them."""
         is_compared = any(it.check.name in ("names_agree", "parameter_is") for it in self.tested)
         if is_compared:
-            return name_changes(source, label, self._names, self._families)
+            names = name_changes(source, label, self._names, self._families)
+            return chain(names, node_changes(self.reference, source, label, self._families))
         return ()
 
     @cached_property

@@ -165,13 +165,16 @@ class _Search:
             if not isinstance(found.given, ast.Call):
                 continue
             function = self._function(found.given.func, found.part)
-            if function is None or function.decorator_list or _gives_value(function):
+            if function is None or function.decorator_list:
                 continue
             name = dotted(found.given.func)
-            message = (
-                f"{found.by}() is given what {name}() returns, which is None; write {name} "
-                "without the parentheses"
-            )
+            if _lacks_arguments(found.given, function, is_method=name.startswith("self.")):
+                what = f"calls {name}() without its arguments"
+            elif not _gives_value(function):
+                what = f"is given what {name}() returns, which is None"
+            else:
+                continue
+            message = f"{found.by}() {what}; write {name} without the parentheses"
             yield CodeFault("callback is called", message, self._at(found.given))
 
     def without_response(self) -> Iterator[CodeFault]:
@@ -336,6 +339,19 @@ def _own_statements(body: Sequence[ast.stmt]) -> Iterator[ast.stmt]:
             yield from _own_statements(handler.body)
         for case in getattr(statement, "cases", []):
             yield from _own_statements(case.body)
+
+
+def _lacks_arguments(
+    call: ast.Call, function: ast.FunctionDef | ast.AsyncFunctionDef, *, is_method: bool
+) -> bool:
+    """Return whether a call certainly gives a function too few arguments."""
+    if any(isinstance(it, ast.Starred) for it in call.args) or any(
+        keyword.arg is None for keyword in call.keywords
+    ):
+        return False
+    parameters = function.args
+    needed = len(parameters.posonlyargs) + len(parameters.args) - len(parameters.defaults)
+    return len(call.args) + len(call.keywords) < needed - is_method
 
 
 def _is_generator(function: ast.AST) -> bool:

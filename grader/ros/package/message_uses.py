@@ -58,6 +58,7 @@ def interface_name(value: Value) -> str | None:
         return None
     parts = value.name.split(".")
     is_type = len(parts) in (3, 4) and parts[1] in _KINDS and parts[2][:1].isupper()
+    is_type = is_type and parts[0] != "rclpy"  # whose module action has other classes
     return value.name if is_type else None
 
 
@@ -69,7 +70,7 @@ def type_imports(tree: ast.Module, source: Source) -> Iterator[TypeImport]:
         match statement:
             case ast.ImportFrom(module=str(module), names=names, level=0):
                 _, _, kind = module.partition(".")
-                for alias in names if kind in _KINDS else ():
+                for alias in names if kind in _KINDS and module != "rclpy.action" else ():
                     if alias.name != "*":
                         at = location_in(source, position_of(alias))
                         yield TypeImport(f"{module}.{alias.name}", at)

@@ -270,8 +270,11 @@ def _declared(
             yield Definition("parameter", parameter.name, parameter.location, owner)
     for name in _OF_EVERY_NODE:
         yield Definition("parameter", name, own_node.location, owner)
-    if own_node.doubts or workspace.nodes_by_package[node.package].has_loose_declarations:
-        yield Open("parameter", owner)
+    package_of_node = workspace.package_of(node)
+    if package_of_node is not None:
+        nodes = workspace.nodes_by_package[package_of_node.name]
+        if own_node.doubts or nodes.has_loose_declarations:
+            yield Open("parameter", owner)
     for parameter in own_node.parameters:
         if parameter.name is not None and not parameter.is_declared:
             is_optional = not parameter.is_needed
