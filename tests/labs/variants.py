@@ -52,8 +52,12 @@ def make_variant(lab: str, name: str, folder: Path) -> Path:
 
 
 def _apply(edit: dict[str, Any], workspace: Path) -> None:
-    """Replace a text that occurs once, or write, move or remove a file, which must exist."""
+    """Replace a text that occurs once, or write, move or remove a file, which must exist if it is not new."""
     file = workspace / edit["file"]
+    if edit.get("new_file"):
+        assert not file.exists()
+        file.write_text(edit["text"], encoding="utf-8")
+        return
     text = file.read_text(encoding="utf-8")
     if "old" in edit:
         assert text.count(edit["old"]) == 1, (
