@@ -253,10 +253,17 @@ class _Search:
                     reached.append((self._function(call.func, part), part))
 
     def _is_concurrent(self) -> bool:
-        """Return whether a module of the package may run callbacks at the same time."""
+        """Return whether this module, one that it imports or one that imports it may run callbacks
+        at the same time.
+        """
+        name = self._module.name
         for module in self._others.values():
+            is_user = any(f"{it}.".startswith(f"{name}.") for it in module.imports)
+            is_used = any(f"{it}.".startswith(f"{module.name}.") for it in self._module.imports)
+            if module.name != name and not is_user and not is_used:
+                continue
             text = module.code.source.text
-            if any(name in text for name in _CONCURRENT):
+            if any(word in text for word in _CONCURRENT):
                 return True
             if not _CONCURRENT_MODULES.isdisjoint(it.partition(".")[0] for it in module.imports):
                 return True

@@ -292,6 +292,9 @@ class _FunctionUses:
                     literals[target] = self._literal(value)
                 case ast.Attribute(value=owner):
                     typed = self._type_of(owner)
+                    if typed is None and node.attr.isupper() and dotted(owner):
+                        kind = interface_name(self._evaluate(owner))  # a constant of a type
+                        typed = Typed(kind) if kind is not None else None
                     if typed is not None:
                         end = (node.end_col_offset or 0) - len(node.attr) + 1
                         at = Position(node.end_lineno or node.lineno, end)

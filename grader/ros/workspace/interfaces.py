@@ -2,7 +2,7 @@
 types and fields that nodes use.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from grader.base.names import closest, near
 from grader.base.source import Location
@@ -133,22 +133,31 @@ def _packages_used(package: str) -> set[str]:
 # --- Types
 
 
-def _absent(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
-    """Return that nothing defines a type, such as chat_msgs.srv.Ask, if this is certain."""
+def is_absent(workspace: Workspace, name: str) -> bool:
+    """Return whether nothing defines a type, such as chat_msgs.srv.Ask, if this is certain."""
     package, _, own_name = name.partition(".")
-    kind, _, short = own_name.partition(".")
-    if "_" in short:
-        return None  # of a section or an event, which rosidl generates too
+    if "_" in own_name:
+        return False  # of a section or an event, which rosidl generates too
     own = workspace.interfaces.get(package)
     if own is not None:
-        if own_name in own.types or not own.is_complete:
-            return None
+        return own.is_complete and own_name not in own.types
+    known = known_interfaces(package, workspace.releases)
+    if known is None or "rolling" in workspace.releases:
+        return False
+    return own_name not in known
+
+
+def _absent(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
+    """Return that nothing defines a type, if this is certain."""
+    if not is_absent(workspace, name):
+        return None
+    package, _, own_name = name.partition(".")
+    kind, _, short = own_name.partition(".")
+    own = workspace.interfaces.get(package)
+    unlisted: Mapping[str, str] = {}
+    names = [*(known_interfaces(package, workspace.releases) or {})]
+    if own is not None:
         names, unlisted = [*own.types], own.unlisted
-    else:
-        known = known_interfaces(package, workspace.releases)
-        if known is None or own_name in known or "rolling" in workspace.releases:
-            return None
-        names, unlisted = [*known], {}
     shown = f"{package}/{kind}/{short}"
     if own_name in unlisted:
         related = own.location if own is not None else None
@@ -251,8 +260,9 @@ def _is_of_python(section: InterfaceSection, attribute: str) -> bool:
 def _without_field(
     workspace: Workspace, shown: str, section: InterfaceSection, attribute: str, at: Location
 ) -> Mismatch:
-    names = [*section.fields]
-    inside = []
+    names, noun, inside = [*section.fields], "field", []
+    if attribute.isupper():
+        names, noun = sorted(section.constants), "constant"
     for field in section.fields.values():
         if field.type.package and not field.type.is_list:
             inner = _interface(workspace, field.type.package, f"msg.{field.type.name}")
@@ -267,7 +277,7 @@ def _without_field(
         hint = f"it has {enumerated(names[:MAX_NAMED]) or 'none'}"
         if len(names) > MAX_NAMED:
             hint = f"{hint} and others"
-    message = f"{shown} has no field {quoted(attribute)}; {hint}"
+    message = f"{shown} has no {noun} {quoted(attribute)}; {hint}"
     either = corrections(attribute, at, meant)
     return Mismatch("interfaces", message, at, corrections=either)
 

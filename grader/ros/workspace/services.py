@@ -11,6 +11,7 @@ from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.node_facts import Endpoint, EndpointKind
 from grader.ros.workspace.endpoints import ANY, OpenedName, opened_by
+from grader.ros.workspace.interfaces import is_absent
 from grader.ros.workspace.names import (
     Compared,
     Fact,
@@ -77,7 +78,9 @@ def _compared(
         if client.name in by_name:
             yield Compared("services")
         for server in by_name.get(client.name, ()):
-            yield from _other_type(client, server)
+            types = (client.endpoint.type, server.endpoint.type)
+            if not any(is_absent(workspace, kind) for kind in types if kind is not None):
+                yield from _other_type(client, server)
         if client.name in by_name or any(fnmatchcase(client.name, it) for it in patterns):
             continue
         workspace.charge(1 + len(servers))

@@ -15,6 +15,7 @@ from grader.ros.workspace.bridges import bridge_rows
 from grader.ros.workspace.controllers import controller_endpoints
 from grader.ros.workspace.endpoints import opened_by
 from grader.ros.workspace.gazebo import BRIDGE
+from grader.ros.workspace.interfaces import is_absent
 from grader.ros.workspace.names import (
     Compared,
     Counted,
@@ -75,7 +76,7 @@ def topic_facts(workspace: Workspace) -> Iterator[Fact]:
             yield Compared("topics")
             are_started = subscription.is_started and publisher.is_started
             is_certain = are_started and subscription.launch == publisher.launch
-            for mismatch in _differences(subscription, publisher):
+            for mismatch in _differences(workspace, subscription, publisher):
                 yield mismatch._replace(is_certain=is_certain)
     yield from _bridged_types(workspace, distinct)
     yield from _unconnected(workspace, distinct)
@@ -135,7 +136,9 @@ def _opened_as(kind: str, opened: Iterable[_OpenedTopic]) -> list[_OpenedTopic]:
     return [each for each in opened if each.endpoint.kind == kind]
 
 
-def _differences(subscription: _OpenedTopic, publisher: _OpenedTopic) -> Iterator[Mismatch]:
+def _differences(
+    workspace: Workspace, subscription: _OpenedTopic, publisher: _OpenedTopic
+) -> Iterator[Mismatch]:
     """Yield why a subscription does not get what a publisher of its topic sends."""
     reader, writer = subscription.endpoint, publisher.endpoint
     if subscription.is_of_controller:
@@ -147,7 +150,9 @@ def _differences(subscription: _OpenedTopic, publisher: _OpenedTopic) -> Iterato
             yield Mismatch("topics", message, writer.location, reader.location, is_of_type=True)
         return
     at = writer.location.file_and_line
-    if reader.type is not None and writer.type is not None and reader.type != writer.type:
+    types = [kind for kind in (reader.type, writer.type) if kind is not None]
+    is_said = any(is_absent(workspace, kind) for kind in types)  # of the type
+    if len({*types}) == 2 and not is_said:
         message = (
             f"the topic {subscription.topic} is subscribed to with {reader.type}, but published "
             f"with {writer.type} ({at})"
