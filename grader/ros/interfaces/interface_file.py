@@ -9,6 +9,7 @@ from typing import NamedTuple, cast, get_args
 
 from grader.base.names import near
 from grader.base.source import Location, Source
+from grader.base.text import enumerated
 from grader.ros.interfaces.interface_types import (
     BOOLEANS,
     FLOATS,
@@ -256,7 +257,12 @@ def _read_element(text: str, package: str) -> FieldType:
         raise _Wrong(f"{owner!r} is no name of a package", owner)
     if not _is_message_name(name):
         meant = _MEANT.get(text) or near(text, PRIMITIVES) if not is_foreign else None
-        hint = f"; did you mean {meant!r}?" if meant else ""
+        word = text.rstrip("0123456789")
+        sizes = [it for it in sorted(PRIMITIVES) if it.rstrip("0123456789") == word]
+        if meant is not None:
+            hint = f"; did you mean {meant!r}?"
+        else:
+            hint = f"; there are {enumerated(sizes)}" if len(sizes) > 1 else ""
         raise _Wrong(f"there is no type {text!r}{hint}", text, meant)
     return FieldType(owner, name)
 

@@ -66,7 +66,7 @@ def code_faults(module: ModuleText, others: Mapping[str, ModuleText]) -> Iterato
     yield from search.called_callbacks()
     yield from search.without_response()
     yield from search.waiting_callbacks()
-    yield from search.without_spin()
+    yield from search.of_programs()
 
 
 def _undefined_names(code: Code) -> Iterator[CodeFault]:
@@ -271,29 +271,36 @@ class _Search:
 
     # --- Programs
 
-    def without_spin(self) -> Iterator[CodeFault]:
-        """Yield that a module initialises rclpy, and makes a node with callbacks that never run,
-        because nothing spins it.
+    def of_programs(self) -> Iterator[CodeFault]:
+        """Yield that a module makes a node without rclpy.init(), or, with it, a node with callbacks
+        that never run, because nothing spins it.
         """
         reached = self._reached_modules()
-        if reached is None or not self._registered:
+        if reached is None:
             return
         names, loops = set[str](), 0
         for module in reached:
             for node in ast.walk(module.code.tree):
                 names.add(getattr(node, "attr", "") or getattr(node, "id", ""))
                 loops += isinstance(node, ast.While)
-        if any("spin" in name or "WaitSet" in name or "wait_for" in name for name in names):
-            return
-        for part in self._module.parts:
-            for call in part.calls:
-                if dotted(call.func) == "rclpy.init" and part.of is None:
-                    message = (
-                        "nothing spins the node, so none of its callbacks runs; write "
-                        "rclpy.spin(node)"
-                    )
-                    yield CodeFault("nothing spins", message, self._at(call), is_certain=not loops)
-                    return
+        calls = [call for part in self._module.parts if part.of is None for call in part.calls]
+        by_name = {dotted(call.func): call for call in reversed(calls)}
+        has_spin = any("spin" in name or "WaitSet" in name or "wait_for" in name for name in names)
+        if "rclpy.init" in by_name and self._registered and not has_spin:
+            message = (
+                "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
+            )
+            at = self._at(by_name["rclpy.init"])
+            yield CodeFault("nothing spins", message, at, is_certain=not loops)
+        is_initialised = "init" in names or "context" in self._code.source.text.lower()
+        if "rclpy.spin" in by_name and not is_initialised and not self._is_imported():
+            message = "rclpy.init() is missing, so rclpy makes no node"
+            yield CodeFault("no rclpy.init", message, self._at(by_name["rclpy.spin"]))
+
+    def _is_imported(self) -> bool:
+        name = self._module.name
+        others = [it for it in self._others.values() if it.name != name]
+        return any(f"{it}.".startswith(f"{name}.") for other in others for it in other.imports)
 
     def _reached_modules(self) -> list[ModuleText] | None:
         """Return the module and the own ones that it imports; None if others may spin a node."""
