@@ -24,6 +24,7 @@ class _Known(TypedDict):
     without_frames: list[str]
     without_lifecycle: list[str]
     without_commands: list[str]
+    relaying: list[str]
     topics_of_others: list[str]
     written: list[str]
     read_by: list[str]

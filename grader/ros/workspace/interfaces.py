@@ -118,6 +118,7 @@ def _reached(workspace: Workspace, own: PackageInterfaces) -> set[str] | None:
             pending += _packages_used(name)
         elif name not in exports:
             return None
+        pending += str(exports.get(name, "")).split() if other is None else ()
     return reached
 
 

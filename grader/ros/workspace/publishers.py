@@ -14,9 +14,11 @@ _SOURCES = (".cpp", ".cc", ".cxx", ".c", ".hpp", ".hh", ".h")
 
 
 def is_own_type(workspace: Workspace, kind: str | None) -> bool:
-    """Return whether a package of the workspace defines a type, so that programs of other packages
-    do not know it.
+    """Return whether a package of the workspace defines a type, and only its own programs know it:
+    none relays what others send.
     """
+    if any(node.package in known()["relaying"] for _, node in workspace.nodes):
+        return False
     return (kind or "").partition(".")[0] in workspace.interfaces
 
 
