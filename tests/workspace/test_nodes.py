@@ -113,6 +113,14 @@ def test_a_loop_opens_something_for_each_item(
     assert [name for kind, name in found if kind == "client"] == [*names, "/door/lock"]
 
 
+def test_a_node_that_a_function_makes_has_names() -> None:
+    """Its methods are called by way of a variable."""
+    made = "rclpy.create_node('door')\n    node.create_service(LockDoor, f'{node.get_name()}/lock', print)"
+    names = "    for name in node.declare_parameter('names', ['a']).value:\n        node.create_client(LockDoor, name)"
+    edit = (DOOR, "    rclpy.spin(Door())", f"    node = {made}\n{names}\n    rclpy.spin(node)")
+    assert opened("door", edit) == [("service", "/door/lock"), ("client", "/a")]
+
+
 def test_a_name_depends_on_the_launch_file() -> None:
     """On the name that it gives the node, the namespace, remappings, and parameters of a file."""
     named = (
@@ -131,6 +139,7 @@ def test_a_name_depends_on_the_launch_file() -> None:
 
 
 FOUND = [
+    ("interfaces", (CMAKE, '"msg/DrumState.msg"', '"msg/DrumStates.msg"'), None),
     (
         "services",
         (PANEL, '"door/lock")', '"door/look")'),

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from grader.ros.package.node_facts import NamePart
 from grader.ros.python.constants import dotted, offset_of
-from grader.ros.python.values import Value
+from grader.ros.python.values import Call, Value
 
 _MAX_DEPTH = 12  # of names that are bound to expressions with names
 _MAX_ITEMS = 20  # of a list that a loop goes through
@@ -19,7 +19,11 @@ _MAX_PARTS = 20
 _UNKNOWN = NamePart("unknown")
 _FIELD = re.compile(r"\{(\d*)\}|\{\{|\}\}|\{[^{}]*\}")
 _PERCENT = re.compile(r"%([sdi%])|%")
-_OF_NODE = ("self.get_name", "self.get_namespace")
+_OF_NODE: dict[str, NamePart] = {
+    "get_name": NamePart("node name"),
+    "get_namespace": NamePart("namespace"),
+}
+_METHODS = ("get_parameter", "declare_parameter")
 _VALUES = ("value", "string_value", "string_array_value", "integer_value")
 Parts = tuple[NamePart, ...]
 
@@ -171,7 +175,7 @@ class EndpointNames:
         self, node: ast.Name | ast.Attribute, items: Mapping[str, ast.expr], depth: int
     ) -> Iterator[NamePart]:
         name = dotted(node)
-        parameter = _parameter(node)
+        parameter = self._parameter(node)
         if name in items:
             yield from self._parts(items[name], {}, depth + 1)
         elif parameter is not None:
@@ -186,7 +190,7 @@ class EndpointNames:
     def _item_of(self, node: ast.expr) -> NamePart:
         """Return the part that an item of a list is: of a parameter, or not known."""
         for _ in range(_MAX_DEPTH):
-            parameter = _parameter(node)
+            parameter = self._parameter(node)
             if parameter is not None:
                 return self._of_parameter("item", parameter)
             if dotted(node) not in self._known.values:
@@ -212,11 +216,18 @@ class EndpointNames:
                 keywords=[],
             ):
                 yield from self._formatted(_FIELD, text, given, items, depth)
-            case ast.Call(func=made, args=[]) if dotted(made) in _OF_NODE:
-                is_name = dotted(made) == "self.get_name"
-                yield NamePart("node name" if is_name else "namespace")
+            case ast.Call(func=ast.Attribute(value=owner, attr=method), args=[]) if (
+                method in _OF_NODE and self._is_node(owner)
+            ):
+                yield _OF_NODE[method]
             case _:
                 yield _UNKNOWN
+
+    def _is_node(self, node: ast.expr) -> bool:
+        """Return whether an expression is the node: self, or what rclpy.create_node() makes."""
+        value = self._evaluate(node) if dotted(node) else None
+        is_made = isinstance(value, Call) and value.name.startswith("rclpy.")
+        return dotted(node) == "self" or is_made
 
     def _formatted(
         self,
@@ -242,23 +253,25 @@ class EndpointNames:
                 yield _UNKNOWN
         yield NamePart("text", text[start:])
 
-
-def _parameter(node: ast.expr) -> ast.expr | None:
-    """Return the name of the parameter whose value an expression is; None if it is no
-    parameter's.
-    """
-    match node:
-        case ast.Attribute(value=ast.Call(func=made, args=[name, *_]), attr="value"):
-            method = dotted(made)
-        case ast.Attribute(
-            value=ast.Call(
-                func=ast.Attribute(
-                    value=ast.Call(func=made, args=[name, *_]), attr="get_parameter_value"
-                )
-            ),
-            attr=attribute,
-        ) if attribute in _VALUES:
-            method = dotted(made)
-        case _:
-            return None
-    return name if method in ("self.get_parameter", "self.declare_parameter") else None
+    def _parameter(self, node: ast.expr) -> ast.expr | None:
+        """Return the name of the parameter whose value an expression is; None if it is no
+        parameter's.
+        """
+        match node:
+            case ast.Attribute(value=ast.Call(func=made, args=[name, *_]), attr="value"):
+                method = made
+            case ast.Attribute(
+                value=ast.Call(
+                    func=ast.Attribute(
+                        value=ast.Call(func=made, args=[name, *_]), attr="get_parameter_value"
+                    )
+                ),
+                attr=attribute,
+            ) if attribute in _VALUES:
+                method = made
+            case _:
+                return None
+        is_method = isinstance(method, ast.Attribute) and method.attr in _METHODS
+        if isinstance(method, ast.Attribute) and is_method and self._is_node(method.value):
+            return name
+        return None

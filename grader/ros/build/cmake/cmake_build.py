@@ -7,7 +7,7 @@ from contextlib import suppress
 from fnmatch import translate
 from itertools import pairwise, takewhile
 
-from grader.base.names import MAX_GUESSES, did_you_mean, near
+from grader.base.names import MAX_GUESSES, closest, did_you_mean, near
 from grader.base.source import Source
 from grader.files.limits import ignored_part
 from grader.ros.build.cmake.cmake_values import ROOT, Text, Values
@@ -253,11 +253,16 @@ class Build:
             path = self.inside(text.replace(f"{ROOT}:", f"{ROOT}/"))
             if path is None:
                 self.give_up(f"{text} is not in the package", command.at)
-            elif self._has(path) is False:
+                continue
+            if self._has(path) is False:
                 self._stop_missing(command, path)
-            else:
-                made.append(path)
-                self._copy(path, f"{self._share()}/{'/'.join(path.split('/')[-2:])}", command.at)
+                self.listing.budget.charge(len(self.listing.files))
+                meant = closest(path, self.listing.files)
+                if meant is None or not meant.endswith(posixpath.splitext(path)[1]):
+                    continue
+                path = meant  # as which the rest is read
+            made.append(path)
+            self._copy(path, f"{self._share()}/{'/'.join(path.split('/')[-2:])}", command.at)
         rest = texts[len(words) :]
         groups: dict[str, list[str]] = {}
         for keyword, items in _groups([str(text) for text in rest], keywords):
