@@ -17,7 +17,6 @@ from grader.ros.xml.urdf_format import numbers_in
 if TYPE_CHECKING:
     from grader.lab.submission.submission import Submission
     from grader.ros.launch.launch_model import Launch, StartedNode
-    from grader.ros.package.node_facts import Endpoint
     from grader.ros.workspace.workspace import Workspace
 
 _VERBS: Mapping[str, str] = {
@@ -79,21 +78,22 @@ def find_faults(
     if wanted.remap or wanted.arguments:
         faults += [_ill_started(launch, names, wanted) for names in choices]
     faults += [_not_included(launch, end) for end in wanted.includes or ()]
-    topics = _NodeTopics(launch, workspace)
-    asked = {
-        "publishes": wanted.publishes,
-        "subscribes to": wanted.subscribes,
-        "serves": wanted.serves,
-        "calls": wanted.calls,
-    }
-    for verb, names in asked.items():
-        faults += [topics.fault_of(verb, name, kind) for name, kind in _typed(names).items()]
+    faults += _not_opened(launch, workspace, wanted)
     return [fault for fault in faults if fault is not None]
 
 
-def _typed(topics: _Topics) -> Mapping[str, str]:
-    """Return the types that a rubric asks of topics; empty texts where it asks for none."""
-    return topics if isinstance(topics, Mapping) else dict.fromkeys(topics or (), "")
+def _not_opened(launch: "Launch", workspace: "Workspace", wanted: Wanted) -> Iterator[Fault | None]:
+    """Yield what nodes should open, and do not."""
+    topics = _NodeTopics(launch, workspace)
+    for verb, names in (
+        ("publishes", wanted.publishes),
+        ("subscribes to", wanted.subscribes),
+        ("serves", wanted.serves),
+        ("calls", wanted.calls),
+    ):
+        typed = names if isinstance(names, Mapping) else dict.fromkeys(names or (), "")
+        for name, kind in typed.items():
+            yield topics.fault_of(verb, name, kind)
 
 
 def _started_although(launch: "Launch", names: Iterable[str]) -> Iterator[Fault]:
@@ -195,10 +195,12 @@ def _not_included(launch: "Launch", end: str) -> Fault | None:
 
 
 class _NodeTopic(NamedTuple):
-    """What a node opens; `name` is empty where it is not known."""
+    """What a node opens; `name` is empty where it is not known, and `type` None."""
 
     name: str
-    endpoint: "Endpoint"
+    verb: str
+    type: str | None
+    location: Location
     node: "StartedNode"
 
 
@@ -240,17 +242,18 @@ class _NodeTopics:
             for found in opened_by(workspace, node) if own_node is not None else ():
                 self._is_open = self._is_open or not found.is_known
                 name = found.name or "" if found.is_known else ""
-                self._topics.append(_NodeTopic(name, found.endpoint, node))
+                verb, opened = _VERBS[found.endpoint.kind], found.endpoint
+                self._topics.append(_NodeTopic(name, verb, opened.type, opened.location, node))
 
     def fault_of(self, verb: str, name: str, message_type: str) -> Fault | None:
         """Return that no node publishes, subscribes to, serves or calls a name with a type."""
         full_name = f"/{name.removeprefix('/')}"
         python_type = re.sub("[/:]+", ".", message_type)
-        of_kind = [topic for topic in self._topics if _VERBS[topic.endpoint.kind] == verb]
+        of_kind = [topic for topic in self._topics if topic.verb == verb]
         same = [topic for topic in of_kind if topic.name == full_name]
         is_certain = not self._is_open
         for topic in same:
-            actual = topic.endpoint.type
+            actual = topic.type
             if topic.node.when and (actual == python_type or not python_type):
                 return None
             if actual is None or actual == python_type:
@@ -259,10 +262,9 @@ class _NodeTopics:
             typed = f" with {message_type}" if message_type else ""
             return Fault(f"a node {verb} {full_name}{typed}", is_certain=False)
         if same:
-            endpoint = same[0].endpoint
-            shown = (endpoint.type or "").replace(".", "/")
+            shown = (same[0].type or "").replace(".", "/")
             message = f"a node {verb} {full_name} with {shown}; it should be {message_type}"
-            return Fault(message, endpoint.location, cause="type")
+            return Fault(message, same[0].location, cause="type")
         if self._unread:
             return self._unread[0]
         message = f"no node {verb} {full_name}"
@@ -270,5 +272,5 @@ class _NodeTopics:
         for topic in of_kind:
             if topic.name == meant:
                 guess = f"; there is {quoted(meant)}"
-                return Fault(message, topic.endpoint.location, guess, cause="topic")
+                return Fault(message, topic.location, guess, cause="topic")
         return Fault(message, cause="topic")

@@ -28,7 +28,7 @@ from grader.ros.interfaces.interface_types import (
 INTERFACE_ENDINGS = tuple(f".{kind}" for kind in get_args(InterfaceKind))
 _MAX_LINES = 2_000  # of a file; no message is as long
 _MAX_FAULTS = 20
-_SEPARATOR = "---"
+_SEPARATOR, _LIKE_SEPARATOR = "---", re.compile(r"\s*[-_]{2,}\s*")
 _BOUND = "<="
 _PACKAGE = re.compile(r"(?!.*__)(?!.*_\Z)[a-z][a-z0-9_]*\Z")
 _FIELD = _PACKAGE
@@ -135,19 +135,19 @@ class _Reading:
             start = end + 1
 
     def _fault_of_parts(self, lines: Sequence[_Line], ends: Sequence[int]) -> None:
-        names = SECTIONS[self._kind]
-        parts = f"{', '.join(names[:-1]).lower()} and {names[-1].lower()}"
+        names = [name.lower() for name in SECTIONS[self._kind]]
         wanted = "one line" if len(names) == 2 else f"{len(names) - 1} lines"
         message = (
-            f"a .{self._kind} has {wanted} {_SEPARATOR} between {parts}; this file has {len(ends)}"
+            f"a .{self._kind} has {wanted} {_SEPARATOR} between {enumerated(names)}; "
+            f"this file has {len(ends)}"
         )
-        alike = [line for line in lines if line.text.strip(" \t-_") == "" and "-" in line.text]
-        unlike = [line for line in alike if line.text != _SEPARATOR]
-        if unlike:
-            message = f"{message} ({unlike[0].text!r} is none)"
-            self._fault(message, unlike[0].number)
-        else:
-            self._fault(message, lines[ends[-1]].number if ends else 1)
+        at = lines[ends[-1]].number if ends else 1
+        for line in lines:
+            if line.text != _SEPARATOR and _LIKE_SEPARATOR.fullmatch(line.text):
+                message = f"{message} ({line.text!r} is none)"
+                at = line.number
+                break
+        self._fault(message, at)
 
     def _section(self, lines: Sequence[_Line]) -> InterfaceSection:
         fields: dict[str, InterfaceField] = {}

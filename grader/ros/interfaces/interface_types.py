@@ -17,8 +17,8 @@ FLOATS = frozenset({"float32", "float64"})
 INTEGERS = frozenset(
     {"int8", "uint8", "int16", "uint16", "int32", "uint32", "int64", "uint64", "char"}
 )
-BYTES = frozenset({"byte"})
-PRIMITIVES = BOOLEANS | TEXTS | FLOATS | INTEGERS | BYTES | {"duration", "time"}
+_BYTES = frozenset({"byte"})
+PRIMITIVES = BOOLEANS | TEXTS | FLOATS | INTEGERS | _BYTES | {"duration", "time"}
 
 
 class FieldType(NamedTuple):

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from grader.base.source import Location
 from grader.ros.package.message_uses import CodePart, given_argument
 from grader.ros.package.node_facts import CodeFault
-from grader.ros.python.constants import binds_unseen, dotted
+from grader.ros.python.constants import binds_unseen, dotted, last_name
 from grader.ros.python.parse import Code, Position, location_in, position_of
 
 _MAX_FAULTS = 20  # of one module and rule
@@ -35,6 +35,8 @@ _CERTAIN = frozenset(
         "PercentFormatExpectedSequence",
     }
 )
+# Names that newer versions of Python define, so that each version finds the same.
+_LATER_BUILTINS = ("PythonFinalizationError", "EncodingWarning", "WindowsError")
 # Names of groups and executors with which a callback may wait for another one.
 _CONCURRENT = ("MultiThreadedExecutor", "ReentrantCallbackGroup", "MutuallyExclusiveCallbackGroup")
 _CONCURRENT_MODULES = frozenset({"threading", "multiprocessing", "concurrent", "asyncio"})
@@ -76,7 +78,7 @@ def _undefined_names(code: Code) -> Iterator[CodeFault]:
     if binds_unseen([*ast.walk(code.tree)]):
         return
     try:
-        checker = Checker(code.tree, builtins=_later_builtins())
+        checker = Checker(code.tree, builtins=_LATER_BUILTINS)
     except RecursionError:
         return
     unevaluated = _unevaluated(code.tree)
@@ -88,11 +90,6 @@ def _undefined_names(code: Code) -> Iterator[CodeFault]:
             said.add(text)
             if len(said) <= _MAX_FAULTS:
                 yield CodeFault("undefined name", text, location_in(code.source, at))
-
-
-def _later_builtins() -> list[str]:
-    """Return names that newer versions of Python define, so that each version finds the same."""
-    return ["PythonFinalizationError", "EncodingWarning", "WindowsError"]
 
 
 def _unevaluated(tree: ast.Module) -> set[Position]:
@@ -139,7 +136,7 @@ class _Search:
     def _find_registered(self) -> Iterator[_Registered]:
         for part in self._module.parts:
             for call in part.calls:
-                name = _last_name(call.func)
+                name = last_name(call.func)
                 if name in _CALLBACKS:
                     given = given_argument(call, *_CALLBACKS[name])
                     if given is not None:
@@ -322,13 +319,6 @@ class _Search:
         return [*reached.values()]
 
 
-def _last_name(node: ast.expr) -> str:
-    match node:
-        case ast.Attribute(attr=name) | ast.Name(id=name):
-            return name
-    return ""
-
-
 def _calls_in(function: ast.AST) -> Iterator[ast.Call]:
     """Yield the calls in a function, without those of functions in it."""
     pending = [*ast.iter_child_nodes(function)]
@@ -402,22 +392,29 @@ def _falls_off(body: Sequence[ast.stmt]) -> str:
     """Return whether statements may come to their end: yes, no, or maybe, where it depends on a
     condition that may always hold.
     """
-    last, found = body[-1], "yes"
+    last = body[-1]
     match last:
+        case ast.If(body=first, orelse=second) if second:
+            return _either(_falls_off(first), _falls_off(second))
+        case ast.If(body=first):
+            return "yes" if _falls_off(first) != "no" else "maybe"
+        case ast.With(body=inner) | ast.AsyncWith(body=inner):
+            return _falls_off(inner)
+        case ast.Try():
+            return _falls_off_try(last)
+    return _falls_off_plain(last)
+
+
+def _falls_off_plain(statement: ast.stmt) -> str:
+    """Return the same for a statement that is a loop, or has no blocks."""
+    found = "yes"
+    match statement:
         case ast.Return() | ast.Raise() | ast.Continue() | ast.Break():
             found = "no"
         case ast.Expr(value=ast.Call(func=made)) if dotted(made) in _ENDING:
             found = "no"
-        case ast.If(body=first, orelse=second) if second:
-            found = _either(_falls_off(first), _falls_off(second))
-        case ast.If(body=first):
-            found = "yes" if _falls_off(first) != "no" else "maybe"
-        case ast.With(body=inner) | ast.AsyncWith(body=inner):
-            found = _falls_off(inner)
-        case ast.Try():
-            found = _falls_off_try(last)
         case ast.While(test=ast.Constant(value=value)) if value:
-            has_break = any(isinstance(it, ast.Break) for it in ast.walk(last))
+            has_break = any(isinstance(it, ast.Break) for it in ast.walk(statement))
             found = "maybe" if has_break else "no"
         case ast.While() | ast.For() | ast.AsyncFor() | ast.Match():
             found = "maybe"

@@ -6,8 +6,8 @@ import ast
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import NamedTuple
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from typing import NamedTuple, TypeVar
 
 from grader.ros.package.node_facts import NamePart
 from grader.ros.python.constants import dotted, offset_of
@@ -25,10 +25,13 @@ _OF_NODE: dict[str, NamePart] = {
 }
 _METHODS = ("get_parameter", "declare_parameter")
 _VALUES = ("value", "string_value", "string_array_value", "integer_value")
-Parts = tuple[NamePart, ...]
+_Parts = tuple[NamePart, ...]
 
 
-class Loop(NamedTuple):
+_Found = TypeVar("_Found")
+
+
+class _Loop(NamedTuple):
     """A loop through a list; its name is not bound to one item outside of these lines."""
 
     items: ast.expr
@@ -40,7 +43,7 @@ class Bindings(NamedTuple):
     """What names are bound to once: the expressions, and those of lists that loops go through."""
 
     values: Mapping[str, ast.expr]
-    loops: Mapping[str, Loop]
+    loops: Mapping[str, _Loop]
 
     def within(self, inner: "Bindings") -> "Bindings":
         """Return these names with those of a scope inside of theirs, which hide them."""
@@ -51,41 +54,44 @@ def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
     """Return what the names in a function are bound to once, or the attributes of self in a
     class.
     """
-    counts, values, loops = Counter[str](), dict[str, ast.expr](), dict[str, Loop]()
-    for node in sorted(nodes, key=offset_of):
+    ordered = sorted(nodes, key=offset_of)
+    counts = Counter[str]()
+    for node in ordered:
+        match node:
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+                counts[name] += 1
+            case ast.Attribute(ctx=ast.Store() | ast.Del()):
+                counts[dotted(node)] += 1
+    values, loops = dict[str, ast.expr](), dict[str, _Loop]()
+    for node in ordered:
         match node:
             case (
                 ast.Assign(targets=[target], value=value)
                 | ast.AnnAssign(target=target, value=ast.expr() as value)
             ):
                 values[dotted(target)] = value
-            case ast.For(target=target, iter=items):
-                name, listed = _looped(target, items)
-                last = max(it.end_lineno or it.lineno for it in node.body)
-                loops[name] = Loop(listed, node.lineno, last)
-            case ast.comprehension(target=target, iter=items):
-                name, listed = _looped(target, items)
-                loops[name] = Loop(listed, 0, sys.maxsize)
-        match node:
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
-                counts[name] += 1
-            case ast.Attribute(ctx=ast.Store() | ast.Del()):
-                counts[dotted(node)] += 1
+            case ast.For() | ast.comprehension():
+                name, loop = _looped(node)
+                loops[name] = loop
     once = {name for name, count in counts.items() if count == 1}
     if of_self:
         once = {name for name in once if name.startswith("self.")}
-    return Bindings(
-        {name: value for name, value in values.items() if name in once},
-        {name: items for name, items in loops.items() if name in once},
-    )
+    return Bindings(_only(values, once), _only(loops, once))
 
 
-def _looped(target: ast.expr, items: ast.expr) -> tuple[str, ast.expr]:
+def _only(found: Mapping[str, _Found], names: Collection[str]) -> dict[str, _Found]:
+    return {name: value for name, value in found.items() if name in names}
+
+
+def _looped(node: ast.For | ast.comprehension) -> tuple[str, _Loop]:
     """Return the name that a loop gives each item of a list; of enumerate() that of the item."""
-    match target, items:
-        case ast.Tuple(elts=[_, named]), ast.Call(func=ast.Name(id="enumerate"), args=[listed]):
-            return dotted(named), listed
-    return dotted(target), items
+    first, last = 0, sys.maxsize
+    if isinstance(node, ast.For):
+        first, last = node.lineno, max(it.end_lineno or it.lineno for it in node.body)
+    match node.target, node.iter:
+        case ast.Tuple(elts=[_, named]), ast.Call(func=ast.Name(id="enumerate"), args=[items]):
+            return dotted(named), _Loop(items, first, last)
+    return dotted(node.target), _Loop(node.iter, first, last)
 
 
 class EndpointNames:
@@ -94,7 +100,7 @@ class EndpointNames:
     def __init__(self, known: Bindings, evaluate: Callable[[ast.expr], Value]) -> None:
         self._known, self._evaluate = known, evaluate
 
-    def read(self, node: ast.expr) -> Iterator[Parts]:
+    def read(self, node: ast.expr) -> Iterator[_Parts]:
         """Yield the parts of a name, once for each item of a list in the code that a loop goes
         through.
         """
@@ -108,7 +114,7 @@ class EndpointNames:
                 return
         yield self._joined(self._parts(node, {}))
 
-    def _loop(self, name: str, node: ast.expr) -> Loop | None:
+    def _loop(self, name: str, node: ast.expr) -> _Loop | None:
         """Return the loop that an expression is in and that binds a name."""
         loop = self._known.loops.get(name)
         if loop is not None and loop.first <= node.lineno <= loop.last:
@@ -129,7 +135,7 @@ class EndpointNames:
                     return None
         return None
 
-    def _joined(self, parts: Iterable[NamePart]) -> Parts:
+    def _joined(self, parts: Iterable[NamePart]) -> _Parts:
         """Return parts, of which no two texts follow each other."""
         found: list[NamePart] = []
         for part in parts:

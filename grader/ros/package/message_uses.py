@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from grader.base.source import Location, Source
 from grader.ros.package.node_facts import FieldUse, TypeImport
-from grader.ros.python.constants import dotted, offset_of
+from grader.ros.python.constants import dotted, last_name, offset_of
 from grader.ros.python.parse import Code, Position, location_in, position_of
 from grader.ros.python.values import SCALARS, QualifiedName, Scope, Value
 
@@ -26,7 +26,7 @@ _MAX_PATH = 12
 ITEM = "[]"  # in a path: an item of a list
 
 
-class Typed(NamedTuple):
+class _Typed(NamedTuple):
     """A value: a field of what has a type, or this itself. The type has the name of its section:
     chat_msgs.srv.Ask.Request.
     """
@@ -50,7 +50,7 @@ class CodePart(NamedTuple):
 _Evaluate = Callable[[ast.expr], Value]
 
 
-def interface_name(value: Value) -> str | None:
+def _interface_name(value: Value) -> str | None:
     """Return the full name of a type of a message, service or action, or of a section of one; None
     for what is none.
     """
@@ -117,7 +117,7 @@ def field_uses(
         evaluate = partial(_value_in, part.scope, value_of)
         key = f"self.{part.name}" if part.of is not None else part.name
         functions.append((part, _FunctionUses(part.node, evaluate, given.get((part.of, key), ()))))
-    shared: dict[Location | None, dict[str, Typed]] = {None: {}}
+    shared: dict[Location | None, dict[str, _Typed]] = {None: {}}
     for part, function in functions:
         for name, typed in function.kept(is_module=isinstance(part.node, ast.Module)):
             if stored[name.removeprefix("self.")] == 1:
@@ -149,12 +149,12 @@ def _types_given(
     found: dict[tuple[Location | None, str], list[tuple[str, ...]]] = {}
     for part in parts:
         for call in part.calls:
-            row = _CALLBACKS.get(_last_name(call.func))
+            row = _CALLBACKS.get(last_name(call.func))
             callback = given_argument(call, row.callback_at, row.callback_name) if row else None
             made = given_argument(call, row.type_at, row.type_name) if row else None
             if row is None or callback is None or made is None:
                 continue
-            name, kind = dotted(callback), interface_name(value_of(made, part.scope))
+            name, kind = dotted(callback), _interface_name(value_of(made, part.scope))
             types = tuple(f"{kind}{section}" for section in row.sections) if kind else ()
             of = part.of if name.startswith("self.") else None
             found.setdefault((of, name), []).append(types)
@@ -163,13 +163,6 @@ def _types_given(
         if len({*types_of_each}) == 1 and named[key[1]] == len(types_of_each):
             given[key] = types_of_each[0]
     return given
-
-
-def _last_name(node: ast.expr) -> str:
-    match node:
-        case ast.Attribute(attr=name) | ast.Name(id=name):
-            return name
-    return ""
 
 
 def given_argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
@@ -217,7 +210,7 @@ class _FunctionUses:
                     self._counts[name] += 1
                 case ast.Global(names=names) | ast.Nonlocal(names=names):
                     self._counts.update([*names, *names])
-        self._types: dict[str, Typed] = {}
+        self._types: dict[str, _Typed] = {}
         self._asked = {*_asked(self._nodes)}
         self._bind_arguments(function, given)
         self._bind_assigned()
@@ -228,7 +221,7 @@ class _FunctionUses:
             names = names[1:] if names[:1] == ["self"] else names
             for name, kind in zip(names, given, strict=False):
                 if kind and self._counts[name] == 1 and name not in self._asked:
-                    self._types[name] = Typed(kind)
+                    self._types[name] = _Typed(kind)
 
     def _bind_assigned(self) -> None:
         """Bind the names that are assigned once, in the order of the lines."""
@@ -249,19 +242,19 @@ class _FunctionUses:
             if typed is not None and name and is_bound and name not in self._asked:
                 self._types[name] = typed
 
-    def kept(self, *, is_module: bool) -> Iterator[tuple[str, Typed]]:
+    def kept(self, *, is_module: bool) -> Iterator[tuple[str, _Typed]]:
         """Yield what other functions can use: attributes of self, and the names of a module."""
         for name, typed in self._types.items():
             if name.startswith("self.") or is_module:
                 yield name, typed
 
-    def know(self, shared: Mapping[str, Typed]) -> None:
+    def know(self, shared: Mapping[str, _Typed]) -> None:
         """Add names that other functions bind."""
         for name, typed in shared.items():
             if self._counts[name] == 0 and name not in self._asked:
                 self._types[name] = typed
 
-    def _type_of(self, node: ast.expr) -> Typed | None:
+    def _type_of(self, node: ast.expr) -> _Typed | None:
         """Return what an expression is; None where this is not certain."""
         path: list[str] = []
         while len(path) < _MAX_PATH:
@@ -277,8 +270,8 @@ class _FunctionUses:
                     path.append(ITEM)
                     node = inner
                 case ast.Call(func=made):
-                    kind = interface_name(self._evaluate(made)) if dotted(made) else None
-                    return Typed(kind, tuple(reversed(path))) if kind is not None else None
+                    kind = _interface_name(self._evaluate(made)) if dotted(made) else None
+                    return _Typed(kind, tuple(reversed(path))) if kind is not None else None
                 case _:
                     return None
         return None
@@ -293,15 +286,15 @@ class _FunctionUses:
                 case ast.Attribute(value=owner):
                     typed = self._type_of(owner)
                     if typed is None and node.attr.isupper() and dotted(owner):
-                        kind = interface_name(self._evaluate(owner))  # a constant of a type
-                        typed = Typed(kind) if kind is not None else None
+                        kind = _interface_name(self._evaluate(owner))  # a constant of a type
+                        typed = _Typed(kind) if kind is not None else None
                     if typed is not None:
                         end = (node.end_col_offset or 0) - len(node.attr) + 1
                         at = Position(node.end_lineno or node.lineno, end)
                         path = (*typed.path, node.attr)
                         yield _PlacedUse(typed.type, path, at, literals.get(node, ()))
                 case ast.Call(func=made, keywords=keywords) if keywords and dotted(made):
-                    kind = interface_name(self._evaluate(made))
+                    kind = _interface_name(self._evaluate(made))
                     for keyword in keywords if kind is not None else ():
                         if keyword.arg not in (None, "check_fields"):
                             at, literal = position_of(keyword), self._literal(keyword.value)

@@ -98,7 +98,7 @@ class FieldUse(NamedTuple):
     literal: tuple[Value, ...] = ()
 
 
-CodeRule = Literal[
+_CodeRule = Literal[
     "undefined name",
     "callback is called",
     "no response",
@@ -112,7 +112,7 @@ CodeRule = Literal[
 class CodeFault(NamedTuple):
     """Why a node stops, or does nothing; it fails no criterion unless it is certain."""
 
-    rule: CodeRule
+    rule: _CodeRule
     message: str
     location: Location
     related: Location | None = None

@@ -1,11 +1,11 @@
 """The messages, services and actions that a package of a submission generates code for."""
 
 import posixpath
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from itertools import chain
 from typing import NamedTuple
 
 from grader.base.source import Location
-from grader.ros.build.installation import Installation
 from grader.ros.interfaces.interface_file import INTERFACE_ENDINGS, read_interface
 from grader.ros.interfaces.interface_types import Interface
 from grader.ros.package.package import Package
@@ -15,7 +15,7 @@ _MAX_FILE = 32 * 1024  # bytes
 _BYTES_A_PART = 8
 
 
-class OwnInterface(NamedTuple):
+class _OwnInterface(NamedTuple):
     """A message, service or action of a package, and the path of its file in the submission."""
 
     interface: Interface
@@ -28,7 +28,7 @@ class PackageInterfaces(NamedTuple):
     Without `is_complete`, the package may have more of them.
     """
 
-    types: Mapping[str, OwnInterface] = {}
+    types: Mapping[str, _OwnInterface] = {}
     unlisted: Mapping[str, str] = {}  # those of files that nothing generates, and their paths
     dependencies: frozenset[str] = frozenset()  # packages whose messages they may use
     location: Location | None = None  # of rosidl_generate_interfaces()
@@ -43,9 +43,9 @@ def read_interfaces(package: Package) -> PackageInterfaces:
         return PackageInterfaces(is_complete=False)
     files = _interface_files(package)
     is_complete = setup.doubt is None and len(files) <= _MAX_FILES
-    types: dict[str, OwnInterface] = {}
+    types: dict[str, _OwnInterface] = {}
     listed: set[str] = set()
-    for path in _generated(setup):
+    for path in chain.from_iterable(call.files[:_MAX_FILES] for call in setup.interfaces):
         listed.add(path)
         if not path.endswith(INTERFACE_ENDINGS):
             is_complete = False  # .idl is not read
@@ -55,25 +55,20 @@ def read_interfaces(package: Package) -> PackageInterfaces:
             is_complete = False
             continue
         interface = read_interface(data, package.path(path), package.name)
-        types[_name_of(path)] = OwnInterface(interface, package.path(path))
+        types[_name_of(path)] = _OwnInterface(interface, package.path(path))
     is_complete = is_complete and all(call.is_certain for call in setup.interfaces)
     unlisted = {_name_of(path): package.path(path) for path in files if path not in listed}
     calls = setup.interfaces
     dependencies = {name for call in calls for name in call.dependencies}
+    other_types = {name: path for name, path in unlisted.items() if name not in types}
     return PackageInterfaces(
         types,
-        {name: path for name, path in unlisted.items() if name not in types},
+        other_types,
         frozenset(dependencies),
         setup.location(calls[0].at) if calls else None,
         needs_group=any(call.needs_group and call.is_certain for call in calls),
         is_complete=is_complete and not _has_modules(package),
     )
-
-
-def _generated(setup: Installation) -> Iterator[str]:
-    """Yield the files of which CMake generates code, as far as they are known."""
-    for call in setup.interfaces:
-        yield from call.files[:_MAX_FILES]
 
 
 def _interface_files(package: Package) -> Sequence[str]:

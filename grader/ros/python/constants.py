@@ -174,6 +174,16 @@ def dotted(node: ast.AST) -> str:
     return ""
 
 
+def last_name(node: ast.AST) -> str:
+    """Return a name, or what is behind the last dot of an attribute; empty for any other
+    expression.
+    """
+    match node:
+        case ast.Attribute(attr=name) | ast.Name(id=name):
+            return name
+    return ""
+
+
 def offset_of(node: ast.AST) -> tuple[int, int]:
     """Return line and column of a node, by which nodes are in the order of the file."""
     return getattr(node, "lineno", 0), getattr(node, "col_offset", 0)
