@@ -456,6 +456,27 @@ def test_interfaces_of_several_packages_with_one_name_are_open() -> None:
     assert [it for it in found.mismatches if it.family == "interfaces"] == []
 
 
+def test_code_may_be_too_long_to_search(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whether it fails is left to a person."""
+    monkeypatch.setattr("grader.ros.package.python_nodes._MAX_CODE", 1_000)
+    found = agreement_of(edited((DOOR, "    rclpy.spin(Door())", "    Door()")))
+    assert found.undecided["code"] == "the code of 'laundry' is too long to search"
+
+
+def test_conditions_may_be_nested_too_deeply() -> None:
+    """The function is not searched further."""
+    branches = "".join(
+        f"        elif request == {number}:\n            pass\n" for number in range(900)
+    )
+    edit = (
+        DOOR,
+        "        self.is_locked = request.lock\n",
+        f"        if request:\n            pass\n{branches}",
+    )
+    found = agreement_of(edited(edit))
+    assert found.mismatches == ()
+
+
 def test_setters_check_types_before_jazzy() -> None:
     """0 is no float there; later releases take it for 0.0 by chance."""
     texts = edited((DRUM, "state.speed = self.speed", "state.speed = 0"))

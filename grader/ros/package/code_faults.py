@@ -323,7 +323,7 @@ def _calls_in(function: ast.AST) -> Iterator[ast.Call]:
     """Yield the calls in a function, without those of functions in it."""
     pending = [*ast.iter_child_nodes(function)]
     while pending:
-        node = pending.pop(0)
+        node = pending.pop()
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
             continue
         if isinstance(node, ast.Call):
@@ -333,16 +333,16 @@ def _calls_in(function: ast.AST) -> Iterator[ast.Call]:
 
 def _own_statements(body: Sequence[ast.stmt]) -> Iterator[ast.stmt]:
     """Yield the statements of a function, also in blocks, without those of functions in it."""
-    for statement in body:
-        yield statement
-        if isinstance(statement, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+    pending: list[ast.AST] = [*reversed(body)]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, ast.stmt):
+            yield node
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             continue
-        for block in ("body", "orelse", "finalbody"):
-            yield from _own_statements(getattr(statement, block, []))
-        for handler in getattr(statement, "handlers", []):
-            yield from _own_statements(handler.body)
-        for case in getattr(statement, "cases", []):
-            yield from _own_statements(case.body)
+        for inner in reversed([*ast.iter_child_nodes(node)]):
+            if isinstance(inner, ast.stmt | ast.ExceptHandler | ast.match_case):
+                pending.append(inner)
 
 
 def _lacks_arguments(

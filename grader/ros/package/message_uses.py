@@ -66,7 +66,7 @@ def type_imports(tree: ast.Module, source: Source) -> Iterator[TypeImport]:
     """Yield the types that a file certainly imports: not in a try, nor under a condition."""
     pending: list[ast.stmt] = [*tree.body]
     while pending:
-        statement = pending.pop(0)
+        statement = pending.pop()
         match statement:
             case ast.ImportFrom(module=str(module), names=names, level=0):
                 _, _, kind = module.partition(".")

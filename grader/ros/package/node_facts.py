@@ -157,3 +157,4 @@ class PackageNodes(NamedTuple):
     imports: tuple[TypeImport, ...] = ()
     field_uses: tuple[FieldUse, ...] = ()
     faults: tuple[CodeFault, ...] = ()
+    has_more_faults: bool = False  # perhaps, in modules that are not searched

@@ -24,6 +24,7 @@ from grader.ros.package.entry_points import (
 )
 from grader.ros.package.message_uses import CodePart, field_uses, given_argument, type_imports
 from grader.ros.package.node_facts import (
+    CodeFault,
     Doubt,
     Endpoint,
     EndpointKind,
@@ -55,6 +56,7 @@ from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknow
 
 _MAX_SEARCHED = 32 * 1024  # bytes of a program in which slips are searched
 _MAX_MODULES = 100
+_MAX_CODE = 512 * 1024  # characters of the modules of a package in which faults are searched
 _OF_CALL = 4  # parts of a call that leads to a node
 _BYTES_A_PART = 2  # of a program in which slips are searched, charged as one part
 _MAX_FIRST_LINE = 100  # bytes
@@ -178,8 +180,7 @@ def read_nodes(package: Package) -> PackageNodes:
     is_loose = any(module.has_loose_declarations for module in modules.values())
     imports = [found for module in modules.values() for found in module.type_imports()]
     uses = [use for module in modules.values() for use in module.field_uses()]
-    texts = {name: module.text() for name, module in modules.items()}
-    faults = [fault for text in texts.values() for fault in code_faults(text, texts)]
+    faults, is_searched = _faults_of([module.text() for module in modules.values()])
     return PackageNodes(
         nodes=tuple(nodes),
         programs=tuple(programs),
@@ -188,7 +189,24 @@ def read_nodes(package: Package) -> PackageNodes:
         imports=tuple(imports),
         field_uses=tuple(uses),
         faults=tuple(faults),
+        has_more_faults=not is_searched,
     )
+
+
+def _faults_of(modules: Sequence[ModuleText]) -> tuple[list[CodeFault], bool]:
+    """Return the faults in the code of modules, and whether all of them are searched."""
+    by_name = {module.name: module for module in modules}
+    faults: list[CodeFault] = []
+    left, is_searched = _MAX_CODE, True
+    for module in modules:
+        left -= len(module.code.source.text)
+        try:
+            if left >= 0:
+                faults += code_faults(module, by_name)
+        except RecursionError:
+            left = -1
+        is_searched = is_searched and left >= 0
+    return faults, is_searched
 
 
 def program_slips(package: Package) -> Iterator[Slip]:

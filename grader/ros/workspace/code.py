@@ -8,7 +8,9 @@ from grader.ros.workspace.workspace import Workspace
 
 def code_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what is wrong in the code of nodes."""
-    for nodes in workspace.nodes_by_package.values():
+    for package, nodes in workspace.nodes_by_package.items():
+        if nodes.has_more_faults:
+            yield Undecided("code", f"the code of {package!r} is too long to search")
         if nodes.nodes:
             yield Compared("code")
         for program in nodes.programs:
