@@ -72,15 +72,15 @@ NAMES = [
     ("f'{self.get_namespace()}state'", "/state"),
     ("f'{self.get_namespace()}/state'", None),
     ("str(5) + 'state'", "/5state"),
-    ("f'state_{self.find()}'", "/state_*"),
-    ("f'{self.find()}_{self.get_name()}'", "/*_drum"),
+    ("f'state_{self._find()}'", "/state_*"),
+    ("f'{self._find()}_{self.get_name()}'", "/*_drum"),
     ("f'{self.get_name():>9}'", None),
     ("'{name}'.format(name='state')", "/state"),
-    ("'{name}'.format(name=self.find())", None),
-    ("self.find()", None),
+    ("'{name}'.format(name=self._find())", None),
+    ("self._find()", None),
     ("f'x{self.get_parameter(\"period\").value}'", "/x*"),
     ("self.get_parameter('top_speed').get_parameter_value().string_value", None),
-    ("f'a{self.get_parameter(self.find()).value}'", "/a*"),
+    ("f'a{self.get_parameter(self._find()).value}'", "/a*"),
 ]
 
 
@@ -94,7 +94,7 @@ LOOPS = [
     ("for name in ['a', 'b']:", "name", ["/a", "/b"]),
     ("for number, name in enumerate(('a', 'b')):", "f'{name}/{name}'", ["/a/a", "/b/b"]),
     ("for name in {'a': 1}:", "name + '/lock'", ["/a/lock"]),
-    ("for name in self.find():", "f'{name}/lock'", ["/*/lock"]),
+    ("for name in self._find():", "f'{name}/lock'", ["/*/lock"]),
     ("for name in self.get_parameter('names').value:", "f'{name}/lock'", ["/p/lock", "/q/lock"]),
     ("for name in self.get_parameter('machine').value:", "f'{name}/lock'", ["/*/lock"]),
     ("for name in ['a']:", "other", [None]),
@@ -139,14 +139,60 @@ def test_a_name_depends_on_the_launch_file() -> None:
 
 
 FOUND = [
+    (
+        "code",
+        (DOOR, '~/lock", self.on_lock', '~/lock", self.on_lok'),
+        "Door has no attribute on_lok; did you mean on_lock?",
+    ),
+    (
+        "code",
+        (
+            DOOR,
+            "        self.publish()\n        response",
+            "        self.lights.on()\n        response",
+        ),
+        "Door has no attribute lights",
+    ),
+    (
+        "code",
+        (
+            DOOR,
+            "        self.publish()\n        response",
+            "        if hasattr(self, 'lights'): self.lights.on()\n        response",
+        ),
+        None,
+    ),
+    (
+        "code",
+        (
+            DOOR,
+            "        self.publish()\n        response",
+            "        try: self.lights.on()\n        except AttributeError: pass\n        response",
+        ),
+        None,
+    ),
+    (
+        "code",
+        (
+            DOOR,
+            "    rclpy.spin(Door())",
+            "    door = Door()\n    door.lights = door.publish()\n    rclpy.spin(door)",
+        ),
+        None,
+    ),
+    (
+        "code",
+        (DOOR, "class Door(Node):", "class Door(Node):\n    import time\n    lights = time\n"),
+        None,
+    ),
     ("interfaces", (CMAKE, '"msg/DrumState.msg"', '"msg/DrumStates.msg"'), None),
     (
         "services",
         (PANEL, '"door/lock")', '"door/look")'),
         "nothing serves the service /door/look; did you mean /door/lock",
     ),
-    ("services", (DOOR, '"~/lock"', 'f"{self.find()}/lock"'), None),
-    ("services", (PANEL, '"door/lock")', 'f"{self.find()}/lock")'), None),
+    ("services", (DOOR, '"~/lock"', 'f"{self._find()}/lock"'), None),
+    ("services", (PANEL, '"door/lock")', 'f"{self._find()}/lock")'), None),
     (
         "interfaces",
         (PANEL, "state.speed", "state.sped"),
@@ -164,7 +210,7 @@ FOUND = [
         (
             PANEL,
             "def on_state(self, state):",
-            "def on_state(self, state):\n        state = self.find(state)\n        state.other",
+            "def on_state(self, state):\n        state = self._find(state)\n        state.other",
         ),
         None,
     ),
@@ -289,7 +335,7 @@ FOUND = [
         (PANEL, "1.0, self.start)", "1.0, self.start())"),
         "create_timer() is given what self.start() returns, which is None",
     ),
-    ("code", (PANEL, "1.0, self.start)", "1.0, self.find())"), None),
+    ("code", (PANEL, "1.0, self.start)", "1.0, self._find())"), None),
     (
         "code",
         (DOOR, '"~/lock", self.on_lock)', '"~/lock", self.on_lock())'),
@@ -310,7 +356,7 @@ FOUND = [
         (
             DOOR,
             "        response.done = True\n        return response",
-            "        while True:\n            self.find()",
+            "        while True:\n            self._find()",
         ),
         None,
     ),
@@ -319,7 +365,7 @@ FOUND = [
         (
             DOOR,
             "        return response\n\n",
-            "        try:\n            self.find()\n        finally:\n            return response\n\n",
+            "        try:\n            self._find()\n        finally:\n            return response\n\n",
         ),
         None,
     ),
@@ -328,7 +374,7 @@ FOUND = [
         (
             DOOR,
             "        response.done = True\n        return response",
-            "        with self.find():\n            response.done = True",
+            "        with self._find():\n            response.done = True",
         ),
         "on_lock() does not return its response",
     ),
@@ -385,7 +431,7 @@ FOUND = [
         (
             PANEL,
             "self.door.call_async(request).add_done_callback(self.on_answer)",
-            "rclpy.spin_until_future_complete(self.other, self.door.call_async(request))",
+            "rclpy.spin_until_future_complete(self._other, self.door.call_async(request))",
         ),
         None,
     ),

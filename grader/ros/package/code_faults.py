@@ -9,8 +9,10 @@ import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from grader.base.names import closest, near
 from grader.base.source import Location
-from grader.ros.package.message_uses import CodePart, given_argument
+from grader.ros.known.known import node_attributes
+from grader.ros.package.message_uses import CodePart, certain_nodes, given_argument
 from grader.ros.package.node_facts import CodeFault
 from grader.ros.python.constants import binds_unseen, dotted, last_name
 from grader.ros.python.parse import Code, Position, location_in, position_of
@@ -59,12 +61,14 @@ class ModuleText(NamedTuple):
     code: Code
     parts: Sequence[CodePart]
     imports: Collection[str]
+    nodes: Mapping[Location, ast.ClassDef]  # the classes whose only bases are those of rclpy
 
 
 def code_faults(module: ModuleText, others: Mapping[str, ModuleText]) -> Iterator[CodeFault]:
     """Yield what is wrong in a module; `others` are all modules of the package, by their names."""
     search = _Search(module, others)
     yield from _undefined_names(module.code)
+    yield from search.undefined_attributes()
     yield from search.called_callbacks()
     yield from search.without_response()
     yield from search.waiting_callbacks()
@@ -153,6 +157,42 @@ class _Search:
         if name.startswith("self."):
             return self._functions.get((part.of, name[5:]))
         return self._functions.get((None, name))
+
+    def undefined_attributes(self) -> Iterator[CodeFault]:
+        """Yield the attributes of self that a class of nodes reads, and nothing sets or defines."""
+        nodes = [node for it in self._others.values() for node in ast.walk(it.code.tree)]
+        if binds_unseen(nodes):
+            return
+        known = {*node_attributes()}
+        for node in nodes:
+            match node:
+                case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Constant(value=str(name)):
+                    known.add(name)  # a text may be what hasattr() or getattr() asks for
+        for part in self._module.parts:
+            owner = self._module.nodes.get(part.of) if part.of is not None else None
+            if owner is not None and not owner.decorator_list and not owner.keywords:
+                yield from self._undefined_in(part, owner, known)
+
+    def _undefined_in(
+        self, part: CodePart, owner: ast.ClassDef, known: set[str]
+    ) -> Iterator[CodeFault]:
+        own = {name for node in owner.body for name in _defined_by(node)}
+        for node in certain_nodes(part.node):
+            match node:
+                case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Load()):
+                    pass
+                case _:
+                    continue
+            if name in own or name in known or name.startswith("_"):
+                continue
+            known.add(name)  # of which the first is said
+            meant = near(name, own | known) or closest(name, own)
+            hint = f"; did you mean {meant}?" if meant is not None else ""
+            message = f"{owner.name} has no attribute {name}{hint}"
+            at = Position(
+                node.end_lineno or node.lineno, (node.end_col_offset or 0) - len(name) + 1
+            )
+            yield CodeFault("undefined name", message, location_in(self._code.source, at))
 
     # --- Callbacks
 
@@ -317,6 +357,19 @@ class _Search:
                 ):
                     return None
         return [*reached.values()]
+
+
+def _defined_by(node: ast.stmt) -> Iterator[str]:
+    """Yield the names that a statement in the body of a class defines."""
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        yield node.name
+        return
+    for part in ast.walk(node):
+        match part:
+            case ast.Name(id=name, ctx=ast.Store()) | ast.FunctionDef(name=name):
+                yield name
+            case ast.alias(name=full, asname=asname):
+                yield asname or full.partition(".")[0]
 
 
 def _calls_in(function: ast.AST) -> Iterator[ast.Call]:

@@ -198,7 +198,7 @@ class _FunctionUses:
     ) -> None:
         """`given` are the types of the arguments after self."""
         self._evaluate = evaluate
-        self._nodes = sorted(_certain_nodes(function), key=offset_of)
+        self._nodes = sorted(certain_nodes(function), key=offset_of)
         self._counts = Counter[str]()
         for node in ast.walk(function):
             match node:
@@ -317,7 +317,7 @@ def _asked(nodes: Sequence[ast.AST]) -> Iterator[str]:
                 yield dotted(subject)
 
 
-def _certain_nodes(function: ast.AST) -> Iterator[ast.AST]:
+def certain_nodes(function: ast.AST) -> Iterator[ast.AST]:
     """Yield the nodes of a function, or of a module without its functions and classes, but for
     those of which errors are caught.
     """

@@ -420,7 +420,12 @@ class _Module:
 
     def text(self) -> ModuleText:
         """Return the module as it is searched for faults."""
-        return ModuleText(self._name, self._code, self._parts, self._constants.imported)
+        nodes = {
+            at: self._class_nodes[at]
+            for at, full in self._classes.items()
+            if self.bases[full] and _NODES.issuperset(self.bases[full])
+        }
+        return ModuleText(self._name, self._code, self._parts, self._constants.imported, nodes)
 
     def type_imports(self) -> Iterator[TypeImport]:
         """Yield the messages, services and actions that the module certainly imports."""
