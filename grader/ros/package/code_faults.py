@@ -163,19 +163,22 @@ class _Search:
         nodes = [node for it in self._others.values() for node in ast.walk(it.code.tree)]
         if binds_unseen(nodes):
             return
-        known = {*node_attributes()}
+        known, asked = {*node_attributes()}, set[str]()
         for node in nodes:
             match node:
-                case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Constant(value=str(name)):
-                    known.add(name)  # a text may be what hasattr() or getattr() asks for
+                case ast.Attribute(attr=name, ctx=ast.Store()):
+                    known.add(name)
+                case ast.Constant(value=str(text)):
+                    asked.add(text)  # which hasattr() or getattr() may ask for
         for part in self._module.parts:
             owner = self._module.nodes.get(part.of) if part.of is not None else None
             if owner is not None and not owner.decorator_list and not owner.keywords:
-                yield from self._undefined_in(part, owner, known)
+                yield from self._undefined_in(part, owner, known, asked)
 
     def _undefined_in(
-        self, part: CodePart, owner: ast.ClassDef, known: set[str]
+        self, part: CodePart, owner: ast.ClassDef, known: Collection[str], asked: set[str]
     ) -> Iterator[CodeFault]:
+        """Yield those of a method; what is said is added to what the module asks for."""
         own = {name for node in owner.body for name in _defined_by(node)}
         for node in certain_nodes(part.node):
             match node:
@@ -183,10 +186,10 @@ class _Search:
                     pass
                 case _:
                     continue
-            if name in own or name in known or name.startswith("_"):
+            if name in own or name in known or name in asked or name.startswith("_"):
                 continue
-            known.add(name)  # of which the first is said
-            meant = near(name, own | known) or closest(name, own)
+            asked.add(name)
+            meant = near(name, own.union(known)) or closest(name, own)
             hint = f"; did you mean {meant}?" if meant is not None else ""
             message = f"{owner.name} has no attribute {name}{hint}"
             at = Position(
