@@ -214,7 +214,7 @@ def test_what_is_odd_in_the_names_of_a_reference_is_said_in_one_line(
     )
     asked = re.findall('with = { of = "(.*)" }', (tmp_path / "lab.toml").read_text())
     assert family not in asked
-    assert len(asked) == 7
+    assert len(asked) == 9
 
 
 DIFFDRIVE = ROOT / "rubrics/diffdrive/diffdrive_robot"

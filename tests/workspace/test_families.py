@@ -673,7 +673,7 @@ CORRECT: list[tuple[str, list[Edit]]] = [
             (
                 _DETECTOR,
                 'self.declare_parameter("threshold", 0.5)',
-                'self.declare_parameter("threshold", 0.5, ANY)',
+                'self.declare_parameter("threshold", 0.5, self._any)',
             ),
             ("config/detector.yaml", "threshold: 0.5", "threshold: 1"),
         ],
@@ -778,7 +778,7 @@ CORRECT: list[tuple[str, list[Edit]]] = [
             (
                 _DETECTOR,
                 'self.declare_parameter("threshold", 0.5)',
-                "self.declare_parameter(name_of(self), 0.5)",
+                "self.declare_parameter(self._name(), 0.5)",
             )
         ],
     ),
@@ -897,7 +897,7 @@ CORRECT: list[tuple[str, list[Edit]]] = [
     (
         "a remapping of a node whose topics are computed",
         [
-            (_DETECTOR, 'Image, "image"', "Image, topic_of(self)"),
+            (_DETECTOR, 'Image, "image"', "Image, self._topic()"),
             (_LAUNCH, '("image"', '("images"'),
         ],
     ),
