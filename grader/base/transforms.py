@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 Vector = tuple[float, float, float]
 FULL_TURN = 6.2832  # radians
 AXES: tuple[Vector, Vector, Vector] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-X_AXIS, _, Z_AXIS = AXES
+X_AXIS, Y_AXIS, Z_AXIS = AXES
 Rotation = tuple[
     float, float, float, float, float, float, float, float, float
 ]  # a 3 x 3 matrix, row by row

@@ -30,6 +30,7 @@ SETUP_UNKNOWN = _kind(
 )
 IGNORED_ARGUMENT = _kind("PKG017", "warning", "Argument that setup() does not have")
 OF_ROS1 = _kind("PKG018", "note", "Package or launch files of ROS 1")
+NO_LAUNCH_FILES = _kind("PKG019", "warning", "Launch files that no build installs")
 LAUNCH_SYNTAX = _kind("LCH001", "error", "Unreadable launch file")
 LAUNCH_FAULT = _kind("LCH002", "error", "Error that stops a launch file")
 HARD_CODED = _kind("LCH003", "warning", "Path that exists on one machine only")

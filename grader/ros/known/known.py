@@ -14,6 +14,9 @@ _OF_WORKSPACES = (
     "controllers",
     "controller_parameters",
     "gazebo",
+    "transforms",
+    "wheels",
+    "wiring",
 )
 
 
@@ -51,6 +54,14 @@ class _Known(TypedDict):
     gazebo_systems: dict[str, dict[str, dict[str, str]]]
     gazebo_sensors: dict[str, str]
     sensor_systems: dict[str, str]
+    broadcasts: Mapping[Any, list[dict[str, Any]]]  # by program, or by type of controller
+    joint_state_programs: list[str]
+    joint_state_controller: str
+    containers: list[str]
+    environment: list[str]
+    time_packages: list[str]
+    clock_words: list[str]
+    wheel_values: Mapping[Any, dict[str, Any]]  # by the type of a controller or a plugin
 
 
 class _Machine(TypedDict):

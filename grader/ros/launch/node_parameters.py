@@ -629,7 +629,7 @@ def _select_values(
     """
     if full is None:
         return _select_for_any_name(by_key)
-    return _merge(values for key, values in by_key.items() if _matches(key, full))
+    return _merge(values for key, values in by_key.items() if is_key_of(key, full))
 
 
 def _select_for_any_name(
@@ -651,9 +651,9 @@ def _merge(tables: Iterable[Mapping[str, ParameterValue]]) -> dict[str, Paramete
     return merged
 
 
-def _matches(key: str | None, full: str) -> bool:
-    """Return whether the key of a section names a node: `*` stands for one name, `**` for any
-    number of them.
+def is_key_of(key: str | None, full: str) -> bool:
+    """Return whether the key of a section names a node by its full name: `*` stands for one name,
+    `**` for any number of them. The keys of what a launch file gives are None.
     """
     if key is None or "*" not in key:
         return key == full

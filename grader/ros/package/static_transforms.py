@@ -13,6 +13,7 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.package import Package
 from grader.ros.urdf.link_tree import parent_joints
 from grader.ros.urdf.model import Joint, Link, Origin, Robot, UnresolvedPart
+from grader.ros.urdf.numbers import finite_number
 
 STATIC_PUBLISHER = ("tf2_ros", "static_transform_publisher")
 _PLACE, _RPY, _QUATERNION = (
@@ -165,6 +166,27 @@ def frames_named(node: StartedNode) -> tuple[str, str]:
     options = _read_options(_select_words(node))
     parent, child = ((options.get(option) or "").removeprefix("/") for option in _FRAMES)
     return parent, child
+
+
+def static_pose(node: StartedNode) -> Transform | None:
+    """Return T_parent_child that a static_transform_publisher is given; None where it is not known
+    or not valid.
+    """
+    words = _select_words(node)
+    if None in words:
+        return None
+    at = node.location
+    location = LazyLocation(Source(at.path, "", [0]), 0)
+    options = {name: text or "" for name, text in _read_options(words).items()}
+    origin = _make_origin(options, location)
+    return origin.placed_in() if origin is not None else None
+
+
+def has_zero_rotation(node: StartedNode) -> bool:
+    """Return whether a static_transform_publisher is given the quaternion 0 0 0 0."""
+    options = _read_options(_select_words(node))
+    values = [finite_number(options.get(name)) for name in _QUATERNION]
+    return all(value == 0.0 for value in values)
 
 
 def _read_options(words: Sequence[str | None]) -> dict[str, str | None]:

@@ -49,6 +49,15 @@ def number(text: str) -> float:
     return value
 
 
+def finite_number(text: str | None) -> float | None:
+    """Return the number that a parameter file or an element surely has; None for any other text."""
+    try:
+        value = float(text or "")
+    except ValueError:
+        return None
+    return value if isfinite(value) else None
+
+
 def numbers(text: str) -> list[float]:
     """Return the numbers of a list with spaces between; raises NumberError for the first piece that
     is not a number.

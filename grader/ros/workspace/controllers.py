@@ -51,7 +51,7 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
     # parameters.
     nested = ((keys[-1], node) for keys, node in _sections(workspace) if MANAGER in keys[:-1])
     yield from (Definition("controller", name, node.location) for name, node in nested)
-    sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
+    sections = parameters_of_controllers(workspace)
     for controller in controllers:
         yield from _type_facts(workspace, controller)
         yield from _section_facts(workspace, controller, sections)
@@ -73,6 +73,13 @@ def _sections(workspace: Workspace) -> tuple[tuple[tuple[str, ...], YamlNode], .
             if keys:
                 found += [(keys, node), *sections_in(node, keys)]
     return tuple(found)
+
+
+def parameters_of_controllers(workspace: Workspace) -> Mapping[str, YamlNode]:
+    """Return the parameters in the sections of parameter files, by the last names of their nodes,
+    some of which are controllers.
+    """
+    return {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
 
 
 @lru_cache(maxsize=2)
@@ -102,7 +109,7 @@ def controller_endpoints(
     """
     if node.executable != "ros2_control_node" or node.namespace is None or node.remaps is None:
         return
-    remaps = _remaps_of_spawned(workspace, launch)
+    remaps = spawned_controllers(workspace, launch)
     # With this parameter, the type of a topic depends on its value.
     for keys, section in _sections(workspace):
         if section.get("use_stamped_vel") is not None:
@@ -119,10 +126,12 @@ def controller_endpoints(
                     yield topic, Endpoint(kind, message, topic, controller.location)
 
 
-def _remaps_of_spawned(
+def spawned_controllers(
     workspace: Workspace, launch: int
 ) -> dict[str | None, tuple[tuple[str, ...], ...]]:
-    """Return the remappings of the controllers that the spawners of a launch file start."""
+    """Return the controllers that the spawners of a launch file start, by their names, each with
+    its remappings.
+    """
     remaps: dict[str | None, tuple[tuple[str, ...], ...]] = {}
     for number, spawner in workspace.launched:
         if number == launch and spawner.executable in SPAWNERS and spawner.when:
@@ -244,7 +253,7 @@ def _needed_in(
 
 def needed_interfaces(workspace: Workspace) -> frozenset[str]:
     """Return the command interfaces that controllers need, each as joint/interface."""
-    sections = {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
+    sections = parameters_of_controllers(workspace)
     types = known()["controllers"]
     needed: set[str] = set()
     for controller in defined_controllers(workspace):

@@ -12,11 +12,13 @@ from grader.ros.build import package_problems as kinds
 from grader.ros.known.releases import releases_with
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.found_problems import build_problems, launch_problems, sorted_problems
+from grader.ros.package.installed_files import are_installs_known
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.workspace.reading import read_agreement
 from grader.ros.workspace.workspace import Workspace
 
 _OF_MISSING_FILES = (kinds.SETUP_STOPS, kinds.EMPTY_GLOB)
+_LAUNCH_FOLDER = "launch/"
 _COUNTED = (kinds.SETUP_UNKNOWN, kinds.LAUNCH_UNKNOWN)  # and not listed
 
 
@@ -33,6 +35,7 @@ def _file_problems(workspace: Workspace) -> Iterator[Problem]:
         for problem in found:
             if problem.location not in wrong_programs:  # which is also a name that does not agree
                 yield problem
+    yield from _uninstalled_launch_files(workspace)
     for package, paths in workspace.ros1_launches:
         files = counted(len(paths), "launch file")
         message = f"the package has {files} of ROS 1, which ros2 launch does not read"
@@ -40,6 +43,26 @@ def _file_problems(workspace: Workspace) -> Iterator[Problem]:
     for package in workspace.packages:
         for path in package.rviz_files:
             yield from _rviz_problems(package, path)
+
+
+def _uninstalled_launch_files(workspace: Workspace) -> Iterator[Problem]:
+    """Yield the packages with a folder launch of which a build installs no file."""
+    for package in workspace.packages:
+        files = []
+        for path in package.launch_files:
+            name = path.removeprefix(_LAUNCH_FOLDER)
+            if name != path and "launch" in name:
+                files.append(path)
+        setup = package.installation
+        is_module = f"{_LAUNCH_FOLDER}__init__.py" in package.tree.files
+        if not files or is_module or setup is None or not are_installs_known(package):
+            continue
+        if not {*package.installed.values()}.isdisjoint(files):
+            continue
+        name = files[0].removeprefix(_LAUNCH_FOLDER)
+        message = f"ros2 launch does not find {name}: no {setup.entry} names the folder launch"
+        place = Location(package.path(files[0]), 1, 1)
+        yield Problem(kinds.NO_LAUNCH_FILES, message, place)
 
 
 def _build_problems(workspace: Workspace) -> Iterator[Problem]:

@@ -28,6 +28,12 @@ _NO_SERVICE = _error("REF013", "Service or action with another name or type")
 _NO_INTERFACE = _error("REF014", "Message, service, action or field that does not exist")
 _NO_RUN = _error("REF015", "Node that certainly stops, or does nothing")
 _MAY_WAIT = _warning("REF016", "Node that may stop or wait")
+_WRONG_VALUE = _error("REF017", "Number that contradicts the robot")
+_OTHER_VALUE = _warning("REF018", "Number that is not that of the robot")
+_WRONG_TRANSFORM = _error("REF019", "Frames that are no tree")
+_OTHER_TRANSFORM = _warning("REF020", "Transform that two programs publish")
+_NO_COMPANION = _warning("REF021", "Node that does not fit the others")
+_ONE_MACHINE = _warning("REF022", "What only one machine has")
 UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
 
 _KINDS: Mapping[Family, Kind] = {
@@ -42,6 +48,18 @@ _KINDS: Mapping[Family, Kind] = {
     "services": _NO_SERVICE,
     "interfaces": _NO_INTERFACE,
     "code": _NO_RUN,
+    "values": _WRONG_VALUE,
+    "transforms": _WRONG_TRANSFORM,
+    "wiring": _NO_COMPANION,
+    "machine": _ONE_MACHINE,
+}
+# Of what is not certain; of other families it is a similar name.
+_UNCERTAIN: Mapping[Family, Kind] = {
+    "code": _MAY_WAIT,
+    "values": _OTHER_VALUE,
+    "transforms": _OTHER_TRANSFORM,
+    "wiring": _NO_COMPANION,
+    "machine": _ONE_MACHINE,
 }
 NAME_CATALOGUE = kinds_in(globals().values())
 
@@ -50,9 +68,8 @@ def name_problems(agreement: Agreement) -> tuple[Problem, ...]:
     """Return what does not agree as problems, in the order of files and lines."""
     problems = []
     for wrong in agreement.mismatches:
-        kind = _KINDS[wrong.family]
-        if not wrong.is_certain:
-            kind = _MAY_WAIT if wrong.family == "code" else _SIMILAR
+        uncertain = _UNCERTAIN.get(wrong.family, _SIMILAR)
+        kind = _KINDS[wrong.family] if wrong.is_certain else uncertain
         problems.append(Problem(kind, wrong.message, wrong.location, wrong.family))
     for at in agreement.unused:
         message = "no other file of the workspace names this file"

@@ -22,6 +22,10 @@ Family = Literal[
     "services",
     "interfaces",
     "code",
+    "values",
+    "transforms",
+    "wiring",
+    "machine",
 ]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 _Kind = Literal[

@@ -146,7 +146,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
     if not isinstance(tree, YamlNode):
         return
     # A container gives the file to the components that are loaded into it.
-    if any(node.package in ("ros_gz_bridge", "rclcpp_components") for node in nodes):
+    if any(node.package in known()["containers"] for node in nodes):
         return
     yield from _misplaced(tree)
     sections = {keys[-1].rpartition("/")[2]: keys for keys, _ in sections_in(tree) if keys}

@@ -9,12 +9,15 @@ from grader.ros.package.package import Package
 from grader.ros.workspace.arguments import argument_facts
 from grader.ros.workspace.bridges import bridge_facts
 from grader.ros.workspace.code import code_facts
+from grader.ros.workspace.companions import companion_facts
 from grader.ros.workspace.controllers import controller_facts
 from grader.ros.workspace.dependencies import dependency_facts
 from grader.ros.workspace.files import file_facts
+from grader.ros.workspace.footprint_values import footprint_facts
 from grader.ros.workspace.frames import frame_facts
 from grader.ros.workspace.gazebo import gazebo_facts
 from grader.ros.workspace.interfaces import interface_facts
+from grader.ros.workspace.limit_values import limit_facts
 from grader.ros.workspace.moveit import moveit_facts
 from grader.ros.workspace.names import (
     FAMILY_OF,
@@ -27,13 +30,18 @@ from grader.ros.workspace.names import (
     agreement,
     uncompared,
 )
+from grader.ros.workspace.namespaces import namespace_facts
+from grader.ros.workspace.one_machine import machine_facts
 from grader.ros.workspace.parameters import parameter_facts
 from grader.ros.workspace.programs import program_facts
+from grader.ros.workspace.published_transforms import transform_facts
+from grader.ros.workspace.rate_values import rate_facts
 from grader.ros.workspace.services import service_facts
 from grader.ros.workspace.spawners import spawner_facts
 from grader.ros.workspace.srdf import srdf_facts
 from grader.ros.workspace.topics import topic_facts
 from grader.ros.workspace.unused import unused_files
+from grader.ros.workspace.wheel_values import wheel_value_facts
 from grader.ros.workspace.workspace import Workspace
 
 _READERS = (
@@ -53,6 +61,14 @@ _READERS = (
     dependency_facts,
     interface_facts,
     code_facts,
+    wheel_value_facts,
+    limit_facts,
+    rate_facts,
+    footprint_facts,
+    transform_facts,
+    companion_facts,
+    namespace_facts,
+    machine_facts,
 )
 
 

@@ -28,6 +28,26 @@ def may_be_offered(workspace: Workspace, interface: str) -> bool:
 
 
 @lru_cache(maxsize=4)
+def may_vary(workspace: Workspace, *tags: str) -> bool:
+    """Return whether joints, or what elements of some tags say, may be others under other
+    arguments.
+    """
+    sources = workspace.xacro_sources
+    if not any("$(arg" in source.text for source in sources):
+        return False
+    if names_under_arguments(workspace, "joint"):
+        return True
+    dependent = _dependent(sources)
+    element = re.compile(rf"<(?:{'|'.join(tags)})\b[^>]*>")
+    for source in sources:
+        for tag in element.finditer(source.text):
+            words = {word for it in _COMPUTED.findall(tag[0]) for word in _WORD.findall(it)}
+            if not dependent.isdisjoint(words):
+                return True
+    return False
+
+
+@lru_cache(maxsize=4)
 def names_under_arguments(workspace: Workspace, tag: str) -> frozenset[str]:
     """Return the names in elements of xacro that stand under a condition or in a file that an
     argument chooses, and those that arguments are a part of; with * for what is computed.

@@ -656,6 +656,10 @@ class Workspace:
         """The paths of the files of packages, by their endings."""
         return {}
 
+    def launch_sources(self, package: Package) -> Iterator[Source]:
+        """Yield the texts of the launch files of a package."""
+        return self._sources(package, package.launch_files)
+
     def _sources(self, package: Package, paths: Iterable[str]) -> Iterator[Source]:
         for path in _read_paths(package, paths):
             if (package, path) not in self._texts:

@@ -1,0 +1,100 @@
+"""The wheels that joints turn: where they are, about which axis they turn, and how large they are.
+
+Lengths are metres, in the frame of a link that is given. Only cylinders and spheres about the axis
+of a joint have a size that is known; meshes have none.
+"""
+
+from collections.abc import Iterator
+from operator import itemgetter
+from typing import NamedTuple
+
+from grader.base.transforms import Z_AXIS, Vector, cross, dot, minus
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Collision, Cylinder, Joint, Sphere, Visual
+
+_ALONG = 0.99  # the cosine of the angle between two directions that count as parallel
+_OFF_AXIS = 0.05  # of the radius: how far from its axis the middle of a wheel may be
+
+
+class WheelSize(NamedTuple):
+    """The wheel of a joint. `axis` is the unit axis of the joint, `middle` the middle of the wheel,
+    or the origin of the joint where no round shape is known. `radii` has those of all round shapes,
+    the largest first, and `half_width` is None without one.
+    """
+
+    joint: Joint
+    axis: Vector
+    middle: Vector
+    radii: tuple[float, ...] = ()
+    half_width: float | None = None
+
+
+def measure_wheel(robot: Configuration, joint: Joint, base: str) -> WheelSize:
+    """Return the wheel that a joint turns, in the frame of the link `base`.
+
+    A joint without a round shape about its axis may stand for others: the radii are then those of
+    the joints that mimic it, or of those that it carries, as a steering joint does. Raises
+    MissingElement where a pose or an axis is not defined, NotDecided where one is open.
+    """
+    own = _measure_own(robot, joint, base)
+    if own.radii:
+        return own
+    for other in _standing_for(robot, joint):
+        found = _measure_own(robot, other, base)
+        if found.radii:
+            return own._replace(radii=found.radii)
+    return own
+
+
+def _standing_for(robot: Configuration, joint: Joint) -> Iterator[Joint]:
+    """Yield the joints that mimic a joint, and then those that turn below these and below it."""
+    moving = [it for it in robot.robot.joints if it.has_position and it is not joint]
+    following = [it for it in moving if it.mimic is not None and it.mimic.joint == joint.name]
+    yield from following
+    for other in moving:
+        above = robot.chain(other.parent)
+        if joint in above or any(follower in above for follower in following):
+            yield other
+
+
+def _measure_own(robot: Configuration, joint: Joint, base: str) -> WheelSize:
+    """Return the wheel that the cylinders and spheres about the axis of a joint make, on its link
+    and on those that are fixed to it.
+    """
+    T_base_joint = robot.pose(joint.child, relative_to=base)
+    axis = T_base_joint.rotate(robot.axis(joint))
+    found: list[tuple[float, float, Vector]] = []
+    for link in _fixed_links(robot, joint.child):
+        T_base_link = robot.pose(link, relative_to=base)
+        elements: list[Collision | Visual] = [*robot.link(link).collisions]
+        elements += robot.link(link).visuals
+        for element in elements:
+            shape = element.geometry
+            if not isinstance(shape, Cylinder | Sphere):
+                continue
+            T_base_shape = element.origin.placed_in(T_base_link)
+            half_width = 0.0
+            if isinstance(shape, Cylinder):
+                half_width = shape.length / 2.0
+                if abs(dot(T_base_shape.rotate(Z_AXIS), axis)) < _ALONG:
+                    continue
+            away = cross(minus(T_base_shape.translation, T_base_joint.translation), axis)
+            if dot(away, away) <= (_OFF_AXIS * shape.radius) ** 2:
+                found.append((shape.radius, half_width, T_base_shape.translation))
+    if not found:
+        return WheelSize(joint, axis, T_base_joint.translation)
+    found.sort(key=itemgetter(0), reverse=True)
+    radii = tuple(radius for radius, _, _ in found)
+    return WheelSize(joint, axis, found[0][2], radii, max(width for _, width, _ in found))
+
+
+def _fixed_links(robot: Configuration, link: str) -> Iterator[str]:
+    """Yield a link and the links that are fixed to it."""
+    pending, seen = [link], {link}
+    while pending:
+        name = pending.pop()
+        yield name
+        for joint in robot.robot.joints:
+            if joint.parent == name and joint.type == "fixed" and joint.child not in seen:
+                seen.add(joint.child)
+                pending.append(joint.child)

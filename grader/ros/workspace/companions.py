@@ -1,0 +1,183 @@
+"""Nodes that need others: who publishes joint states and the clock, who publishes the robot, and
+which nodes have one name.
+"""
+
+from collections.abc import Iterator
+
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.known.known import known
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.workspace.bridges import bridge_rows
+from grader.ros.workspace.controllers import defined_controllers, spawned_controllers
+from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.workspace import MANAGER, Workspace
+
+_ROBOT_PUBLISHER, _CONTROL_NODE = "robot_state_publisher", "ros2_control_node"
+_JOINT_STATE, _CLOCK = "sensor_msgs.msg.JointState", "rosgraph_msgs.msg.Clock"
+_TIME = "use_sim_time"
+_SOURCES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".md", ".sh", ".xml", ".yaml")
+
+
+def companion_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield nodes whose companions are missing or are there twice.
+
+    A launch file may be one of several that a person starts: what is missing is missing in all of
+    them. Where a launch file may start more than is known, nothing is.
+    """
+    if not workspace.nodes:
+        return
+    yield Compared("wiring")
+    yield from _same_names(workspace)
+    yield from _two_joint_state_publishers(workspace)
+    if not workspace.unknown_nodes:
+        yield from _no_joint_states(workspace)
+        yield from _no_robot(workspace)
+        yield from _no_clock(workspace)
+        yield from _wall_time(workspace)
+
+
+def _warning(message: str, at: Location, related: Location | None = None) -> Mismatch:
+    return Mismatch("wiring", message, at, related, is_certain=False)
+
+
+def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the nodes that a launch file gives a name which it gives another one."""
+    first: dict[tuple[int, str], StartedNode] = {}
+    for launch, node in workspace.launched:
+        if node.when is not True or not node.node_name or node.namespace is None:
+            continue
+        name = node.full_name(node.node_name)
+        before = first.setdefault((launch, name), node)
+        if before is not node:
+            message = (
+                f"two nodes are named {name}: their parameters and services cannot be told apart; "
+                f"the other one is at {before.location.file_and_line}"
+            )
+            yield _warning(message, node.location, before.location)
+
+
+def _broadcasters(workspace: Workspace) -> set[str]:
+    """Return the names of the controllers that publish joint states."""
+    kind = known()["joint_state_controller"]
+    return {it.name for it in defined_controllers(workspace) if it.type.text == kind}
+
+
+def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the programs that publish joint states beside a controller that does."""
+    broadcasters = _broadcasters(workspace)
+    for launch, node in workspace.launched:
+        is_source = f"{node.package}/{node.executable}" in known()["joint_state_programs"]
+        if not is_source or node.when is not True or node.remaps or node.parameters:
+            continue
+        spawned = spawned_controllers(workspace, launch)
+        for name in sorted(broadcasters.intersection(spawned)):
+            if not spawned[name] and not node.namespace:
+                message = (
+                    f"{node.executable} and the controller {quoted(name)} both publish "
+                    "joint_states: the joints jump between their positions"
+                )
+                yield _warning(message, node.location)
+
+
+def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield a robot with moving joints whose positions nothing publishes."""
+    publishers = [it for _, it in workspace.nodes if it.executable == _ROBOT_PUBLISHER and it.when]
+    moving = []
+    for robot in workspace.robots:
+        moving += [it for it in robot.robot.joints if it.has_position and it.mimic is None]
+    if not publishers or not moving or workspace.has_other_robots:
+        return
+    for _, node in workspace.nodes:
+        if f"{node.package}/{node.executable}" in known()["joint_state_programs"]:
+            return
+        if not _is_understood(workspace, node, _JOINT_STATE):
+            return
+    if any(row.is_published and row.ros_type == _JOINT_STATE for row in bridge_rows(workspace)):
+        return
+    if _broadcasters(workspace) or _is_mentioned(workspace, ("joint_state", "JointState")):
+        return
+    joint = moving[0]
+    message = (
+        f"nothing publishes joint_states, so the links of {len(moving)} moving joints such as "
+        f"{quoted(joint.name)} have no transform: start joint_state_publisher or a "
+        "joint_state_broadcaster"
+    )
+    at = joint.location.resolve() if joint.location is not None else None
+    yield _warning(message, publishers[0].location, at)
+
+
+def _is_understood(workspace: Workspace, node: StartedNode, kind: str) -> bool:
+    """Return whether it is known that a node publishes no messages of a type."""
+    own = workspace.python_node(node)
+    if own is not None:
+        types = [each.type for each in own.endpoints if each.kind == "publisher"]
+        return not own.doubts and kind not in types and None not in types
+    return node.package in known()["without_frames"]
+
+
+def _is_mentioned(workspace: Workspace, words: tuple[str, ...]) -> bool:
+    """Return whether a text of the workspace has one of some words."""
+    texts = [*workspace.searched_launch_texts()]
+    for package in workspace.packages:
+        texts += [source.text for source in workspace.sources_of(package, _SOURCES)]
+    for robot in workspace.robots:
+        texts.append(robot.source.text)
+    workspace.charge(sum(map(len, texts)) // 512)
+    return any(word in text for text in texts for word in words)
+
+
+def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield a controller manager that waits for a robot which nothing publishes."""
+    managers = []
+    for _, node in workspace.nodes:
+        if node.executable == _ROBOT_PUBLISHER:
+            return
+        if node.package == MANAGER and node.executable == _CONTROL_NODE:
+            if node.has_description:
+                return
+            managers.append(node)
+        elif node.package not in known()["without_frames"]:
+            return
+    if managers and not _is_mentioned(workspace, ("robot_description",)):
+        message = (
+            "the controller manager waits for the topic robot_description, which nothing "
+            "publishes: start robot_state_publisher"
+        )
+        yield _warning(message, managers[0].location)
+
+
+def _sim_time(workspace: Workspace) -> Iterator[Location]:
+    """Yield where nodes that are started are told to use the time of a simulation."""
+    for package, node in workspace.nodes:
+        if node.when is True:
+            value = workspace.parameters_given(package, node).values.get(_TIME)
+            if value is not None and value.value is True:
+                yield value.location
+
+
+def _no_clock(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that nodes wait for the time of a simulation that nothing publishes."""
+    at = next(_sim_time(workspace), None)
+    if at is None or _is_mentioned(workspace, tuple(known()["clock_words"])):
+        return
+    for _, node in workspace.nodes:
+        if workspace.package_of(node) is not None and not _is_understood(workspace, node, _CLOCK):
+            return
+    message = "use_sim_time is true, but nothing publishes /clock: the time of the node stays 0"
+    yield _warning(message, at)
+
+
+def _wall_time(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that nodes compare times in a simulation whose clock they do not use."""
+    rows = [row for row in bridge_rows(workspace) if row.is_published and row.ros_type == _CLOCK]
+    if not rows or _is_mentioned(workspace, (_TIME,)):
+        return
+    for _, node in workspace.nodes:
+        if node.package in known()["time_packages"] and node.when is True:
+            message = (
+                f"{node.executable} uses the time of the machine, but the simulation has its own "
+                f"clock ({rows[0].location.file_and_line}): give the nodes use_sim_time"
+            )
+            yield _warning(message, node.location, rows[0].location)
+            return

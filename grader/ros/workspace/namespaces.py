@@ -1,0 +1,53 @@
+"""Namespaces: parameter files whose keys are of another namespace than the node that gets them."""
+
+from collections.abc import Iterator
+
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.config.yaml_values import sections_in
+from grader.ros.known.known import known
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.node_parameters import is_key_of
+from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.workspace import Workspace
+
+
+def namespace_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the parameter files that have parameters of a node's name, but not in its namespace:
+    rcl compares the full names, so the node gets none of them.
+    """
+    for path, nodes in workspace.parameter_files.items():
+        tree = workspace.yaml_files.get(path)
+        if isinstance(tree, YamlNode):
+            keys = {f"/{'/'.join(keys).strip('/')}": keys for keys, _ in sections_in(tree) if keys}
+            said: set[Location] = set()  # of several nodes that do not get a section, the first
+            for node in nodes:
+                workspace.charge(1 + len(keys))
+                for fact in _other_namespace(workspace, tree, node, keys):
+                    if isinstance(fact, Compared) or fact.location not in said:
+                        yield fact
+                    if isinstance(fact, Mismatch):
+                        said.add(fact.location)
+
+
+def _other_namespace(
+    workspace: Workspace, tree: YamlNode, node: StartedNode, keys: dict[str, tuple[str, ...]]
+) -> Iterator[Compared | Mismatch]:
+    name = workspace.name_of(node)
+    if not name or node.namespace is None or node.package in known()["containers"]:
+        return
+    full = node.full_name(name)
+    same = [key for key in keys if key.rpartition("/")[2] == full.rpartition("/")[2]]
+    if not same:
+        return
+    yield Compared("parameters")
+    if any(is_key_of(key, full) for key in keys):
+        return
+    written = same[0].strip("/")
+    message = (
+        f"the node {full} gets nothing of {quoted(written)}, which is the key of the node "
+        f"{same[0]}: write {quoted(full)} or /**/{full.rpartition('/')[2]}"
+    )
+    at = tree.key_location(*keys[same[0]])
+    yield Mismatch("parameters", message, at, node.location, is_certain=node.when is True)

@@ -1,0 +1,114 @@
+"""Rates and ranges that one file asks for and another one cannot give: of controllers, and of the
+lidars that Nav2 reads.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.config.yaml_values import sections_in
+from grader.ros.urdf.numbers import finite_number
+from grader.ros.workspace.controllers import defined_controllers, parameters_of_controllers
+from grader.ros.workspace.gazebo import roots
+from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.workspace import MANAGER, Workspace
+
+_LIDARS = ("lidar", "gpu_lidar", "ray", "gpu_ray")
+_SOURCES, _SCAN = "observation_sources", "LaserScan"
+_ROUNDING = 1e-6
+
+
+class _Number(NamedTuple):
+    """A positive number that a file says of something, and its place."""
+
+    of: str
+    value: float
+    location: Location
+
+
+def rate_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the rates and ranges that cannot be reached."""
+    yield from _rates_of_controllers(workspace)
+    if workspace.has_other_robots:
+        return
+    ranges = [*_numbers_of_lidars(workspace, "max")]
+    rates = [*_numbers_of_lidars(workspace, "update_rate")]
+    for name, source in _scan_sources(workspace):
+        yield Compared("values")
+        asked = _number_in(source, name, "obstacle_max_range")
+        if asked is not None and ranges:
+            seen = max(ranges, key=lambda it: it.value)
+            if asked.value > seen.value + _ROUNDING:
+                message = (
+                    f"{name}.obstacle_max_range is {asked.value:g} m; the lidar {quoted(seen.of)} "
+                    f"measures up to {seen.value:g} m"
+                )
+                yield Mismatch("values", message, asked.location, seen.location, is_certain=False)
+        asked = _number_in(source, name, "expected_update_rate")
+        if asked is not None and rates:
+            fastest = max(rates, key=lambda it: it.value)
+            if asked.value < 1.0 / fastest.value - _ROUNDING:
+                message = (
+                    f"{name}.expected_update_rate is {asked.value:g} s; the lidar "
+                    f"{quoted(fastest.of)} measures every {1.0 / fastest.value:.4g} s"
+                )
+                place = fastest.location
+                yield Mismatch("values", message, asked.location, place, is_certain=False)
+
+
+def _rates_of_controllers(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers that should publish more often than their manager updates them."""
+    sections = parameters_of_controllers(workspace)
+    update = _number_in(sections.get(MANAGER), MANAGER, "update_rate")
+    if update is None:
+        return
+    for controller in defined_controllers(workspace):
+        asked = _number_in(sections.get(controller.name), controller.name, "publish_rate")
+        if asked is None:
+            continue
+        yield Compared("values")
+        if asked.value > update.value + _ROUNDING:
+            message = (
+                f"{asked.of}.publish_rate is {asked.value:g} Hz; the controller manager updates "
+                f"its controllers {update.value:g} times a second"
+            )
+            yield Mismatch("values", message, asked.location, update.location, is_certain=False)
+
+
+def _number_in(section: YamlNode | None, name: str, key: str) -> _Number | None:
+    """Return the positive number of a parameter, where it is given."""
+    node = section.get(key) if section is not None else None
+    value = finite_number(node.text) if node is not None else None
+    if node is None or value is None or value <= 0.0:
+        return None
+    return _Number(name, value, node.location)
+
+
+def _numbers_of_lidars(workspace: Workspace, tag: str) -> Iterator[_Number]:
+    """Yield the positive numbers in elements of the simulated lidars."""
+    for root, place in roots(workspace):
+        for sensor in root.iter("sensor"):
+            if sensor.get("type") not in _LIDARS:
+                continue
+            for element in sensor.iter(tag):
+                parent = element.getparent()
+                if tag == "max" and (parent is None or parent.tag != "range"):
+                    continue
+                value = finite_number(element.text)
+                if value is not None and value > 0.0:
+                    yield _Number(sensor.get("name", ""), value, place(element))
+
+
+def _scan_sources(workspace: Workspace) -> Iterator[tuple[str, YamlNode]]:
+    """Yield the sections of costmaps' observation sources that are scans."""
+    for _, tree in workspace.trees:
+        for _, section in sections_in(tree):
+            for layer in [node for _, node in section.pairs]:
+                listed = layer.get(_SOURCES)
+                for name in (listed.text or "").split() if listed is not None else ():
+                    source = layer.get(name)
+                    kind = source.get("data_type") if source is not None else None
+                    if source is not None and kind is not None and kind.text == _SCAN:
+                        yield name, source
