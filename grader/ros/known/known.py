@@ -57,6 +57,8 @@ class _Known(TypedDict):
     broadcasts: Mapping[Any, list[dict[str, Any]]]  # by program, or by type of controller
     joint_state_programs: list[str]
     joint_state_controller: str
+    transport_types: dict[str, str]
+    program_topics: dict[str, list[dict[str, Any]]]
     containers: list[str]
     environment: list[str]
     time_packages: list[str]

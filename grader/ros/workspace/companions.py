@@ -109,7 +109,7 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
 
 def _is_understood(workspace: Workspace, node: StartedNode, kind: str) -> bool:
     """Return whether it is known that a node publishes no messages of a type."""
-    own = workspace.python_node(node)
+    own = workspace.own_node(node)
     if own is not None:
         types = [each.type for each in own.endpoints if each.kind == "publisher"]
         return not own.doubts and kind not in types and None not in types

@@ -39,6 +39,7 @@ from grader.ros.workspace.rate_values import rate_facts
 from grader.ros.workspace.services import service_facts
 from grader.ros.workspace.spawners import spawner_facts
 from grader.ros.workspace.srdf import srdf_facts
+from grader.ros.workspace.topic_wiring import topic_wiring_facts
 from grader.ros.workspace.topics import topic_facts
 from grader.ros.workspace.unused import unused_files
 from grader.ros.workspace.wheel_values import wheel_value_facts
@@ -69,6 +70,7 @@ _READERS = (
     companion_facts,
     namespace_facts,
     machine_facts,
+    topic_wiring_facts,
 )
 
 
