@@ -19,6 +19,7 @@ _MANIFEST = """\
   <maintainer email="a@b.org">Ann</maintainer><license>MIT</license>
   <exec_depend>controller_manager</exec_depend><exec_depend>joint_trajectory_controller</exec_depend>
   <exec_depend>robot_state_publisher</exec_depend><exec_depend>xacro</exec_depend>
+  <exec_depend>joint_state_publisher</exec_depend>
   <exec_depend>rclpy</exec_depend><exec_depend>ros_gz_bridge</exec_depend>
   <export><build_type>ament_python</build_type></export>
 </package>
@@ -52,6 +53,7 @@ def generate_launch_description():
     return LaunchDescription([
         Node(package='robot_state_publisher', executable='robot_state_publisher',
              parameters=[{'robot_description': robot}]),
+        Node(package='joint_state_publisher', executable='joint_state_publisher'),
         MORE
     ])
 """

@@ -136,7 +136,7 @@ _RENAMED = [
 @given(new=_others)
 def test_a_name_that_is_changed_everywhere_still_agrees(name: str, new: str) -> None:
     """Names are the choice of the student: in files, folders and their names."""
-    whole = re.compile(rf"(?<![A-Za-z]){re.escape(name)}(?![A-Za-z])(?!_layer|_wheel)")
+    whole = re.compile(rf"(?<![A-Za-z])(?<!use_){re.escape(name)}(?![A-Za-z])(?!_layer|_wheel)")
     # The sides of the robot are part of a joint's name: xacro makes it.
     texts = {whole.sub(new, path): whole.sub(new, text) for path, text in cart_files().items()}
     texts = {

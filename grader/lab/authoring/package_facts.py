@@ -36,6 +36,8 @@ _NAME_TITLES: Mapping[Family, str] = {
     "services": "services and actions have the same names and types in all nodes",
     "interfaces": "every message, service, action and field that is used exists",
     "code": "nothing in the code certainly stops a node, or keeps it from working",
+    "values": "no number that the files say of the robot contradicts it",
+    "transforms": "the frames that are published are one tree",
 }
 # What is odd in a reference, and so is no criterion: a text, and what is counted in it.
 _ODD: Mapping[Family, tuple[str, str]] = {
@@ -50,6 +52,8 @@ _ODD: Mapping[Family, tuple[str, str]] = {
     "services": ("{} in the names and types of services and actions", "fault"),
     "interfaces": ("{} in messages, services, actions and their fields", "fault"),
     "code": ("{} in the code of nodes", "fault"),
+    "values": ("{} in what files say of the robot", "number"),
+    "transforms": ("{} in the transforms that are published", "fault"),
 }
 _WHEEL = re.compile("wheel|axle|tire|tyre")
 _DISTANCE = re.compile("separation|wheel_?base|wheel_?track|track_?width")

@@ -5,7 +5,7 @@ from grader.base.text import enumerated, first_lines
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.submission.submission import Submission
-from grader.ros.workspace.names import Family
+from grader.ros.workspace.names import GradedFamily
 
 ABOUT = {
     "names_agree": About(
@@ -18,7 +18,7 @@ ABOUT = {
 _MAX_IN_MESSAGE = 3  # mistakes, and places of each
 
 
-def names_agree(submission: Submission, *, of: Family) -> Outcome:
+def names_agree(submission: Submission, *, of: GradedFamily) -> Outcome:
     """The names that files of the packages use are defined: files, frames, parameters, programs and
     so on.
 
@@ -30,7 +30,7 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
         of: What is named: files, frames, controllers, parameters, arguments, programs, topics,
             dependencies, services (and actions) or interfaces (messages, services, actions and
             their fields); or code, of which nothing may certainly stop a node, or keep it from
-            working.
+            working; values (numbers that contradict the robot) or transforms (that are no tree).
     """
     from grader.ros.workspace.reading import (  # late: few rubrics ask for it
         read_agreement,

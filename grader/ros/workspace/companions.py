@@ -2,7 +2,7 @@
 which nodes have one name.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from grader.base.source import Location
 from grader.base.text import quoted
@@ -15,8 +15,9 @@ from grader.ros.workspace.workspace import MANAGER, Workspace
 
 _ROBOT_PUBLISHER, _CONTROL_NODE = "robot_state_publisher", "ros2_control_node"
 _JOINT_STATE, _CLOCK = "sensor_msgs.msg.JointState", "rosgraph_msgs.msg.Clock"
+_JOINT_STATE_WORDS = ("joint_state", "JointState")
 _TIME = "use_sim_time"
-_SOURCES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".md", ".sh", ".xml", ".yaml")
+_SOURCES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".md", ".sh", ".yaml")
 
 
 def companion_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -95,8 +96,10 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
             return
     if any(row.is_published and row.ros_type == _JOINT_STATE for row in bridge_rows(workspace)):
         return
-    if _broadcasters(workspace) or _is_mentioned(workspace, ("joint_state", "JointState")):
+    if _broadcasters(workspace) or _is_mentioned(workspace, _JOINT_STATE_WORDS):
         return
+    if any(word in robot.source.text for robot in workspace.robots for word in _JOINT_STATE_WORDS):
+        return  # a plugin of Gazebo may publish them
     joint = moving[0]
     message = (
         f"nothing publishes joint_states, so the links of {len(moving)} moving joints such as "
@@ -116,13 +119,11 @@ def _is_understood(workspace: Workspace, node: StartedNode, kind: str) -> bool:
     return node.package in known()["without_frames"]
 
 
-def _is_mentioned(workspace: Workspace, words: tuple[str, ...]) -> bool:
-    """Return whether a text of the workspace has one of some words."""
+def _is_mentioned(workspace: Workspace, words: Sequence[str]) -> bool:
+    """Return whether a launch file, a program or a page of the workspace has one of some words."""
     texts = [*workspace.searched_launch_texts()]
     for package in workspace.packages:
         texts += [source.text for source in workspace.sources_of(package, _SOURCES)]
-    for robot in workspace.robots:
-        texts.append(robot.source.text)
     workspace.charge(sum(map(len, texts)) // 512)
     return any(word in text for text in texts for word in words)
 
@@ -159,7 +160,7 @@ def _sim_time(workspace: Workspace) -> Iterator[Location]:
 def _no_clock(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield that nodes wait for the time of a simulation that nothing publishes."""
     at = next(_sim_time(workspace), None)
-    if at is None or _is_mentioned(workspace, tuple(known()["clock_words"])):
+    if at is None or _is_mentioned(workspace, known()["clock_words"]):
         return
     for _, node in workspace.nodes:
         if workspace.package_of(node) is not None and not _is_understood(workspace, node, _CLOCK):

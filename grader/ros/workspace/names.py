@@ -10,7 +10,7 @@ from grader.base.names import are_of_one_side, closest, near
 from grader.base.source import Location
 from grader.base.text import counted, quoted
 
-Family = Literal[
+GradedFamily = Literal[
     "files",
     "frames",
     "controllers",
@@ -24,10 +24,9 @@ Family = Literal[
     "code",
     "values",
     "transforms",
-    "wiring",
-    "machine",
 ]
-FAMILIES: tuple[Family, ...] = get_args(Family)
+FAMILIES: tuple[GradedFamily, ...] = get_args(GradedFamily)
+Family = GradedFamily | Literal["wiring", "machine"]  # of these two, nothing is certain
 _Kind = Literal[
     "frame",
     "link",

@@ -9,7 +9,7 @@ from grader.ros.known.known import known
 from grader.ros.workspace.names import Compared, Fact, Mismatch
 from grader.ros.workspace.workspace import Workspace
 
-_HOME = re.compile(r"(?<![\w$}/.:])(?:file://)?(/(?:home|Users)/[\w.-]+/[^\s\"'<>,;:)\]]*)")
+_HOME = re.compile(r"(?<![\w$}/.:])(?:file://)?(/(?:home|Users)/[\w.-]+/[^\s\"'<>,;:)}\]]*)")
 _PLACEHOLDERS = re.compile(r"^/(?:home|Users)/(?:user|username|you|your[\w-]*|<.*)/")
 _TEXTS = (".yaml", ".yml", ".urdf", ".xacro", ".sdf", ".world", ".py", ".cpp", ".hpp")
 _ENVIRONMENT = re.compile(

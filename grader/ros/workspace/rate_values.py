@@ -20,7 +20,7 @@ _SOURCES, _SCAN = "observation_sources", "LaserScan"
 _ROUNDING = 1e-6
 
 
-class _Number(NamedTuple):
+class _StatedNumber(NamedTuple):
     """A positive number that a file says of something, and its place."""
 
     of: str
@@ -77,16 +77,16 @@ def _rates_of_controllers(workspace: Workspace) -> Iterator[Fact]:
             yield Mismatch("values", message, asked.location, update.location, is_certain=False)
 
 
-def _number_in(section: YamlNode | None, name: str, key: str) -> _Number | None:
+def _number_in(section: YamlNode | None, name: str, key: str) -> _StatedNumber | None:
     """Return the positive number of a parameter, where it is given."""
     node = section.get(key) if section is not None else None
     value = finite_number(node.text) if node is not None else None
     if node is None or value is None or value <= 0.0:
         return None
-    return _Number(name, value, node.location)
+    return _StatedNumber(name, value, node.location)
 
 
-def _numbers_of_lidars(workspace: Workspace, tag: str) -> Iterator[_Number]:
+def _numbers_of_lidars(workspace: Workspace, tag: str) -> Iterator[_StatedNumber]:
     """Yield the positive numbers in elements of the simulated lidars."""
     for root, place in roots(workspace):
         for sensor in root.iter("sensor"):
@@ -98,7 +98,7 @@ def _numbers_of_lidars(workspace: Workspace, tag: str) -> Iterator[_Number]:
                     continue
                 value = finite_number(element.text)
                 if value is not None and value > 0.0:
-                    yield _Number(sensor.get("name", ""), value, place(element))
+                    yield _StatedNumber(sensor.get("name", ""), value, place(element))
 
 
 def _scan_sources(workspace: Workspace) -> Iterator[tuple[str, YamlNode]]:

@@ -21,7 +21,7 @@ _IMAGE = "sensor_msgs.msg.Image"
 _PUBLISHER, _SUBSCRIPTION = "publisher", "subscription"
 
 
-class _Opened(NamedTuple):
+class _TopicEnd(NamedTuple):
     """An end of a topic in one launch, by a node that is certainly started."""
 
     topic: str
@@ -32,12 +32,12 @@ class _Opened(NamedTuple):
 
 def topic_wiring_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield topics on which messages do not arrive as they should."""
-    opened: list[_Opened] = []
+    opened: list[_TopicEnd] = []
     for launch, node in workspace.launched:
         if node.when is True:
             for name, endpoint in opened_by(workspace, node):
                 if name is not None and "*" not in name:
-                    opened.append(_Opened(name, endpoint, launch, node))
+                    opened.append(_TopicEnd(name, endpoint, launch, node))
     publishers = [it for it in opened if it.endpoint.kind == _PUBLISHER]
     subscriptions = [it for it in opened if it.endpoint.kind == _SUBSCRIPTION]
     yield from _two_commanders(publishers, subscriptions)
@@ -51,11 +51,11 @@ def _warning(message: str, at: Location, related: Location | None = None) -> Mis
 
 
 def _two_commanders(
-    publishers: Sequence[_Opened], subscriptions: Sequence[_Opened]
+    publishers: Sequence[_TopicEnd], subscriptions: Sequence[_TopicEnd]
 ) -> Iterator[Mismatch]:
     """Yield the topics of commands that two nodes publish, and another one obeys."""
     obeyed = {(it.launch, it.topic) for it in subscriptions}
-    first: dict[tuple[int, str], _Opened] = {}
+    first: dict[tuple[int, str], _TopicEnd] = {}
     said: set[tuple[int, str]] = set()
     for each in publishers:
         key = each.launch, each.topic
@@ -72,7 +72,7 @@ def _two_commanders(
 
 
 def _other_transport(
-    publishers: Sequence[_Opened], subscriptions: Sequence[_Opened]
+    publishers: Sequence[_TopicEnd], subscriptions: Sequence[_TopicEnd]
 ) -> Iterator[Mismatch]:
     """Yield subscriptions of images on a topic that carries compressed ones."""
     published = {it.topic for it in publishers}
@@ -88,7 +88,7 @@ def _other_transport(
         yield _warning(message, each.endpoint.location)
 
 
-def _displays(workspace: Workspace, publishers: Sequence[_Opened]) -> Iterator[Mismatch]:
+def _displays(workspace: Workspace, publishers: Sequence[_TopicEnd]) -> Iterator[Mismatch]:
     """Yield displays of RViz that ask for reliable messages, which every publisher sends as best
     effort.
     """
