@@ -39,6 +39,7 @@ _FIND = re.compile(
 _PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
 _PROPERTY = re.compile(r"<xacro:property\b[^>]*?\bname\s*=\s*[\"'](\w+)[\"']")
 # Files of text that are read, which no download leaves out for their size; and programs.
+_URI = re.compile(r"package://([\w-]+)/([\w./-]+)")  # of a whole text
 _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
 
@@ -84,7 +85,11 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
         if own not in package.installed.values():
             beside = f"{PREFIX}/{package.share}{posixpath.dirname(own)}/"
         for text in _texts_of(workspace, launch):
-            for path in _PATH.findall(text.text or ""):
+            paths = _PATH.findall(text.text or "")
+            uri = _URI.fullmatch(text.text or "")
+            if uri is not None:
+                paths.append(f"{SHARE}/{uri[1]}/{uri[2]}")
+            for path in paths:
                 is_beside = beside is not None and path.startswith(beside)
                 is_read = text.is_read and not is_beside
                 yield _NamedPath(
