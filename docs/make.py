@@ -3,16 +3,19 @@ date.
 """
 
 import re
+import tomllib
+from collections import Counter
 from collections.abc import Iterator
 from io import StringIO
 from pathlib import Path
-from typing import get_args
+from typing import Any, get_args
 
 from rich.console import Console
 from rich.text import Text
 
 from grader.app.cli.explain import SchemaName
 from grader.app.commands.schemas import json_schema
+from grader.base.text import enumerated
 from grader.lab.checks.registry import own_checks
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Report
@@ -31,7 +34,7 @@ from grader.lab.rubric.keys import (
 )
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
-from grader.report.examples import example_blocks, explanation_of
+from grader.report.examples import example_blocks, explanation_of, wrong_and_right
 from grader.report.explanations import CAUSES_OF_CHECK, EFFECTS, default_text
 from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal
@@ -55,6 +58,7 @@ LANGUAGES = {
     ".md": "markdown",
     ".py": "python",
     ".rviz": "yaml",
+    ".srdf": "xml",
     ".toml": "toml",
     ".txt": "text",
     ".urdf": "xml",
@@ -71,6 +75,7 @@ def pages() -> dict[str, str]:
     return {
         "problems.md": filled("problems.md", problems()),
         "checks.md": filled("checks.md", checks()),
+        "misconfigurations.md": filled("misconfigurations.md", misconfigurations()),
         "rubric-reference.md": filled("rubric-reference.md", keys()),
         "grade-one-submission.md": filled(
             "grade-one-submission.md", ["```", terminal(report).rstrip(), "```"]
@@ -128,6 +133,86 @@ def checks() -> Iterator[str]:
         yield from example(check.name)
 
 
+def misconfigurations() -> Iterator[str]:
+    """Yield how many kinds of misconfiguration are found, a row for each kind, a section for each
+    that is found, and the files of the examples.
+    """
+    kinds = tomllib.loads((DOCS / "examples/kinds.toml").read_text(encoding="utf-8"))
+    own_frames = kinds.pop("frames")
+    of_names = tomllib.loads((DOCS / "examples/ref.toml").read_text(encoding="utf-8"))
+    frames = of_names["frames"] | own_frames
+    yield from counts(kinds)
+    yield from ("", "| kind | what goes wrong | found as |", "|---|---|---|")
+    for name, kind in kinds.items():
+        said = f"[{name}](#{anchor(name)})" if "codes" in kind else name
+        found_as = codes(kind) or escaped(kind["reason"])
+        yield f"| {said} | {escaped(kind['explanation'])} | {found_as} |"
+    yield ""
+    for name, kind in kinds.items():
+        if "codes" in kind:
+            yield from (f"## {name}", "", escaped(kind["explanation"]), "")
+            yield f"- Found as: {codes(kind)}"
+            yield f"- Covers: {escaped(kind['scope'])}"
+            yield from (f"- Source: {escaped(kind['source'])}", "")
+            yield from example_of_kind(kind, frames)
+    yield from ("## Files of the examples", "")
+    beside = {file for kind in kinds.values() for file in kind.get("beside", ())}
+    for file in own_frames:
+        if file in beside:
+            yield from (f"### `{file}`", "")
+            yield from code_block(file, own_frames[file].rstrip())
+
+
+def counts(kinds: dict[str, Any]) -> Iterator[str]:
+    """Yield how many kinds there are, how many files can show, and how many are found."""
+    of_files = {name for name, kind in kinds.items() if kind.get("in_files", True)}
+    found = {name for name, kind in kinds.items() if "codes" in kind}
+    by_tools = {name for name, kind in kinds.items() if kind.get("tools")}
+    yield (
+        f"`grader inspect` finds {len(found)} of the {len(of_files)} kinds that files can show. "
+        f"Together, the tools of the study find {len(by_tools)} of all {len(kinds)} kinds. None of "
+        f"them finds {len(found - by_tools)} that `grader inspect` finds."
+    )
+    yield from ("", "| category | kinds | files can show | found |", "|---|---|---|---|")
+    groups = [Counter(map(category, names)) for names in (kinds, of_files, found)]
+    for title in dict.fromkeys(map(category, kinds)):
+        yield f"| {title} | {' | '.join(str(group[title]) for group in groups)} |"
+    yield f"| all | {' | '.join(str(group.total()) for group in groups)} |"
+
+
+def category(name: str) -> str:
+    """Return the category of a kind of misconfiguration."""
+    return name.partition(": ")[0]
+
+
+def codes(kind: dict[str, Any]) -> str:
+    """Return links to the codes of a kind of misconfiguration; empty if it is not found."""
+    return ", ".join(f"[`{code}`](problems.md#{code.lower()})" for code in kind.get("codes", ()))
+
+
+def example_of_kind(kind: dict[str, Any], frames: dict[str, str]) -> Iterator[str]:
+    """Yield the example of a kind of misconfiguration, or where it is."""
+    if "wrong" not in kind:
+        code = kind["codes"][0]
+        yield from (f"Example: that of [{code}](problems.md#{code.lower()}).", "")
+        return
+    files = [f"[`{file}`](#{anchor(file)})" for file in kind.get("beside", ())]
+    for title, file, text in wrong_and_right(kind, frames):
+        beside = f", beside {enumerated(files)}" if files else ""
+        yield from (f"{title}, in `{file}`{beside}:", "")
+        yield from code_block(file, text)
+
+
+def code_block(file: str, text: str) -> Iterator[str]:
+    """Yield the text of a file as a code block in its language."""
+    yield from (f"```{LANGUAGES[Path(file).suffix]}", text.strip("\n"), "```", "")
+
+
+def anchor(heading: str) -> str:
+    """Return the anchor that GitHub gives a heading."""
+    return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+
+
 def keys() -> Iterator[str]:
     """Yield a section for each table of a rubric, with a line for each key."""
     for title, table in KEYS.items():
@@ -144,7 +229,8 @@ def keys() -> Iterator[str]:
 def example(name: str) -> Iterator[str]:
     """Yield the code blocks of the example of a problem or a check."""
     for title, file, text in example_blocks(name):
-        yield from (f"{title}:", "", f"```{LANGUAGES[Path(file).suffix]}", text, "```", "")
+        yield from (f"{title}:", "")
+        yield from code_block(file, text)
 
 
 def sample_report() -> Report:

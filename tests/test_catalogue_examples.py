@@ -3,6 +3,7 @@
 import re
 import runpy
 import tomllib
+from collections.abc import Sequence
 from pathlib import Path, PurePath
 from textwrap import indent
 from typing import Any
@@ -34,9 +35,15 @@ FILES = {
     path.stem: tomllib.loads(path.read_text(encoding="utf-8"))
     for path in (ROOT / "docs/examples").glob("*.toml")
 }
+FILES["kinds"]["frames"] = {**FILES["ref"]["frames"], **FILES["kinds"]["frames"]}
 FRAMES = {name: file["frames"] for file in FILES.values() for name in file if name != "frames"}
+# The kinds of misconfiguration, of which tests/test_misconfigurations.py tests the examples.
+KINDS: dict[str, Any] = {name: entry for name, entry in FILES["kinds"].items() if name != "frames"}
 ENTRIES: dict[str, Any] = {
-    name: entry for file in FILES.values() for name, entry in file.items() if name != "frames"
+    name: entry
+    for file in FILES.values()
+    for name, entry in file.items()
+    if name != "frames" and (name not in KINDS or "wrong" in entry)
 }
 CODES = {kind.code: kind for kind in EVERY_KIND}
 CHECKS = {check.name: check for check in own_checks()}
@@ -61,11 +68,14 @@ ALSO = {
 }
 FOLDERS = {
     ".launch": "launch",
+    ".launch.py": "launch",
     ".urdf": "urdf",
     ".xacro": "urdf",
     ".rviz": "rviz",
     ".yaml": "config",
+    ".srdf": "config",
     ".py": "rover",
+    "setup.py": "",
 }
 WHEEL = """\
 <robot xmlns:xacro="http://www.ros.org/wiki/xacro">
@@ -117,13 +127,23 @@ PACKAGE = {
 }
 
 
-# The files of the package that start its node, for an example in the code of this.
-STARTED = {
-    "setup.py": PACKAGE["setup.py"].rstrip().removesuffix(")")
-    + "    entry_points={'console_scripts': ['pilot = rover.pilot:main']},\n)\n",
-    "setup.cfg": "[install]\ninstall_scripts=$base/lib/rover\n",
-    "launch/rover.launch.py": framed("LCH001", "Node(package='rover', executable='pilot'),")[0],
-}
+def started(programs: Sequence[str]) -> dict[str, str]:
+    """Return the files of the package that install and start its programs."""
+    entries = ", ".join(f"'{it} = rover.{it}:main'" for it in programs)
+    nodes = "\n".join(f"Node(package='rover', executable='{it}')," for it in programs)
+    return {
+        "setup.py": PACKAGE["setup.py"].rstrip().removesuffix(")")
+        + f"    entry_points={{'console_scripts': [{entries}]}},\n)\n",
+        "setup.cfg": "[install]\ninstall_scripts=$base/lib/rover\n",
+        "launch/rover.launch.py": framed("LCH001", nodes)[0],
+    }
+
+
+def path_of(frame: str) -> str:
+    """Return the path in the package of the file of a frame."""
+    file = frame.rpartition("/")[2]
+    ending = max((it for it in FOLDERS if file.endswith(it)), key=len, default="")
+    return str(PurePath(FOLDERS.get(ending, ""), file))
 
 
 def files_of(name: str, side: str) -> tuple[dict[str, bytes], range]:
@@ -139,20 +159,17 @@ def files_of(name: str, side: str) -> tuple[dict[str, bytes], range]:
     own = text.encode(encoding[1] if encoding else "utf-8")
     if file.endswith((".urdf", ".md")):
         return {file: own}, lines
-    folder = "launch" if file.endswith(".launch.py") else FOLDERS.get(PurePath(file).suffix, "")
-    if file == "setup.py":
-        folder = ""
-    package = PACKAGE | STARTED if folder == "rover" else PACKAGE
-    others = {
-        path: content.encode()
-        for path, content in package.items()
-        if not (folder == "urdf" == path[:4])
-    }
-    return {str(PurePath("rover", folder, file)): own} | {
-        f"rover/{path}": content
-        for path, content in others.items()
-        if path != str(PurePath(folder, file))
-    } | ({"rover/urdf/wheel.xacro": WHEEL.encode()} if folder == "urdf" else {}), lines
+    path = path_of(file)
+    beside = {path_of(frame): FRAMES[name][frame] for frame in ENTRIES[name].get("beside", ())}
+    programs = [PurePath(it).stem for it in (*beside, path) if PurePath(it).parent.name == "rover"]
+    others = PACKAGE | (started(programs) if programs else {}) | beside
+    if path.startswith("urdf/"):
+        others = {it: text for it, text in others.items() if not it.startswith("urdf/")}
+        others["urdf/wheel.xacro"] = WHEEL
+    others.pop(path, None)
+    return {f"rover/{path}": own} | {
+        f"rover/{other}": content.encode() for other, content in others.items()
+    }, lines
 
 
 def opened(folder: Path, files: dict[str, bytes]) -> Submission:
@@ -165,7 +182,8 @@ def opened(folder: Path, files: dict[str, bytes]) -> Submission:
 
 def test_every_code_and_check_has_an_example() -> None:
     """No example is missing, and none is of something else; each is short and shows a difference. Codes are explained."""
-    assert sorted(ENTRIES) == sorted([*CODES, *CHECKS])
+    with_example = [name for name, entry in KINDS.items() if "wrong" in entry]
+    assert sorted(ENTRIES) == sorted([*CODES, *CHECKS, *with_example])
     assert all(ENTRIES[code].get("explanation") for code in CODES)
     for name, entry in ENTRIES.items():
         assert entry["wrong"] != entry["right"], name

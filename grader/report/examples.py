@@ -33,9 +33,18 @@ def example_blocks(name: str) -> Iterator[tuple[str, str, str]]:
         if family == _CHECKS:
             given = f"\nwith = {toml_literal(example['with'])}" if "with" in example else ""
             yield "In a rubric", "rubric.toml", f'check = "{name}"{given}'
-        file = example.get("frame", next(iter(entries["frames"]))).rpartition("/")[2]
-        yield "Wrong", file, example["wrong"].rstrip() or "(an empty file)"
-        yield "Right", file, example["right"].rstrip()
+        yield from wrong_and_right(example, entries["frames"])
+
+
+def wrong_and_right(
+    example: Mapping[str, Any], frames: Mapping[str, str]
+) -> Iterator[tuple[str, str, str]]:
+    """Yield title, file name and text of what is wrong and of what is right in an example, which is
+    in the first frame unless it names another one.
+    """
+    file = example.get("frame", next(iter(frames))).rpartition("/")[2]
+    yield "Wrong", file, example["wrong"].rstrip() or "(an empty file)"
+    yield "Right", file, example["right"].rstrip()
 
 
 def _family_of(name: str) -> str:
