@@ -36,7 +36,7 @@ ROOMS = {
     ),
     "ros": (
         "known python xml",
-        "xacro urdf build mesh interfaces",
+        "xacro urdf build mesh interfaces cpp",
         "config",
         "launch",
         "package",
@@ -89,6 +89,8 @@ LIBRARIES = {
     "markupsafe": {"report", "classroom.review"},
     "yaml": {"ros.config", "ros.launch", "ros.xacro"},
     "ast": {"ros.python", "ros.build", "ros.launch", "ros.package", "lab.hints", "lab.authoring"},
+    "tree_sitter": {"ros.cpp"},
+    "tree_sitter_cpp": {"ros.cpp"},
     "docx": {"lab.documents"},
     "pypdf": {"lab.documents"},
     "numpy": {"report", "ros.urdf", "ros.mesh", "base.transforms"},
@@ -112,7 +114,7 @@ LIBRARIES = {
 # How dense the code may be: see `tests/prose.py`. A limit may only get lower, but that of nodes: what the code weighs
 # grows with what it can do, and with nothing else.
 LIMITS = {
-    "nodes": 604_000,
+    "nodes": 645_000,
     "nodes of a simple statement, mean": 14.6,
     "nodes of a simple statement, 90th percentile": 26,
     "comprehensions for each 1,000 nodes": 5.3,

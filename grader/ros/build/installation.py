@@ -69,6 +69,29 @@ class GeneratedInterfaces(NamedTuple):
     needs_group: bool = True  # whether package.xml has to make the package a member of a group
 
 
+class CmakeComponent(NamedTuple):
+    """A class that rclcpp_components loads from a library, and the program that starts it."""
+
+    plugin: str  # sensors::Lidar
+    executable: str = ""
+
+
+class CmakeTarget(NamedTuple):
+    """An executable or a library that CMake makes. Where it is not `is_certain`, it may have other
+    sources, or not be made.
+    """
+
+    name: str
+    kind: str  # executable, library or unknown
+    sources: tuple[str, ...]  # paths in the package
+    links: tuple[str, ...]  # what target_link_libraries() names
+    packages: tuple[str, ...]  # what ament_target_dependencies() names
+    components: tuple[CmakeComponent, ...]
+    at: Position
+    is_installed: bool
+    is_certain: bool
+
+
 class KnownPrograms(NamedTuple):
     """The programs that a build installs: paths below the prefix, and names in setup.py."""
 
@@ -111,6 +134,7 @@ class Installation(NamedTuple):
     ] = ()  # likewise, of files that CMake installs with the right to execute them
     packages: tuple[str, ...] = ()  # the Python packages, as far as they are known
     interfaces: tuple[GeneratedInterfaces, ...] = ()  # one for each call in CMakeLists.txt
+    targets: tuple[CmakeTarget, ...] = ()  # of CMake
 
     @property
     def console_scripts(self) -> Value:

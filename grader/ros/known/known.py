@@ -192,3 +192,15 @@ def cmake_table(key: str) -> Mapping[str, str | int]:
     """Return a table that is known of CMake, by its key in cmake.toml."""
     table: Mapping[str, str | int] = _read("cmake")[key]
     return table
+
+
+@cache
+def rclcpp_words(key: str) -> frozenset[str]:
+    """Return the names that are known of rclcpp and tf2_ros in C++, by their key in rclcpp.toml."""
+    return frozenset(str(_read("rclcpp")[key]).split())
+
+
+def rclcpp_profiles() -> Mapping[str, str]:
+    """Return the presets of quality of service in C++: depth, reliability, durability."""
+    profiles: Mapping[str, str] = _read("rclcpp")["profiles"]
+    return profiles

@@ -158,3 +158,4 @@ class PackageNodes(NamedTuple):
     field_uses: tuple[FieldUse, ...] = ()
     faults: tuple[CodeFault, ...] = ()
     has_more_faults: bool = False  # perhaps, in modules that are not searched
+    cpp_files: frozenset[str] = frozenset()  # the paths in the package of those that are read

@@ -61,7 +61,8 @@ def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) 
     cpp_files = expressions = 0
     for package in workspace.packages:
         names = [path for path in package.tree.files if not path.startswith("test/")]
-        cpp_files += sum(name.endswith(_CPP) for name in names)
+        read = workspace.nodes_by_package[package.name].cpp_files
+        cpp_files += sum(name.endswith(_CPP) and name not in read for name in names)
         if package.installation is not None:
             expressions += len(package.installation.unknown)
     for _, _, launch in workspace.launches:

@@ -317,8 +317,8 @@ class Workspace:
 
     @cached_property
     def nodes_by_package(self) -> Mapping[str, PackageNodes]:
-        """The nodes of the installed Python modules, by the names of packages."""
-        return {package.name: read_nodes(package) for package in self.packages}
+        """The nodes of the installed Python modules and of C++, by the names of packages."""
+        return {package.name: _nodes_of(package) for package in self.packages}
 
     @cached_property
     def interfaces(self) -> Mapping[str, PackageInterfaces]:
@@ -731,6 +731,26 @@ class Workspace:
         for package in self.packages:
             sources += self.sources_of(package, (".py",))
         return tuple(source.text for source in sources)
+
+
+def _nodes_of(package: Package) -> PackageNodes:
+    found = read_nodes(package)
+    setup = package.installation
+    if setup is None or not any(target.sources for target in setup.targets):
+        return found
+    from grader.ros.package.cpp_nodes import read_cpp_nodes  # late: few submissions have C++
+
+    compiled = read_cpp_nodes(package)
+    return found._replace(
+        nodes=(*found.nodes, *compiled.nodes),
+        programs=(*found.programs, *compiled.programs),
+        doubts=(*found.doubts, *compiled.doubts),
+        has_loose_declarations=found.has_loose_declarations or compiled.has_loose_declarations,
+        imports=(*found.imports, *compiled.imports),
+        field_uses=(*found.field_uses, *compiled.field_uses),
+        faults=(*found.faults, *compiled.faults),
+        cpp_files=compiled.cpp_files,
+    )
 
 
 def _wildcard_places_in(tree: YamlNode) -> frozenset[Location]:

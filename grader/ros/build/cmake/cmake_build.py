@@ -10,10 +10,12 @@ from itertools import pairwise, takewhile
 from grader.base.names import MAX_GUESSES, closest, did_you_mean, near
 from grader.base.source import Source
 from grader.files.limits import ignored_part
+from grader.ros.build.cmake.cmake_targets import CmakeTargets
 from grader.ros.build.cmake.cmake_values import ROOT, Text, Values
 from grader.ros.build.cmake.language import Command
 from grader.ros.build.file_search import EmptyGlob, PackageListing
 from grader.ros.build.installation import (
+    CmakeComponent,
     GeneratedInterfaces,
     Installation,
     InstalledFile,
@@ -36,6 +38,7 @@ class Build:
         """`name` is the one in package.xml."""
         self.listing, self.values, self.name = listing, values, name
         self.targets: dict[str, str] = {}  # executable, library, interfaces or unknown
+        self.made = CmakeTargets(listing)
         self.copies: dict[str, InstalledFile] = {}  # by the path below the prefix
         self.programs: set[str] = set()  # paths below the prefix
         self.scripts: set[str] = set()  # likewise, of files
@@ -71,6 +74,7 @@ class Build:
             files_at=self._package_at or self.last,
             packages=tuple(self.modules),
             interfaces=tuple(self.interfaces),
+            targets=self.made.all({it: self.inside(it) for it in self.made.written_sources}),
         )
 
     def give_up(self, reason: str, at: Position) -> None:
@@ -175,8 +179,11 @@ class Build:
             return
         kind = "executable" if command.name.endswith("executable") else "library"
         self.targets[name] = kind if self.values.uncertain is None else "unknown"
+        is_certain = self.values.uncertain is None
+        self.made.add(name, kind, command.at, is_certain=is_certain, texts=texts[1:])
         if command.name.startswith("ament_auto"):
             self._automatic.append(name)
+            self.made.install(name)
         words = [text for text in texts[1:] if isinstance(text, str)]
         if {"IMPORTED", "ALIAS", "DIRECTORY"}.isdisjoint(words):
             self._require_sources(words, command)
@@ -197,7 +204,13 @@ class Build:
     def use_target(self, command: Command) -> None:
         """Note a target that is not defined, and a package that was not found."""
         name, *rest = self.values.texts(command.arguments) or [""]
-        if isinstance(name, Unknown) or self.values.is_opaque:
+        if isinstance(name, Unknown):
+            return
+        if command.name == "ament_target_dependencies":
+            self.made.depend(name, rest)
+        else:
+            self.made.link(name, rest)
+        if self.values.is_opaque:
             return
         if name not in self.targets:
             self._stop_target(command, name)
@@ -228,13 +241,30 @@ class Build:
         """
         texts = self.values.texts(command.arguments)
         after = dict(pairwise(texts))
-        name = after.get("EXECUTABLE", "")
+        name, library, plugin = after.get("EXECUTABLE", ""), texts[:1], after.get("PLUGIN")
+        if isinstance(plugin, str) and library and isinstance(library[0], str):
+            component = CmakeComponent(plugin, name if isinstance(name, str) else "")
+            self.made.register(library[0], component)
         if isinstance(name, Unknown):
             self.give_up("the name of a program is not known", command.at)
         elif name and self.values.uncertain is None:
             self.programs.add(f"lib/{self._project()}/{name}")
         elif name:
             self._leave_open(Unknown(f"the program {name} is not known", command.at))
+
+    def register_components(self, command: Command) -> None:
+        """Note the classes that rclcpp_components_register_nodes() registers."""
+        library, *plugins = self.values.texts(command.arguments) or [""]
+        for plugin in plugins:
+            if isinstance(library, str) and isinstance(plugin, str):
+                self.made.register(library, CmakeComponent(plugin))
+
+    def add_sources(self, command: Command) -> None:
+        """Add sources to a target."""
+        name, *texts = self.values.texts(command.arguments) or [""]
+        if isinstance(name, str):
+            doubt = self.values.uncertain
+            self.made.add_sources(name, [*texts, *([doubt] if doubt is not None else [])])
 
     def generate_interfaces(self, command: Command) -> None:
         """Install the message, service and action files of a package."""
@@ -402,6 +432,7 @@ class Build:
         target = places.get("RUNTIME") or places.get("") or "bin"
         for name in groups[0][1]:
             known = self.targets.get(name)
+            self.made.install(name)
             if known is None and not self.values.is_opaque:
                 self._stop_target(command, name)
             elif known in (None, "unknown") or self.values.uncertain is not None:
@@ -536,6 +567,8 @@ BUILD_COMMANDS: dict[str, Callable[[Build, Command], None]] = {
     **dict.fromkeys(("target_link_libraries", "ament_target_dependencies"), Build.use_target),
     "generate_parameter_library": Build.add_target,  # its YAML file is a source
     "rclcpp_components_register_node": Build.register_component,
+    "rclcpp_components_register_nodes": Build.register_components,
+    "target_sources": Build.add_sources,
     "rosidl_generate_interfaces": Build.generate_interfaces,
     "ament_package": Build.package,
     "ament_auto_package": Build.auto_package,

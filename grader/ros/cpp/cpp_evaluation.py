@@ -1,0 +1,543 @@
+"""The values of expressions in C++: of literals, and of what is set once and then only read."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Literal, NamedTuple
+
+from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue, not_known
+from grader.ros.cpp.declarations import (
+    CppFunction,
+    CppVariable,
+    declared_in,
+    is_constant,
+    name_in,
+    plain_name,
+)
+from grader.ros.cpp.literals import (
+    NUMBERS,
+    SECONDS,
+    TEXTS,
+    number_of_literal,
+    text_of_literal,
+)
+from grader.ros.cpp.syntax import CppNode, parse_cpp
+from grader.ros.cpp.unit import (
+    CppUnit,
+    arguments_of,
+    called_name,
+    is_conditional,
+    template_arguments,
+)
+from grader.ros.python.budget import Budget, OutOfBudget
+from grader.ros.python.values import Unknown
+
+_MAX_DEPTH = 25
+_MAX_MACRO = 300  # characters
+_DECLARATIONS = (
+    "declaration",
+    "parameter_declaration",
+    "optional_parameter_declaration",
+    "for_range_loop",
+    "init_statement",
+)
+# Functions that only read what they are given.
+_READING = frozenset(
+    {
+        *("make_shared", "make_unique", "string", "vector", "move", "forward", "to_string"),
+        *("QoS", "KeepLast", "seconds", "milliseconds", "microseconds", "duration", "from_seconds"),
+        *("static_cast", "min", "max", "abs", "c_str", "find", "compare", "push_back"),
+    }
+)
+_READING_METHODS = frozenset(
+    {"c_str", "data", "empty", "size", "length", "find", "compare", "substr", "str", "count"}
+)
+_READING_PARENTS = frozenset(
+    {
+        *("binary_expression", "return_statement", "conditional_expression", "initializer_list"),
+        *("case_statement", "condition_clause", "subscript_argument_list", "unary_expression"),
+        *("parenthesized_expression", "expression_statement", "static_assert_declaration"),
+    }
+)
+_TEXT_TYPES = ("std::string", "std::string_view", "string", "string_view", "std::move")
+_SAME_TEXT = ("c_str", "data", "str")
+_CALLS = ("call_expression", "compound_literal_expression", "new_expression")
+
+
+class Interface(NamedTuple):
+    """What is known of the functions of libraries."""
+
+    reading: frozenset[str]  # that only read what they are given
+    setting: Mapping[str, int]  # that set one of their arguments, by its position
+
+
+class _Write(NamedTuple):
+    """Where a variable gets a value."""
+
+    kind: Literal["declared", "set"]
+    node: CppNode
+    value: CppValue
+
+
+class CppEvaluation:
+    """Evaluates expressions of files that are compiled together. All work is charged."""
+
+    def __init__(self, unit: CppUnit, interface: Interface, budget: Budget) -> None:
+        self.unit, self._interface, self._budget = unit, interface, budget
+        self._active: set[CppNode] = set()
+        self._macros: dict[str, CppValue] = {}
+        self._depth = 0
+
+    def value_of(self, node: CppNode | None) -> CppValue:
+        """Return the value of an expression; None without one. Never raises."""
+        if node is None:
+            return None
+        if self._depth >= _MAX_DEPTH or node in self._active:
+            return not_known("it is nested too deeply")
+        self._depth += 1
+        self._active.add(node)
+        try:
+            self._budget.charge(1, node.end - node.start)
+            return self._value(node)
+        except OutOfBudget:
+            return not_known("the files are too long to evaluate")
+        finally:
+            self._depth -= 1
+            self._active.discard(node)
+
+    def _value(self, node: CppNode) -> CppValue:
+        if node.kind in _EVALUATED:
+            return _EVALUATED[node.kind](self, node)
+        return not_known(f"a {node.kind.replace('_', ' ')} is not evaluated")
+
+    def text(self, node: CppNode) -> CppValue:
+        """Return the text of a literal."""
+        text = text_of_literal(node)
+        return text if text is not None else not_known("the text is broken")
+
+    def joined_texts(self, node: CppNode) -> CppValue:
+        """Return the text of literals that stand side by side."""
+        return _joined([self.value_of(child) for child in node.children])
+
+    def number(self, node: CppNode) -> CppValue:
+        """Return the value of a number or a boolean."""
+        number = number_of_literal(node.text)
+        return number if number is not None else not_known("the number is not evaluated")
+
+    def this(self, node: CppNode) -> CppValue:
+        """Return the object itself."""
+        return CppName("this", node)
+
+    def inner(self, node: CppNode) -> CppValue:
+        """Return the value of what is in parentheses, or is pointed to."""
+        argument = node.child("argument")
+        return self.value_of(argument or next(iter(node.children), None))
+
+    def items(self, node: CppNode) -> CppValue:
+        """Return the list of what is in braces."""
+        return [self.value_of(child) for child in node.children]
+
+    def with_suffix(self, node: CppNode) -> CppValue:
+        """Return the value of a literal with an ending of its own, such as a duration."""
+        suffix = node.of_kind("literal_suffix")
+        value = self.value_of(node.children[0]) if node.children else None
+        ending = suffix[0].text if suffix else ""
+        if isinstance(value, str) and ending in ("s", "sv"):
+            return value
+        if isinstance(value, int | float) and ending in SECONDS:
+            return CppCall(f"std::chrono::{ending}", (value,), node)
+        return not_known("the literal is not evaluated")
+
+    def operator(self, node: CppNode) -> CppValue:
+        """Return the value of a sign or of texts that are joined; others are not evaluated."""
+        written = node.child("operator")
+        sign = written.text if written is not None else ""
+        if node.kind == "unary_expression":
+            value = self.value_of(node.child("argument"))
+            is_number = isinstance(value, int | float) and not isinstance(value, bool)
+            return -value if sign == "-" and is_number else not_known("it is computed")
+        left, right = self.value_of(node.child("left")), self.value_of(node.child("right"))
+        if sign == "+" and (_is_textual(left) or _is_textual(right)):
+            return _joined([left, right])
+        return not_known("it is computed")
+
+    def call(self, node: CppNode) -> CppValue:
+        """Return a call that is recorded."""
+        arguments = [self.value_of(it) for it in arguments_of(node)]
+        if node.kind != "call_expression":
+            kind = node.child("type")
+            name = plain_name(kind) if kind is not None else ""
+            types = template_arguments(kind) if kind is not None else ()
+            if node.kind == "compound_literal_expression":
+                value = node.child("value")
+                arguments = [self.value_of(it) for it in (value.children if value else ())]
+            return _constructed(CppCall(name, arguments, node, types))
+        function = node.child("function")
+        owner = None
+        if function is not None and function.kind == "field_expression":
+            owner = self.value_of(function.child("argument"))
+        name = called_name(node)
+        if isinstance(owner, str) and name in _SAME_TEXT:
+            return owner
+        return _constructed(CppCall(name, arguments, node, template_arguments(node), owner))
+
+    # --- Names
+    # ----------------------------------------------------------------------
+
+    def name(self, node: CppNode) -> CppValue:
+        """Return the value of a local variable, a member, a constant or a macro."""
+        name, function = node.text, self.unit.function_around(node)
+        if function is not None:
+            local = self._local_uses(name, function)
+            declared = [it for it in local if _declaration_of(it) is not None]
+            if declared:
+                return self._value_of_local(node, declared, local)
+        scopes = self.unit.scopes_of(function) if function is not None else ()
+        variables = self.unit.variables_named(name, scopes)
+        if variables:
+            return self._value_of_variable(variables, node)
+        if name in self.unit.macros:
+            return self._value_of_macro(name)
+        return CppName(name, node)
+
+    def qualified(self, node: CppNode) -> CppValue:
+        """Return the value of a constant by a name with its scopes."""
+        function = self.unit.function_around(node)
+        scopes = self.unit.scopes_of(function) if function is not None else ()
+        variables = self.unit.variables_named(plain_name(node), scopes)
+        if variables:
+            return self._value_of_variable(variables, node)
+        return CppName(plain_name(node), node)
+
+    def member(self, node: CppNode) -> CppValue:
+        """Return the value of a member of the object itself: `this->name`."""
+        owner, field = node.child("argument"), node.child("field")
+        if owner is None or field is None or owner.kind != "this":
+            name = node.text if field is not None else ""
+            return CppName(name, node)
+        function = self.unit.function_around(node)
+        scopes = self.unit.scopes_of(function) if function is not None else ()
+        variables = self.unit.variables_named(field.text, scopes)
+        if variables:
+            return self._value_of_variable(variables, node)
+        return CppName(node.text, node)
+
+    def _local_uses(self, name: str, function: CppFunction) -> list[CppNode]:
+        """Return where a name is written in a function."""
+        node = function.node
+        uses = self.unit.uses.get(name, ())
+        self._budget.charge(1 + len(uses) // 8)
+        inside = [it for it in uses if it.file is node.file]
+        return [it for it in inside if node.start <= it.start < node.end]
+
+    def _value_of_local(
+        self, node: CppNode, declared: Sequence[CppNode], uses: Sequence[CppNode]
+    ) -> CppValue:
+        if len(declared) > 1:
+            return not_known("the name is declared twice")
+        declaration = _declaration_of(declared[0])
+        assert declaration is not None
+        if declaration.kind in ("parameter_declaration", "optional_parameter_declaration"):
+            return CppName(node.text, declared[0])
+        values = dict(declared_in(declaration))
+        value = values.get(declared[0])
+        if is_constant(declaration):
+            return self._value_declared(declaration, value)
+        writes: list[_Write] = []
+        if value is not None:
+            writes.append(_Write("declared", declared[0], self._value_declared(declaration, value)))
+        for use in uses:
+            if use is not declared[0] and use.start < node.start:
+                more = self._effect_of(use, declaration)
+                if isinstance(more, Unknown):
+                    return more
+                writes += more
+        return _last(writes)
+
+    def _value_declared(self, declaration: CppNode, value: CppNode | None) -> CppValue:
+        """Return the value that a declaration gives its variable, maybe in parentheses."""
+        if value is None:
+            return not_known("it has no value")
+        kind = declaration.child("type")
+        name = plain_name(kind) if kind is not None else ""
+        if value.kind in ("argument_list", "initializer_list"):
+            arguments = [self.value_of(it) for it in value.children]
+            if value.kind == "initializer_list" and kind is not None and _is_plain(name):
+                return arguments[0] if len(arguments) == 1 else not_known("it has no value")
+            types = template_arguments(kind) if kind is not None else ()
+            return _constructed(CppCall(name, arguments, value, types))
+        return self.value_of(value)
+
+    def _value_of_variable(self, variables: Sequence[CppVariable], node: CppNode) -> CppValue:
+        """Return the value of a variable of a namespace or class at a place where it is read."""
+        if len(variables) > 1 or variables[0].is_conditional:
+            return not_known("the name is declared twice")
+        [variable] = variables
+        declaration = variable.declarator
+        for around in variable.declarator.ancestors():
+            if around.kind in ("declaration", "field_declaration"):
+                declaration = around
+                break
+        if variable.is_constant:
+            return self._value_declared(declaration, variable.value)
+        writes: list[_Write] = []
+        if variable.value is not None:
+            value = self._value_declared(declaration, variable.value)
+            writes.append(_Write("declared", variable.declarator, value))
+        for use in self.unit.uses.get(variable.declarator.text, ()):
+            if use is variable.declarator or self._is_of_another(use, variable):
+                continue
+            more = self._effect_of(use, None)
+            if isinstance(more, Unknown):
+                return more
+            writes += more
+        return self._value_written(writes, node)
+
+    def _is_of_another(self, use: CppNode, variable: CppVariable) -> bool:
+        """Return whether a name certainly is another variable's: of another class, or a local."""
+        if use.parent is not None and use.parent.kind == "field_declaration":
+            return True
+        function = self.unit.function_around(use)
+        if function is None:
+            return False
+        if use.kind == "identifier":
+            local = self._local_uses(use.text, function)
+            if any(_declaration_of(it) is not None for it in local):
+                return True
+        is_of_this = use.kind == "identifier" or _is_member_of_this(use)
+        scopes = self.unit.scopes_of(function)
+        found = self.unit.variables_named(use.text, scopes)
+        return is_of_this and bool(found) and found[0] is not variable
+
+    def _value_written(self, writes: Sequence[_Write], node: CppNode) -> CppValue:
+        """Return the value of a member at a place, if it is set once, before that."""
+        settings = [write for write in writes if write.kind == "set"]
+        if len(settings) > 1:
+            return not_known("it is set twice")
+        if not settings:
+            return _last(writes)
+        [setting] = settings
+        where, here = self.unit.function_around(setting.node), self.unit.function_around(node)
+        if where is None or (where is here and node.start < setting.node.start):
+            return not_known("it is set later")
+        is_constructor = where.name == where.owner.rpartition("::")[2]
+        if len(writes) > 1 and not is_constructor:
+            return not_known("it is set twice")
+        return setting.value
+
+    # --- What is done with a variable
+    # ----------------------------------------------------------------------
+
+    def _effect_of(self, use: CppNode, declaration: CppNode | None) -> list[_Write] | Unknown:
+        """Return the values that a variable gets where its name is written; Unknown where that is
+        not known. `declaration` is that of a local one, whose methods may change it.
+        """
+        node = use
+        if _is_member_of_this(use):
+            assert use.parent is not None
+            node = use.parent
+        parent = node.parent
+        kind = parent.kind if parent is not None else ""
+        effect: list[_Write] | Unknown = not_known("it may change")
+        if parent is not None and kind in ("argument_list", "template_argument_list"):
+            effect = self._effect_of_argument(node, parent)
+        elif parent is not None and kind == "field_initializer":
+            values = [self.value_of(it) for it in arguments_of(parent)]
+            value = values[0] if values else not_known("it has no value")
+            effect = [_Write("set", node, value)]
+        elif parent is not None and kind == "assignment_expression" and node.field == "left":
+            effect = self._effect_of_assignment(node, parent)
+        elif parent is not None and kind == "field_expression" and node.field == "argument":
+            effect = self._effect_of_method(node, parent, declaration)
+        elif parent is not None and _is_read(node, parent):
+            effect = []
+        return effect
+
+    def _effect_of_argument(self, node: CppNode, given: CppNode) -> list[_Write] | Unknown:
+        call = given.parent
+        if call is None or call.kind not in _CALLS:
+            is_read = call is not None and call.kind in ("field_initializer", "init_declarator")
+            return [] if is_read else not_known("it may change")
+        name = called_name(call).rpartition("::")[2]
+        position = self._interface.setting.get(name)
+        arguments = arguments_of(call)
+        if position is not None and node in arguments[position : position + 1]:
+            if not _is_statement(call):
+                return not_known("it may be set")
+            return [_Write("set", node, self._as_result(call, name))]
+        is_logged = name.isupper()
+        if is_logged or name in _READING or name in self._interface.reading or position is not None:
+            return []
+        return not_known(f"{name} may change it")
+
+    def _as_result(self, call: CppNode, name: str) -> CppCall:
+        """Return the value that a function sets its argument to, as if it returned it."""
+        arguments = arguments_of(call)
+        return CppCall(name, [self.value_of(arguments[0])], call, template_arguments(call))
+
+    def _effect_of_assignment(self, node: CppNode, parent: CppNode) -> list[_Write] | Unknown:
+        operator = parent.child("operator")
+        if operator is None or operator.text != "=" or not _is_statement(parent):
+            return not_known("it is computed")
+        return [_Write("set", node, self.value_of(parent.child("right")))]
+
+    def _effect_of_method(
+        self, node: CppNode, parent: CppNode, declaration: CppNode | None
+    ) -> list[_Write] | Unknown:
+        """Return the effect of a method on a variable: one that is called in a statement after the
+        declaration is part of its value.
+        """
+        call, field = parent.parent, parent.child("field")
+        name = field.text if field is not None else ""
+        is_called = call is not None and call.kind == "call_expression"
+        if is_called and name in _READING_METHODS:
+            return []
+        if not is_called or declaration is None or call is None or not _is_statement(call):
+            return not_known("a method may change it")
+        if not call.parent or call.parent.parent is not declaration.parent:
+            return not_known("a method may change it")
+        arguments = [self.value_of(it) for it in arguments_of(call)]
+        return [_Write("set", node, CppCall(name, arguments, call, (), _BEFORE))]
+
+    def _value_of_macro(self, name: str) -> CppValue:
+        """Return the value of a macro that stands for a literal."""
+        if name not in self._macros:
+            self._macros[name] = not_known("the macro stands for itself")
+            macros = self.unit.macros[name]
+            texts = {macro.text for macro in macros}
+            is_known = len(texts) == 1 and not any(macro.is_conditional for macro in macros)
+            text = texts.pop()
+            if is_known and len(text) <= _MAX_MACRO:
+                self._macros[name] = self._value_of_text(text)
+            else:
+                self._macros[name] = not_known("the macro is defined twice")
+        return self._macros[name]
+
+    def _value_of_text(self, text: str) -> CppValue:
+        syntax = parse_cpp(f"auto value = {text};".encode(), "", self._budget)
+        for node in syntax.root.walk():
+            if node.kind == "init_declarator":
+                value = node.child("value")
+                kinds = (*TEXTS, *NUMBERS, "concatenated_string")
+                if value is not None and value.kind in kinds and syntax.error is None:
+                    return self.value_of(value)
+        return not_known("the macro is not evaluated")
+
+
+_EVALUATED: Mapping[str, Callable[[CppEvaluation, CppNode], CppValue]] = {
+    **dict.fromkeys(TEXTS, CppEvaluation.text),
+    **dict.fromkeys(NUMBERS, CppEvaluation.number),
+    **dict.fromkeys(_CALLS, CppEvaluation.call),
+    "concatenated_string": CppEvaluation.joined_texts,
+    "user_defined_literal": CppEvaluation.with_suffix,
+    "identifier": CppEvaluation.name,
+    "field_identifier": CppEvaluation.name,
+    "qualified_identifier": CppEvaluation.qualified,
+    "this": CppEvaluation.this,
+    "parenthesized_expression": CppEvaluation.inner,
+    "pointer_expression": CppEvaluation.inner,
+    "unary_expression": CppEvaluation.operator,
+    "binary_expression": CppEvaluation.operator,
+    "field_expression": CppEvaluation.member,
+    "initializer_list": CppEvaluation.items,
+}
+
+
+# Stands for the value that an object has before one of its methods is called.
+_BEFORE = not_known("the value before")
+
+
+def _last(writes: Sequence[_Write]) -> CppValue:
+    """Return the value after all writes: methods that are called are methods of the one before."""
+    value: CppValue = None
+    is_set = False
+    for write in writes:
+        if isinstance(write.value, CppCall) and write.value.owner is _BEFORE:
+            call = write.value
+            value = CppCall(call.name, call.args, call.node, call.types, value)
+        elif is_set or (write.kind == "set" and not _is_unconditional(write.node)):
+            return not_known("it is set twice")
+        else:
+            value, is_set = write.value, write.kind == "set"
+    return value if writes else not_known("it has no value")
+
+
+def _is_unconditional(node: CppNode) -> bool:
+    """Return whether a statement is one of the body of its function itself."""
+    for around in node.ancestors():
+        if around.kind == "compound_statement":
+            above = around.parent
+            return above is not None and above.kind in ("function_definition", "lambda_expression")
+    return True
+
+
+def _is_statement(node: CppNode) -> bool:
+    """Return whether an expression is a statement of the body of its function, which is always
+    executed.
+    """
+    statement = node.parent
+    if statement is None or statement.kind != "expression_statement":
+        return False
+    body = statement.parent
+    above = body.parent if body is not None else None
+    is_of_function = above is not None and above.kind == "function_definition"
+    return is_of_function and above is not None and not is_conditional(node, above)
+
+
+def _is_member_of_this(use: CppNode) -> bool:
+    parent = use.parent
+    if parent is None or parent.kind != "field_expression" or use.field != "field":
+        return False
+    owner = parent.child("argument")
+    return owner is not None and owner.kind == "this"
+
+
+def _declaration_of(name: CppNode) -> CppNode | None:
+    """Return the declaration that declares a name as a local variable or a parameter; None for a
+    name that is used.
+    """
+    node = name
+    for around in name.ancestors():
+        if around.kind in _DECLARATIONS:
+            is_declared = node.field == "declarator" and name_in(node) is name
+            return around if is_declared else None
+        if node.field == "value" or around.kind in ("argument_list", "compound_statement"):
+            return None
+        node = around
+    return None
+
+
+def _is_read(node: CppNode, parent: CppNode) -> bool:
+    """Return whether an expression is only read where it is written."""
+    if parent.kind == "init_declarator":
+        return node.field == "value" and not parent.of_kind("reference_declarator")
+    if parent.kind == "lambda_capture_specifier":
+        return "&" not in parent.text
+    is_source = parent.kind == "assignment_expression" and node.field == "right"
+    return is_source or parent.kind in _READING_PARENTS
+
+
+def _is_plain(name: str) -> bool:
+    """Return whether a type is that of a text or number."""
+    words = ("string", "char", "int", "double", "float", "bool", "size_t", "auto")
+    return name.rpartition("::")[2] in words
+
+
+def _is_textual(value: CppValue) -> bool:
+    return isinstance(value, str | CppSum)
+
+
+def _joined(values: Sequence[CppValue]) -> CppValue:
+    """Return texts that are joined."""
+    parts: list[CppValue] = []
+    for value in values:
+        parts += value.parts if isinstance(value, CppSum) else [value]
+    if all(isinstance(part, str) for part in parts):
+        return "".join(parts)
+    return CppSum(parts)
+
+
+def _constructed(call: CppCall) -> CppValue:
+    """Return a call; the text itself where one is only copied."""
+    if call.name in _TEXT_TYPES and len(call.args) == 1 and call.owner is None:
+        value = call.args[0]
+        return value if _is_textual(value) or isinstance(value, CppCall) else call
+    return call

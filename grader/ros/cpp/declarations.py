@@ -1,0 +1,337 @@
+"""What one C++ file declares: includes, classes, functions, variables, other names and macros."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cached_property
+from itertools import islice
+from typing import NamedTuple
+
+from grader.ros.cpp.syntax import CppNode, CppSyntax
+
+CONDITIONS = (
+    "preproc_if",
+    "preproc_ifdef",
+    "preproc_else",
+    "preproc_elif",
+    "preproc_elifdef",
+)
+_CLASSES = ("class_specifier", "struct_specifier")
+_CONSTANTS = ("const", "constexpr", "constinit")
+_CALLS = ("call_expression", "new_expression", "init_declarator", "declaration", "this")
+_NAMES = ("identifier", "field_identifier", "type_identifier")
+
+
+class CppClass(NamedTuple):
+    """A class that is defined: its full name, and its bases as they are written."""
+
+    name: str
+    bases: tuple[str, ...]
+    node: CppNode
+    is_conditional: bool
+    is_template: bool
+
+
+class CppFunction(NamedTuple):
+    """A function that is defined. `owner` is the class or namespace that its name begins with, as
+    it is written, or the full name of the class around it.
+    """
+
+    name: str
+    owner: str
+    scopes: tuple[str, ...]  # the namespaces and classes around it
+    node: CppNode
+    is_conditional: bool
+    is_template: bool
+
+    @property
+    def body(self) -> CppNode | None:
+        """Its statements."""
+        return self.node.child("body")
+
+    @property
+    def parameters(self) -> list[CppNode]:
+        """Its parameters, in their order."""
+        declarator = _function_declarator(self.node)
+        found = declarator.child("parameters") if declarator is not None else None
+        kinds = ("parameter_declaration", "optional_parameter_declaration")
+        return found.of_kind(*kinds) if found is not None else []
+
+
+class CppVariable(NamedTuple):
+    """A variable of a namespace or class, with the value that it is declared with."""
+
+    name: str  # in full
+    declarator: CppNode  # of its name
+    type: str  # as it is written
+    value: CppNode | None
+    is_constant: bool
+    is_conditional: bool
+
+
+class CppMacro(NamedTuple):
+    """A macro without parameters, by the text that it stands for."""
+
+    text: str
+    node: CppNode
+    is_conditional: bool
+
+
+class CppFile:
+    """What a C++ file declares."""
+
+    def __init__(self, syntax: CppSyntax) -> None:
+        self.syntax = syntax
+        self.includes: list[str] = []
+        self.classes: list[CppClass] = []
+        self.functions: list[CppFunction] = []
+        self.variables: list[CppVariable] = []
+        # Other names for types and namespaces, in full, each with the name that they stand for.
+        self.aliases: list[tuple[str, str]] = []
+        self.opened: list[str] = []  # what `using namespace` names
+        self.macros: dict[str, list[CppMacro]] = {}
+        self.called_macros: set[str] = set()  # those with parameters
+        _Reader(self).read()
+
+    @cached_property
+    def uses(self) -> Mapping[str, Sequence[CppNode]]:
+        """Where each name of a variable, function or member is written."""
+        found: dict[str, list[CppNode]] = {}
+        for node in self.syntax.root.walk():
+            if node.kind in ("identifier", "field_identifier") or is_argument(node):
+                found.setdefault(node.text, []).append(node)
+        return found
+
+    @cached_property
+    def calls(self) -> Sequence[CppNode]:
+        """The calls and what makes objects, in the order of the text."""
+        return [node for node in self.syntax.root.walk() if node.kind in _CALLS]
+
+
+class _Around(NamedTuple):
+    """Where a declaration is: in which scopes, and under what."""
+
+    scopes: tuple[str, ...] = ()
+    is_class: bool = False
+    is_conditional: bool = False
+    is_template: bool = False
+
+    def full(self, name: str) -> str:
+        return "::".join((*self.scopes, name))
+
+
+class _Reader:
+    """Reads the declarations of a file one by one, without those in functions."""
+
+    def __init__(self, file: CppFile) -> None:
+        self.file = file
+
+    def read(self) -> None:
+        pending = [(node, _Around()) for node in reversed(self.file.syntax.root.children)]
+        while pending:
+            node, place = pending.pop()
+            pending += reversed([*self._read(node, place)])
+
+    def _read(self, node: CppNode, place: _Around) -> Iterator[tuple[CppNode, _Around]]:
+        """Read a declaration; yield those in it."""
+        if node.kind in _DECLARATIONS:
+            _DECLARATIONS[node.kind](self, node, place)
+        if node.kind in _CLASSES:
+            yield from self._read_class(node, place)
+        elif node.kind == "namespace_definition":
+            name = _text(node.child("name"))
+            inner = (*place.scopes, *name.split("::")) if name else place.scopes
+            yield from _inside(node.child("body"), place._replace(scopes=inner))
+        elif node.kind == "linkage_specification":
+            yield from _inside(node, place)
+            yield from _inside(node.child("body"), place)
+        elif node.kind == "template_declaration":
+            yield from _inside(node, place._replace(is_template=True))
+        elif node.kind == "ERROR" or (node.kind in CONDITIONS and not _is_guard(node)):
+            yield from _inside(node, place._replace(is_conditional=True))
+        elif node.kind in CONDITIONS:
+            yield from _inside(node, place)
+        elif node.kind in ("declaration", "field_declaration", "type_definition"):
+            kind = node.child("type")
+            if kind is not None and kind.kind in _CLASSES:
+                yield kind, place
+
+    def read_include(self, node: CppNode, _: _Around) -> None:
+        """Read an #include."""
+        path = node.child("path")
+        self.file.includes.append(path.text[1:-1] if path is not None else "")
+
+    def read_called_macro(self, node: CppNode, _: _Around) -> None:
+        """Read a macro with parameters."""
+        self.file.called_macros.add(_text(node.child("name")))
+
+    def read_macro(self, node: CppNode, place: _Around) -> None:
+        """Read a macro without parameters."""
+        name, value = node.child("name"), node.child("value")
+        if name is not None:
+            macro = CppMacro(_text(value).strip(), node, place.is_conditional)
+            self.file.macros.setdefault(name.text, []).append(macro)
+
+    def read_using(self, node: CppNode, place: _Around) -> None:
+        """Read a `using` of a name or of a namespace."""
+        words = node.text.removesuffix(";").split()
+        name = plain(words[-1]) if words else ""
+        if "namespace" in words:
+            self.file.opened.append(name)
+        else:
+            self.file.aliases.append((place.full(name.rpartition("::")[2]), name))
+
+    def add_alias(self, node: CppNode, place: _Around) -> None:
+        """Add another name for a type or a namespace."""
+        name, kind = node.child("name"), node.child("type")
+        if kind is None:
+            kind = next((it for it in node.children if it is not name), None)
+        if name is not None and kind is not None:
+            self.file.aliases.append((place.full(name.text), plain(kind.text)))
+
+    def read_typedef(self, node: CppNode, place: _Around) -> None:
+        """Read a typedef."""
+        kind = node.child("type")
+        for declarator in node.children:
+            if declarator.field == "declarator" and kind is not None:
+                self.file.aliases.append((place.full(declarator.text), plain(kind.text)))
+
+    def _read_class(self, node: CppNode, place: _Around) -> Iterator[tuple[CppNode, _Around]]:
+        name, body = node.child("name"), node.child("body")
+        if name is None or body is None:
+            return
+        bases = []
+        for clause in node.of_kind("base_class_clause"):
+            for base in clause.of_kind("type_identifier", "qualified_identifier", "template_type"):
+                bases.append(plain(base.text))
+        full = place.full(plain(name.text))
+        self.file.classes.append(
+            CppClass(full, tuple(bases), node, place.is_conditional, place.is_template)
+        )
+        inner = place._replace(scopes=(*place.scopes, plain(name.text)), is_class=True)
+        yield from _inside(body, inner)
+
+    def read_function(self, node: CppNode, place: _Around) -> None:
+        """Read a function or method that is defined."""
+        declarator = _function_declarator(node)
+        name = declarator.child("declarator") if declarator is not None else None
+        if name is None:
+            return
+        owner, _, last = plain(name.text).rpartition("::")
+        if not owner and place.is_class:
+            owner = "::".join(place.scopes)
+        self.file.functions.append(
+            CppFunction(last, owner, place.scopes, node, place.is_conditional, place.is_template)
+        )
+
+    def read_variables(self, node: CppNode, place: _Around) -> None:
+        """Read the variables or members of a declaration."""
+        type_node = node.child("type")
+        for name, value in declared_in(node):
+            if name.kind == "qualified_identifier":
+                continue  # a static member, which is defined outside of its class
+            variable = CppVariable(
+                name=place.full(name.text),
+                declarator=name,
+                type=_text(type_node),
+                value=value,
+                is_constant=is_constant(node),
+                is_conditional=place.is_conditional,
+            )
+            self.file.variables.append(variable)
+
+
+_DECLARATIONS: dict[str, Callable[[_Reader, CppNode, _Around], None]] = {
+    "preproc_include": _Reader.read_include,
+    "preproc_def": _Reader.read_macro,
+    "preproc_function_def": _Reader.read_called_macro,
+    "using_declaration": _Reader.read_using,
+    "alias_declaration": _Reader.add_alias,
+    "namespace_alias_definition": _Reader.add_alias,
+    "type_definition": _Reader.read_typedef,
+    "function_definition": _Reader.read_function,
+    "declaration": _Reader.read_variables,
+    "field_declaration": _Reader.read_variables,
+}
+
+
+def _inside(node: CppNode | None, place: _Around) -> Iterator[tuple[CppNode, _Around]]:
+    for child in node.children if node is not None else ():
+        yield child, place
+
+
+def _is_guard(node: CppNode) -> bool:
+    """Return whether a condition only prevents that a header is read twice."""
+    name = node.child("name")
+    is_outermost = node.parent is not None and node.parent.parent is None
+    if node.kind != "preproc_ifdef" or name is None or not is_outermost:
+        return False
+    defined = node.of_kind("preproc_def")
+    return bool(defined) and _text(defined[0].child("name")) == name.text
+
+
+def is_constant(declaration: CppNode) -> bool:
+    """Return whether a declaration says that its variables do not change."""
+    return any(it.text in _CONSTANTS for it in declaration.of_kind("type_qualifier"))
+
+
+def declared_in(declaration: CppNode) -> Iterator[tuple[CppNode, CppNode | None]]:
+    """Yield the variables that a declaration declares: the node of each name, and its value."""
+    value = declaration.child("default_value")
+    for child in declaration.children:
+        if child.field != "declarator":
+            continue
+        name = name_in(child)
+        if name is not None:
+            yield name, child.child("value") if child.kind == "init_declarator" else value
+
+
+def is_argument(node: CppNode) -> bool:
+    """Return whether a name is an argument although the grammar takes it for the type of a
+    parameter: in a function, `Type name(argument);`.
+    """
+    parent = node.parent
+    if node.kind != "type_identifier" or parent is None or parent.kind != "parameter_declaration":
+        return False
+    around = list(islice(node.ancestors(), 5))
+    return len(around) == 5 and around[4].kind == "compound_statement" and len(parent.children) == 1
+
+
+def name_in(declarator: CppNode) -> CppNode | None:
+    """Return the name that a declarator declares; None for a function, or without one."""
+    node: CppNode | None = declarator
+    while node is not None and node.kind not in (*_NAMES, "qualified_identifier"):
+        if node.kind in ("function_declarator", "abstract_function_declarator"):
+            return None
+        inner = node.child("declarator")
+        if inner is None:
+            names = node.of_kind(*_NAMES)
+            inner = names[0] if names else next(iter(node.children), None)
+        node = inner
+    return node
+
+
+def _function_declarator(function: CppNode) -> CppNode | None:
+    """Return the declarator of a function with its name and parameters."""
+    node = function.child("declarator")
+    while node is not None and node.kind != "function_declarator":
+        inner = node.child("declarator")
+        node = inner if inner is not None else next(iter(node.children), None)
+    return node
+
+
+def plain(name: str) -> str:
+    """Return a name without white space, the arguments of templates and :: at its start."""
+    depth, kept = 0, []
+    for letter in name:
+        depth += (letter == "<") - (letter == ">")
+        if depth == 0 and letter != ">" and not letter.isspace():
+            kept.append(letter)
+    return "".join(kept).removeprefix("::")
+
+
+def plain_name(node: CppNode) -> str:
+    """Return the name that a node is, without the arguments of templates."""
+    return plain(node.text)
+
+
+def _text(node: CppNode | None) -> str:
+    return node.text if node is not None else ""

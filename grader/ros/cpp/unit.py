@@ -1,0 +1,220 @@
+"""The C++ files that are compiled into one program or library, and what their names mean."""
+
+import posixpath
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+
+from grader.ros.cpp.declarations import (
+    CONDITIONS,
+    CppClass,
+    CppFile,
+    CppFunction,
+    CppMacro,
+    CppVariable,
+    plain_name,
+)
+from grader.ros.cpp.syntax import CppNode
+
+_MAX_ALIASES = 10  # in a row
+
+
+class CppUnit:
+    """Files that are compiled together, with the headers of the package that they include.
+
+    A name is searched in the scopes around it, from the inside to the outside, then in the
+    namespaces that a file opens. One that is defined twice has several meanings.
+    """
+
+    def __init__(self, files: Sequence[CppFile]) -> None:
+        self.files = tuple(files)
+        self.opened = tuple(dict.fromkeys(name for file in files for name in file.opened))
+
+    @cached_property
+    def classes(self) -> Mapping[str, Sequence[CppClass]]:
+        """The classes by their full names."""
+        found: dict[str, list[CppClass]] = {}
+        for file in self.files:
+            for each in file.classes:
+                found.setdefault(each.name, []).append(each)
+        return found
+
+    @cached_property
+    def functions(self) -> tuple[CppFunction, ...]:
+        """The functions that are defined, with methods."""
+        return tuple(function for file in self.files for function in file.functions)
+
+    @cached_property
+    def _functions_by_node(self) -> Mapping[CppNode, CppFunction]:
+        return {function.node: function for function in self.functions}
+
+    @cached_property
+    def variables(self) -> Mapping[str, Sequence[CppVariable]]:
+        """The variables of namespaces and classes by their full names."""
+        found: dict[str, list[CppVariable]] = {}
+        for file in self.files:
+            for each in file.variables:
+                found.setdefault(each.name, []).append(each)
+        return found
+
+    @cached_property
+    def _aliases(self) -> Mapping[str, Sequence[str]]:
+        found: dict[str, list[str]] = {}
+        for file in self.files:
+            for name, target in file.aliases:
+                targets = found.setdefault(name, [])
+                if target not in targets:
+                    targets.append(target)
+        return found
+
+    @cached_property
+    def macros(self) -> Mapping[str, Sequence[CppMacro]]:
+        """The macros without parameters by their names."""
+        found: dict[str, list[CppMacro]] = {}
+        for file in self.files:
+            for name, each in file.macros.items():
+                found.setdefault(name, []).extend(each)
+        return found
+
+    @cached_property
+    def called_macros(self) -> frozenset[str]:
+        """The names of the macros with parameters."""
+        return frozenset(name for file in self.files for name in file.called_macros)
+
+    def meanings(self, name: str, scopes: Sequence[str] = ()) -> tuple[str, ...]:
+        """Return the full names that a name of a type may stand for, in these scopes; what is not
+        defined in the files is itself, also in the namespaces that are opened.
+        """
+        for _ in range(_MAX_ALIASES):
+            target = self._target_of(name, scopes)
+            if target is None:
+                break
+            name = target
+        for candidate in self._candidates(name, scopes):
+            if candidate in self.classes:
+                return (candidate,)
+        return (name, *(f"{opened}::{name}" for opened in self.opened))
+
+    def _target_of(self, name: str, scopes: Sequence[str]) -> str | None:
+        """Return a name with its beginning replaced by what that stands for; None without one."""
+        parts = name.split("::")
+        for count in range(len(parts), 0, -1):
+            first = "::".join(parts[:count])
+            for candidate in self._candidates(first, scopes):
+                targets = self._aliases.get(candidate, ())
+                if len(targets) == 1 and targets[0] != first:
+                    return "::".join((targets[0], *parts[count:]))
+        return None
+
+    def _candidates(self, name: str, scopes: Sequence[str]) -> Iterator[str]:
+        for count in range(len(scopes), -1, -1):
+            yield "::".join((*scopes[:count], name))
+        for opened in self.opened:
+            yield f"{opened}::{name}"
+
+    def variables_named(self, name: str, scopes: Sequence[str]) -> Sequence[CppVariable]:
+        """Return the variables that a name in these scopes means; several if it is defined so."""
+        for candidate in self._candidates(name, scopes):
+            if candidate in self.variables:
+                return self.variables[candidate]
+        return ()
+
+    def owner_of(self, function: CppFunction) -> str:
+        """Return the full name of the class that a function is a method of; empty without one."""
+        if not function.owner:
+            return ""
+        meanings = self.meanings(function.owner, function.scopes)
+        return meanings[0] if meanings[0] in self.classes else ""
+
+    def scopes_of(self, function: CppFunction) -> tuple[str, ...]:
+        """Return the namespaces and classes in which the names of a function are searched."""
+        owner = self.owner_of(function)
+        return tuple(owner.split("::")) if owner else function.scopes
+
+    @cached_property
+    def uses(self) -> Mapping[str, Sequence[CppNode]]:
+        """Where each name of a variable, function or member is written."""
+        found: dict[str, list[CppNode]] = {}
+        for file in self.files:
+            for name, nodes in file.uses.items():
+                found.setdefault(name, []).extend(nodes)
+        return found
+
+    def calls_in(self, function: CppFunction) -> Sequence[CppNode]:
+        """Return the calls in a function, and what else makes objects or is the object itself."""
+        return self._calls.get(function.node, ())
+
+    @cached_property
+    def _calls(self) -> Mapping[CppNode, Sequence[CppNode]]:
+        found: dict[CppNode, list[CppNode]] = {}
+        for file in self.files:
+            for node in file.calls:
+                function = self.function_around(node)
+                if function is not None:
+                    found.setdefault(function.node, []).append(node)
+        return found
+
+    def function_around(self, node: CppNode) -> CppFunction | None:
+        """Return the function that a place is in."""
+        for around in (node, *node.ancestors()):
+            if around in self._functions_by_node:
+                return self._functions_by_node[around]
+        return None
+
+
+def is_conditional(node: CppNode, until: CppNode) -> bool:
+    """Return whether the preprocessor may leave out a place in another one."""
+    for around in node.ancestors():
+        if around is until:
+            return False
+        if around.kind in CONDITIONS:
+            return True
+    return False
+
+
+def called_name(call: CppNode) -> str:
+    """Return the name of what a call calls, as it is written, without the object before it."""
+    function = call.child("function")
+    if function is None:
+        return ""
+    if function.kind == "field_expression":
+        field = function.child("field")
+        return plain_name(field) if field is not None else ""
+    return plain_name(function)
+
+
+def arguments_of(call: CppNode) -> list[CppNode]:
+    """Return the arguments of a call, of a constructor or of an initializer."""
+    given = call.child("arguments")
+    if given is None:
+        lists = call.of_kind("argument_list", "initializer_list")
+        given = lists[0] if lists else None
+    if given is None:
+        return []
+    return [child for child in given.children if child.kind != "comment"]
+
+
+def template_arguments(call: CppNode) -> tuple[str, ...]:
+    """Return the arguments of the template that is called, as they are written."""
+    node = call.child("function") if call.kind == "call_expression" else call
+    while node is not None:
+        given = node.child("arguments")
+        if given is not None and given.kind == "template_argument_list":
+            return tuple(it.text for it in given.children if it.kind != "comment")
+        node = node.child("field") or node.child("name")
+    return ()
+
+
+def resolve_include(path: str, included: str, files: Mapping[str, object]) -> str | None:
+    """Return the file of a package that an `#include` in another one means; None for one of another
+    package.
+
+    Args:
+        path: The path of the file with the `#include`.
+        included: The path that is included, as it is written.
+        files: The files of the package by their paths.
+    """
+    beside = posixpath.normpath(posixpath.join(posixpath.dirname(path), included))
+    for candidate in (beside, f"include/{included}", f"src/{included}", included):
+        if candidate in files:
+            return candidate
+    return None
