@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.ros.cpp.cpp_evaluation import CppEvaluation, Interface
+from grader.ros.cpp.cpp_evaluation import CppEvaluation, LibraryCalls
 from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue
 from grader.ros.cpp.declarations import CppFile
 from grader.ros.cpp.syntax import parse_cpp
@@ -10,7 +10,7 @@ from grader.ros.cpp.unit import CppUnit, arguments_of, called_name
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import Unknown
 
-_INTERFACE = Interface(frozenset({"use", "read"}), {"get": 1})
+_CALLS = LibraryCalls(frozenset({"use", "read"}), {"get": 1})
 
 
 def evaluated(*texts: str) -> list[CppValue]:
@@ -21,7 +21,7 @@ def evaluated(*texts: str) -> list[CppValue]:
         for number, text in enumerate(texts)
     ]
     unit = CppUnit(files)
-    evaluation = CppEvaluation(unit, _INTERFACE, budget)
+    evaluation = CppEvaluation(unit, _CALLS, budget)
     calls = [node for file in files for node in file.calls if node.kind == "call_expression"]
     used = [node for node in calls if called_name(node) == "use"]
     return [evaluation.value_of(node) for node in arguments_of(used[-1])]

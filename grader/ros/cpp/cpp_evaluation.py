@@ -62,7 +62,7 @@ _SAME_TEXT = ("c_str", "data", "str")
 _CALLS = ("call_expression", "compound_literal_expression", "new_expression")
 
 
-class Interface(NamedTuple):
+class LibraryCalls(NamedTuple):
     """What is known of the functions of libraries."""
 
     reading: frozenset[str]  # that only read what they are given
@@ -80,7 +80,7 @@ class _Write(NamedTuple):
 class CppEvaluation:
     """Evaluates expressions of files that are compiled together. All work is charged."""
 
-    def __init__(self, unit: CppUnit, interface: Interface, budget: Budget) -> None:
+    def __init__(self, unit: CppUnit, interface: LibraryCalls, budget: Budget) -> None:
         self.unit, self._interface, self._budget = unit, interface, budget
         self._active: set[CppNode] = set()
         self._macros: dict[str, CppValue] = {}

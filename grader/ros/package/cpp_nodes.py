@@ -10,7 +10,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from grader.base.source import Location
-from grader.ros.cpp.cpp_evaluation import CppEvaluation, Interface
+from grader.ros.cpp.cpp_evaluation import CppEvaluation, LibraryCalls
 from grader.ros.cpp.cpp_values import CppCall, CppName, CppValue
 from grader.ros.cpp.declarations import (
     CppClass,
@@ -103,7 +103,7 @@ class _Target:
 
     def __init__(self, compiled: CompiledTarget, budget: Budget) -> None:
         self._compiled, self._unit, self._budget = compiled, compiled.unit, budget
-        interface = Interface(rclcpp_words("reading"), _SETTING)
+        interface = LibraryCalls(rclcpp_words("reading"), _SETTING)
         self._evaluation = CppEvaluation(self._unit, interface, budget)
         self.has_loose_declarations = False
         self.doubts: list[Doubt] = []
