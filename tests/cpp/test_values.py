@@ -124,6 +124,8 @@ NAMES = [
     ('void f() { std::string name; if (get("p", name)) {} use(name); }', None),
     ("void f(std::string name) { use(name); }", "<name>"),
     ("void f() { rclcpp::QoS qos(10); qos.best_effort(); use(qos); }", "rclcpp::QoS(10).best_effort()"),
+    ("const int depth = 3; void f() { rclcpp::QoS qos(depth); use(qos); }", "rclcpp::QoS(3)"),
+    ("void f() { int other(int); use(other); }", "<other>"),
     ("void f() { rclcpp::QoS qos(10); if (x) { qos.best_effort(); } use(qos); }", None),
     ("void f() { for (auto name : names) { use(name); } }", None),
     ('class A { void f() { use(name); } static constexpr auto name = "a"; };', "a"),

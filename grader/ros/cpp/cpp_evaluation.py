@@ -9,7 +9,6 @@ from grader.ros.cpp.declarations import (
     CppVariable,
     declared_in,
     is_constant,
-    name_in,
     plain_name,
 )
 from grader.ros.cpp.literals import (
@@ -258,7 +257,7 @@ class CppEvaluation:
             return not_known("it has no value")
         kind = declaration.child("type")
         name = plain_name(kind) if kind is not None else ""
-        if value.kind in ("argument_list", "initializer_list"):
+        if value.kind in ("argument_list", "initializer_list", "parameter_list"):
             arguments = [self.value_of(it) for it in value.children]
             if value.kind == "initializer_list" and kind is not None and _is_plain(name):
                 return arguments[0] if len(arguments) == 1 else not_known("it has no value")
@@ -429,6 +428,8 @@ _EVALUATED: Mapping[str, Callable[[CppEvaluation, CppNode], CppValue]] = {
     "concatenated_string": CppEvaluation.joined_texts,
     "user_defined_literal": CppEvaluation.with_suffix,
     "identifier": CppEvaluation.name,
+    "type_identifier": CppEvaluation.name,
+    "parameter_declaration": CppEvaluation.inner,
     "field_identifier": CppEvaluation.name,
     "qualified_identifier": CppEvaluation.qualified,
     "this": CppEvaluation.this,
@@ -497,7 +498,7 @@ def _declaration_of(name: CppNode) -> CppNode | None:
     node = name
     for around in name.ancestors():
         if around.kind in _DECLARATIONS:
-            is_declared = node.field == "declarator" and name_in(node) is name
+            is_declared = any(declared is name for declared, _ in declared_in(around))
             return around if is_declared else None
         if node.field == "value" or around.kind in ("argument_list", "compound_statement"):
             return None

@@ -101,6 +101,13 @@ class CppFile:
         return found
 
     @cached_property
+    def words(self) -> frozenset[str]:
+        """The names in the file, also those of types."""
+        kinds = ("identifier", "field_identifier", "type_identifier", "namespace_identifier")
+        nodes = self.syntax.root.walk()
+        return frozenset(node.text for node in nodes if node.kind in kinds)
+
+    @cached_property
     def calls(self) -> Sequence[CppNode]:
         """The calls and what makes objects, in the order of the text."""
         return [node for node in self.syntax.root.walk() if node.kind in _CALLS]
@@ -279,9 +286,16 @@ def declared_in(declaration: CppNode) -> Iterator[tuple[CppNode, CppNode | None]
     for child in declaration.children:
         if child.field != "declarator":
             continue
-        name = name_in(child)
+        name, given = name_in(child), child.child("parameters")
+        if given is not None and given.children and all(map(_is_given, given.children)):
+            name, value = child.child("declarator"), given
         if name is not None:
             yield name, child.child("value") if child.kind == "init_declarator" else value
+
+
+def _is_given(parameter: CppNode) -> bool:
+    """Return whether the parameter of what looks like a function is an argument of an object."""
+    return any(map(is_argument, parameter.children))
 
 
 def is_argument(node: CppNode) -> bool:

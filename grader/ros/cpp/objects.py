@@ -33,11 +33,9 @@ def class_written(node: CppNode) -> str:
 
 def _declares_object(declaration: CppNode) -> bool:
     """Return whether a declaration makes an object: no function, pointer or reference."""
-    for child in declaration.children:
-        if child.field != "declarator":
-            continue
-        declarator = child.child("declarator") if child.kind == "init_declarator" else child
-        if declarator is not None and declarator.kind == "identifier":
+    kinds = ("declaration", "init_declarator", "function_declarator")
+    for name, _ in declared_in(declaration):
+        if name.parent is not None and name.parent.kind in kinds:
             return True
     return False
 

@@ -27,8 +27,10 @@ from grader.ros.cpp.unit import (
     is_conditional,
 )
 from grader.ros.known.known import rclcpp_words
+from grader.ros.package.cpp_faults import cpp_faults
 from grader.ros.package.cpp_files import CompiledTarget, CppFiles
 from grader.ros.package.node_facts import (
+    CodeFault,
     Doubt,
     Endpoint,
     NodeFacts,
@@ -76,6 +78,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
     nodes: dict[Location, NodeFacts] = {}
     programs: list[NodeProgram] = []
     doubts: dict[Doubt, None] = {}
+    faults: dict[CodeFault, None] = {}
     is_loose, files = False, CppFiles(package)
     try:
         for compiled in files.compiled:
@@ -84,6 +87,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
                 nodes.setdefault(node.location, node)
             programs += target.programs(package)
             doubts |= dict.fromkeys(target.doubts)
+            faults |= dict.fromkeys(target.faults())
             is_loose = is_loose or target.has_loose_declarations
     except OutOfBudget:
         start = Location(package.path("CMakeLists.txt"), 1, 1)
@@ -94,6 +98,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
         programs=tuple(programs),
         doubts=tuple(doubts),
         has_loose_declarations=is_loose,
+        faults=tuple(faults),
         cpp_files=files.read_paths,
     )
 
@@ -451,6 +456,16 @@ class _Target:
             self._facts[self._unit.owner_of(constructor)].append(
                 Doubt("its program gives it a namespace", given[1].location)
             )
+
+    def faults(self) -> Iterator[CodeFault]:
+        """Yield what keeps the nodes of the target from doing anything."""
+        created = [it.node if it.node in self._facts else it.class_name for it in self._created]
+        is_known = not any(isinstance(it, Doubt) for key in created for it in self._facts[key])
+        is_read = not self._compiled.unread and self._compiled.target.is_certain
+        is_program = self._compiled.target.kind == "executable" and bool(created) and is_known
+        yield from cpp_faults(
+            self._unit, self._node_classes, is_program=is_program, is_read=is_read
+        )
 
     def programs(self, package: Package) -> Iterator[NodeProgram]:
         """Yield the programs that the target is, and those of its components."""

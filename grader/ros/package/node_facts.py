@@ -106,6 +106,9 @@ _CodeRule = Literal[
     "no rclpy.init",
     "waits in a callback",
     "sleeps in a callback",
+    "destroyed at once",
+    "no listener",
+    "no rotation",
 ]
 
 

@@ -1,0 +1,187 @@
+"""What keeps nodes in C++ from doing anything is found, and nothing else."""
+
+import pytest
+
+from grader.ros.package.node_facts import CodeFault
+from tests.package.test_cpp_nodes import nodes_of
+
+_MAIN = "int main(int argc, char ** argv) {{ rclcpp::init(argc, argv); {} }}"
+_SPIN = _MAIN.format("rclcpp::spin(std::make_shared<Talker>());")
+
+
+def faults_of(constructor: str, members: str = "", main: str = _SPIN) -> list[CodeFault]:
+    """Return the faults of a node whose constructor has these statements."""
+    text = f"""
+#include <rclcpp/rclcpp.hpp>
+class Talker : public rclcpp::Node {{
+public:
+  Talker() : Node("talker") {{ {constructor} }}
+  {members}
+}};
+{main}"""
+    return list(nodes_of(text).faults)
+
+
+_ON = "void on() {}"
+_SUBSCRIPTION = (
+    'create_subscription<std_msgs::msg::Bool>("a", 1, [](const std_msgs::msg::Bool &) {});'
+)
+DESTROYED = [
+    ("auto timer = create_wall_timer(1s, [this]() { on(); });", "nothing keeps this timer: it is destroyed when Talker() ends"),
+    ("rclcpp::TimerBase::SharedPtr timer = this->create_wall_timer(1s, cb);", "nothing keeps this timer: it is destroyed when Talker() ends"),
+    ("create_wall_timer(1s, cb);", "nothing keeps this timer: it is destroyed when Talker() ends"),
+    (f"auto subscription = {_SUBSCRIPTION}", "nothing keeps this subscription: it is destroyed when Talker() ends"),
+    (_SUBSCRIPTION, "nothing keeps this subscription: it is destroyed when Talker() ends"),
+    ('auto it = create_service<std_srvs::srv::Trigger>("a", cb);', "nothing keeps this service: it is destroyed when Talker() ends"),
+    ('rclcpp_action::create_server<a::action::B>(this, "a", b, c, d);', "nothing keeps this action server: it is destroyed when Talker() ends"),
+    ("tf2_ros::TransformListener listener(buffer_);", "nothing keeps this TransformListener: the buffer stays empty"),
+    ("tf2_ros::TransformListener listener{buffer_};", "nothing keeps this TransformListener: the buffer stays empty"),
+    ("auto listener = std::make_shared<tf2_ros::TransformListener>(*buffer_);", "nothing keeps this TransformListener: the buffer stays empty"),
+]  # fmt: skip
+KEPT = [
+    "timer_ = create_wall_timer(1s, cb);",
+    "auto timer = create_wall_timer(1s, cb); timer_ = timer;",
+    "auto timer = create_wall_timer(1s, cb); timers_.push_back(timer);",
+    "timers_.push_back(create_wall_timer(1s, cb));",
+    "static auto timer = create_wall_timer(1s, cb);",
+    "auto timer = create_wall_timer(1s, cb); while (rclcpp::ok()) { rclcpp::spin_some(node); }",
+    "auto timer = create_wall_timer(1s, cb); rclcpp::spin(node);",
+    "auto timer = create_wall_timer(1s, [timer]() {});",
+    "\n#if A\nauto timer = create_wall_timer(1s, cb);\n#endif\n",
+    'create_publisher<std_msgs::msg::Bool>("a", 1);',
+    "tf2_ros::TransformListener & listener = other_;",
+]
+
+
+@pytest.mark.parametrize(("statement", "message"), DESTROYED)
+def test_what_nothing_keeps(statement: str, message: str) -> None:
+    """What a constructor makes and nothing keeps is destroyed with it."""
+    [fault] = faults_of(statement, _ON)
+    assert (fault.rule, fault.message, fault.is_certain) == ("destroyed at once", message, True)
+
+
+@pytest.mark.parametrize("statement", KEPT)
+def test_what_is_kept(statement: str) -> None:
+    """A member, a list or a copy keeps it, and a function that waits."""
+    assert faults_of(statement, _ON) == []
+
+
+_LOOK = 'void on() { buffer_->lookupTransform("a", "b", tf2::TimePointZero); }'
+_BUFFER = "std::unique_ptr<tf2_ros::Buffer> buffer_;"
+_POINTER = "std::shared_ptr<tf2_ros::TransformListener> listener_;"
+_MAKE = "timer_ = create_wall_timer(1s, [this]() { on(); }); buffer_ = std::make_unique<tf2_ros::Buffer>(get_clock());"
+
+
+@pytest.mark.parametrize("members", ["", _POINTER])
+def test_a_buffer_without_listener(members: str) -> None:
+    """A buffer that no listener fills is empty."""
+    [fault] = faults_of(_MAKE, f"{_LOOK} {_BUFFER} {members}")
+    assert (fault.rule, fault.message) == (
+        "no listener",
+        "the buffer stays empty: nothing makes a TransformListener",
+    )
+
+
+FILLED = [
+    ("listener_ = std::make_shared<tf2_ros::TransformListener>(*buffer_);", _POINTER),
+    ("listener_.reset(new tf2_ros::TransformListener(*buffer_));", _POINTER),
+    ("", "tf2_ros::TransformListener listener_{*buffer_};"),
+    ("", "using Listener = tf2_ros::TransformListener; std::shared_ptr<Listener> listener_;"),
+    ("fill(*buffer_);", _POINTER),
+    ("buffer_->setTransform(t, name);", _POINTER),
+]
+
+
+@pytest.mark.parametrize(("statement", "members"), FILLED)
+def test_a_buffer_that_is_filled(statement: str, members: str) -> None:
+    """A listener of any kind, or another function, may fill the buffer."""
+    assert faults_of(_MAKE + statement, f"{_LOOK} {_BUFFER} {members}") == []
+
+
+_ZEROS = "t.transform.rotation.x = 0; t.transform.rotation.y = 0.0; t.transform.rotation.z = 0.0f; "
+_SENT = "geometry_msgs::msg::TransformStamped t; {} t.transform.rotation.w = {}; t.header.stamp = now(); {} sender_->sendTransform(t);"
+
+
+def test_a_rotation_of_zeros() -> None:
+    """Four zeros are no rotation."""
+    [fault] = faults_of(_SENT.format(_ZEROS, "0.0", ""))
+    assert (fault.rule, fault.message) == (
+        "no rotation",
+        "the rotation 0 0 0 0 turns nothing: tf2 ignores the transform",
+    )
+
+
+ROTATIONS = [
+    _SENT.format(_ZEROS, "1.0", ""),
+    _SENT.format(_ZEROS, "0.0", "fill(t);"),
+    _SENT.format(_ZEROS, "0.0", "t.transform.rotation = tf2::toMsg(q);"),
+    _SENT.format(_ZEROS, "0.0", "t.transform.rotation.w = 1.0;"),
+    _SENT.format(_ZEROS, "0.0", "fill(t.transform.rotation);"),
+    _SENT.format("", "0.0", ""),
+    _SENT.format(_ZEROS, "0.0", "").replace("sendTransform", "publish"),
+]
+
+
+@pytest.mark.parametrize("statements", ROTATIONS)
+def test_rotations_that_may_be_right(statements: str) -> None:
+    """Another number, another function, or what is published and not sent to tf2."""
+    assert faults_of(statements) == []
+
+
+def test_nothing_spins() -> None:
+    """A node with callbacks that nothing spins does nothing."""
+    main = _MAIN.format("auto node = std::make_shared<Talker>(); rclcpp::shutdown();")
+    [fault] = faults_of("timer_ = create_wall_timer(1s, cb);", main=main)
+    assert (fault.rule, fault.message) == (
+        "nothing spins",
+        "nothing spins the node: its callbacks are never called",
+    )
+    assert faults_of('create_publisher<std_msgs::msg::Bool>("a", 1);', main=main) == []
+
+
+SPINNING = [
+    "rclcpp::spin(std::make_shared<Talker>());",
+    "auto node = std::make_shared<Talker>(); rclcpp::executors::SingleThreadedExecutor it; it.add_node(node); it.spin();",
+    "auto node = std::make_shared<Talker>(); rclcpp::WaitSet set;",
+    "auto node = std::make_shared<Talker>(); Library library(node);",
+    "run();",
+]
+
+
+@pytest.mark.parametrize("statements", SPINNING)
+def test_what_may_spin(statements: str) -> None:
+    """An executor, a set of waiting, and what is given the node may spin it."""
+    assert faults_of("timer_ = create_wall_timer(1s, cb);", main=_MAIN.format(statements)) == []
+
+
+_WAIT = "void on() {{ auto future = client_->async_send_request(request); {} }}"
+_TIMER = "timer_ = create_wall_timer(1s, std::bind(&Talker::on, this));"
+WAITING = [
+    "future.wait();",
+    "auto response = future.get();",
+    "rclcpp::spin_until_future_complete(shared_from_this(), future);",
+    "rclcpp::spin_until_future_complete(this->get_node_base_interface(), future);",
+]
+
+
+@pytest.mark.parametrize("statement", WAITING)
+def test_waiting_in_a_callback(statement: str) -> None:
+    """A callback cannot receive the response that it waits for."""
+    [fault] = faults_of(_TIMER, _WAIT.format(statement))
+    assert fault.rule == "waits in a callback"
+
+
+NOT_WAITING = [
+    ("", _TIMER),
+    ("future.wait_for(1s);", _TIMER),
+    ("rclcpp::spin_until_future_complete(other_node_, future);", _TIMER),
+    ("future.wait();", "on();"),
+    ("future.wait();", f"group_ = create_callback_group(a); {_TIMER}"),
+    ("future.wait();", "thread_ = std::thread(std::bind(&Talker::on, this));"),
+]
+
+
+@pytest.mark.parametrize(("statement", "constructor"), NOT_WAITING)
+def test_waiting_elsewhere(statement: str, constructor: str) -> None:
+    """Outside of callbacks, for a while, or with other threads a node may wait."""
+    assert faults_of(constructor, _WAIT.format(statement)) == []
