@@ -29,11 +29,13 @@ from grader.ros.cpp.unit import (
 from grader.ros.known.known import rclcpp_words
 from grader.ros.package.cpp_faults import cpp_faults
 from grader.ros.package.cpp_files import CompiledTarget, CppFiles
+from grader.ros.package.cpp_frames import frames_in
 from grader.ros.package.node_facts import (
     CodeFault,
     Doubt,
     Endpoint,
     NodeFacts,
+    NodeFrame,
     NodeParameter,
     NodeProgram,
     PackageNodes,
@@ -70,7 +72,7 @@ class _Parameter(NamedTuple):
 
 
 _Name = str | _Parameter | None
-_Fact = Endpoint | NodeParameter | Timer | Doubt
+_Fact = Endpoint | NodeParameter | Timer | Doubt | NodeFrame
 
 
 def read_cpp_nodes(package: Package) -> PackageNodes:
@@ -79,6 +81,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
     programs: list[NodeProgram] = []
     doubts: dict[Doubt, None] = {}
     faults: dict[CodeFault, None] = {}
+    loose_frames: dict[NodeFrame, None] = {}
     is_loose, files = False, CppFiles(package)
     try:
         for compiled in files.compiled:
@@ -88,6 +91,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
             programs += target.programs(package)
             doubts |= dict.fromkeys(target.doubts)
             faults |= dict.fromkeys(target.faults())
+            loose_frames |= dict.fromkeys(target.loose_frames)
             is_loose = is_loose or target.has_loose_declarations
     except OutOfBudget:
         start = Location(package.path("CMakeLists.txt"), 1, 1)
@@ -99,6 +103,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
         doubts=tuple(doubts),
         has_loose_declarations=is_loose,
         faults=tuple(faults),
+        loose_frames=tuple(loose_frames),
         cpp_files=files.read_paths,
     )
 
@@ -112,6 +117,7 @@ class _Target:
         self._evaluation = CppEvaluation(self._unit, interface, budget)
         self.has_loose_declarations = False
         self.doubts: list[Doubt] = []
+        self.loose_frames: list[NodeFrame] = []
         for unread in compiled.unread:
             self.doubts.append(
                 Doubt(f"C++ is not read as a whole: {unread.reason}", unread.location)
@@ -278,6 +284,11 @@ class _Target:
                 self._read_this(node, owner)
             elif node.kind == "call_expression":
                 self._read_call(node, function, scopes, owner)
+        frames = frames_in(function, self._unit, self._evaluation)
+        if owner in self._facts:
+            self._facts[owner] += frames
+        else:
+            self.loose_frames += [it for it in frames if it.use == "publishes"]
 
     def _read_call(
         self, call: CppNode, function: CppFunction, scopes: Sequence[str], owner: str
@@ -379,6 +390,7 @@ class _Target:
         parameters: list[NodeParameter] = []
         timers: list[Timer] = []
         doubts: list[Doubt] = []
+        frames: list[NodeFrame] = []
         for fact in self._facts[key]:
             match fact:
                 case Endpoint():
@@ -389,6 +401,8 @@ class _Target:
                     timers.append(fact)
                 case Doubt():
                     doubts.append(fact)
+                case NodeFrame():
+                    frames.append(fact)
         if isinstance(key, str):
             name, at = self._names[key], self._node_classes[key].node.location
         else:
@@ -402,6 +416,7 @@ class _Target:
             parameters=tuple(parameters),
             timers=tuple(timers),
             doubts=tuple(dict.fromkeys(doubts)),
+            frames=tuple(frames),
         )
 
     def _name_of_object(self, node: CppNode) -> str | None:

@@ -62,6 +62,20 @@ class NodeParameter(NamedTuple):
     is_needed: bool = True  # False where it is read, and need not be declared
 
 
+FrameUse = Literal["publishes", "is above", "looks up", "names"]
+
+
+class NodeFrame(NamedTuple):
+    """A frame that a node publishes, or that is above one; or that it looks up, or that its
+    messages name. Without a name and `parts` it is not known.
+    """
+
+    use: FrameUse
+    name: str | None
+    location: Location
+    parts: tuple[NamePart, ...] = ()
+
+
 class Timer(NamedTuple):
     """A timer, with its period in seconds."""
 
@@ -135,6 +149,7 @@ class NodeFacts(NamedTuple):
     parameters: tuple[NodeParameter, ...]
     timers: tuple[Timer, ...]
     doubts: tuple[Doubt, ...]
+    frames: tuple[NodeFrame, ...] = ()
 
 
 class NodeProgram(NamedTuple):
@@ -161,4 +176,6 @@ class PackageNodes(NamedTuple):
     field_uses: tuple[FieldUse, ...] = ()
     faults: tuple[CodeFault, ...] = ()
     has_more_faults: bool = False  # perhaps, in modules that are not searched
+    # What a program publishes for which no node is known.
+    loose_frames: tuple[NodeFrame, ...] = ()
     cpp_files: frozenset[str] = frozenset()  # the paths in the package of those that are read

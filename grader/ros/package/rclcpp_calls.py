@@ -78,7 +78,7 @@ def endpoint_of(
 ) -> Endpoint:
     """Return what a call opens; of an action, whose first argument is the node, too."""
     position = 1 if kind.startswith("action") else 0
-    name, parts = _name_of(call.argument(position))
+    name, parts = name_of(call.argument(position))
     qos = Qos()
     if kind in ("publisher", "subscription"):
         qos = _qos(call.argument(1))
@@ -96,7 +96,7 @@ def _message_type(written: str, unit: CppUnit, scopes: Sequence[str]) -> str | N
     return found.pop() if len(found) == 1 else None
 
 
-def _name_of(value: CppValue) -> tuple[str | None, tuple[NamePart, ...]]:
+def name_of(value: CppValue) -> tuple[str | None, tuple[NamePart, ...]]:
     """Return a name that is plain text, or the parts of one that is not."""
     if isinstance(value, str):
         return value, ()

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.package.node_facts import Endpoint, NamePart, NodeFacts
+from grader.ros.package.node_facts import Endpoint, NamePart, NodeFacts, NodeFrame
 from grader.ros.python.values import Value
 from grader.ros.workspace.workspace import Workspace
 
@@ -46,6 +46,22 @@ def opened_by(workspace: Workspace, node: StartedNode) -> Iterator[OpenedName]:
                 yield OpenedName(full, endpoint)
 
 
+def frames_of(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str | None, NodeFrame]]:
+    """Yield the frames that an own node names as it is started, each with its name; None for one
+    that is not known. Raises NotDecided.
+    """
+    own_node = workspace.own_node(node)
+    if own_node is None or not own_node.frames:
+        return
+    workspace.charge(len(own_node.frames))
+    values = _values_given(workspace, node, own_node)
+    named = node._replace(node_name=workspace.name_of(node))
+    for frame in own_node.frames:
+        for name in _names(frame, named, values):
+            is_known = name is not None and ANY not in name
+            yield name if is_known else None, frame
+
+
 def _values_given(
     workspace: Workspace, node: StartedNode, own_node: NodeFacts
 ) -> Mapping[str, Value]:
@@ -65,10 +81,10 @@ def _values_given(
 
 
 def _names(
-    endpoint: Endpoint, node: StartedNode, values: Mapping[str, Value]
+    endpoint: Endpoint | NodeFrame, node: StartedNode, values: Mapping[str, Value]
 ) -> Sequence[str | None]:
-    """Return the names that an endpoint has in the code of a node; None for one of which nothing is
-    known.
+    """Return the names that an endpoint or frame has in the code of a node; None for one of which
+    nothing is known.
     """
     if endpoint.name is not None or not endpoint.parts:
         return [endpoint.name]

@@ -5,14 +5,28 @@ them.
 import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
+from typing import NamedTuple
 
+from grader.base.names import near
 from grader.base.source import LazyLocation, Location
 from grader.ros.config.yaml_values import YamlValue, is_parameters, values_in
 from grader.ros.known.known import known
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.package.node_facts import NodeFrame
+from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
+from grader.ros.workspace.endpoints import frames_of
 from grader.ros.workspace.gazebo import roots, system_of
-from grader.ros.workspace.names import Definition, Fact, Mismatch, Open, Pattern, Use
+from grader.ros.workspace.names import (
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Pattern,
+    Use,
+    corrections,
+)
 from grader.ros.workspace.under_arguments import names_under_arguments
 from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
@@ -42,6 +56,7 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from (Definition("frame", name, start) for name in known()["frames"])
     yield from _openings(workspace)
     yield from _static_transforms(workspace, robots)
+    yield from _frames_in_code(workspace, robots)
     controllers = workspace.typed_sections
     for _, tree in workspace.trees:
         if is_parameters(tree):
@@ -75,13 +90,83 @@ def _openings(workspace: Workspace) -> Iterator[Fact]:
     for _, node in workspace.nodes:
         if node.package not in known()["without_frames"] and node.package not in packages:
             yield Open("frame")
-    if any(
-        package.is_cmake and package.installation and package.installation.programs
-        for package in workspace.packages
-    ):
+    if any(_may_publish(workspace, package) for package in workspace.packages):
         yield Open("frame")
     if any("TransformBroadcaster" in text for text in workspace.python_texts):
         yield Open("frame")
+
+
+def _may_publish(workspace: Workspace, package: Package) -> bool:
+    """Return whether the programs that CMake makes may publish frames that are not known."""
+    setup = package.installation
+    if not package.is_cmake or setup is None or not setup.programs:
+        return False
+    found = workspace.nodes_by_package[package.name]
+    read = {program.name for program in found.programs if program.nodes}
+    programs = {path.rpartition("/")[2] for path in setup.programs}
+    if found.doubts or found.loose_frames or not programs <= read:
+        return True
+    if any(node.doubts for node in found.nodes):
+        return True
+    started = {node.executable for _, node in workspace.nodes if node.package == package.name}
+    for program in found.programs:
+        frames = [frame for node in program.nodes for frame in node.frames]
+        if program.name not in started and any(it.use == "publishes" for it in frames):
+            return True
+    return False
+
+
+def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
+    """Yield the frames that own nodes publish, look up and name in messages."""
+    named: list[_NamedFrame] = []
+    for _, node in workspace.nodes:
+        for name, frame in frames_of(workspace, node) if node.when is not False else ():
+            if name is not None and name.strip("/"):
+                named.append(_NamedFrame(name.removeprefix("/"), frame, node))
+            elif name is None and frame.use == "publishes":
+                yield Open("frame", reason=f"the frames of {node.executable} are computed")
+    for each in named:
+        at = each.frame.location
+        if each.frame.use in ("publishes", "is above"):
+            yield Definition("frame", each.name, at)
+        elif each.frame.use == "looks up":
+            yield Use("frame", each.name, at, "lookupTransform")
+        else:
+            yield Use("frame", each.name, at, "frame_id")
+    yield from _misspelt_roots(named, robots)
+
+
+class _NamedFrame(NamedTuple):
+    """A frame that a node names as it is started."""
+
+    name: str
+    frame: NodeFrame
+    node: StartedNode
+
+
+def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> Iterator[Mismatch]:
+    """Yield frames that are published, and that are like the root of a robot that nothing puts
+    anywhere.
+    """
+    children = {joint.child for robot in robots for joint in robot.joints}
+    published = {each.name for each in named if each.frame.use == "publishes"}
+    roots: dict[str, Location] = {}
+    for robot in robots:
+        for link in robot.links:
+            if link.name not in children and link.name not in published:
+                roots[link.name] = _place(link.location)
+    for each in named:
+        meant = near(each.name, roots) if each.frame.use == "publishes" else None
+        if meant is None:
+            continue
+        at = each.frame.location
+        message = (
+            f"the frame {each.name!r} is published, which nothing else has; did you mean "
+            f"{meant!r} ({roots[meant].file_and_line})?"
+        )
+        either = corrections(each.name, at, meant, roots[meant])
+        is_certain = each.node.when is True and len(robots) == 1
+        yield Mismatch("frames", message, at, roots[meant], is_certain, corrections=either)
 
 
 def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:

@@ -749,6 +749,7 @@ def _nodes_of(package: Package) -> PackageNodes:
         imports=(*found.imports, *compiled.imports),
         field_uses=(*found.field_uses, *compiled.field_uses),
         faults=(*found.faults, *compiled.faults),
+        loose_frames=compiled.loose_frames,
         cpp_files=compiled.cpp_files,
     )
 
