@@ -73,6 +73,7 @@ class CmakeComponent(NamedTuple):
     """A class that rclcpp_components loads from a library, and the program that starts it."""
 
     plugin: str  # sensors::Lidar
+    at: Position
     executable: str = ""
 
 

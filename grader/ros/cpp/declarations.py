@@ -1,10 +1,12 @@
 """What one C++ file declares: includes, classes, functions, variables, other names and macros."""
 
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice
 from typing import NamedTuple
 
+from grader.base.source import Location
 from grader.ros.cpp.syntax import CppNode, CppSyntax
 
 CONDITIONS = (
@@ -106,6 +108,20 @@ class CppFile:
         kinds = ("identifier", "field_identifier", "type_identifier", "namespace_identifier")
         nodes = self.syntax.root.walk()
         return frozenset(node.text for node in nodes if node.kind in kinds)
+
+    def of_kind(self, *kinds: str) -> Iterator[CppNode]:
+        """Yield the nodes of these kinds, in the order of the text."""
+        for node in self.syntax.root.walk():
+            if node.kind in kinds:
+                yield node
+
+    def found(self, pattern: re.Pattern[str]) -> Iterator[tuple[str, Location]]:
+        """Yield what the first group of a pattern matches outside of comments, and its place."""
+        comments = [(node.start, node.end) for node in self.of_kind("comment")]
+        for match in pattern.finditer(self.syntax.source.text):
+            at = len(self.syntax.source.text[: match.start(1)].encode("utf-8", "replace"))
+            if not any(start <= at < end for start, end in comments):
+                yield match[1], self.syntax.source.at(match.start(1))
 
     @cached_property
     def calls(self) -> Sequence[CppNode]:

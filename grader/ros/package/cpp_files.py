@@ -8,6 +8,7 @@ from grader.base.errors import InputError
 from grader.base.source import Location
 from grader.ros.build.installation import CmakeTarget
 from grader.ros.cpp.declarations import CppFile
+from grader.ros.cpp.literals import TEXTS, text_of_literal
 from grader.ros.cpp.syntax import MAX_BYTES, parse_cpp
 from grader.ros.cpp.unit import CppUnit, resolve_include
 from grader.ros.package.package import Package
@@ -111,6 +112,17 @@ class CppFiles:
         if path not in self._files:
             self._files[path] = self._read(path)
         return self._files[path]
+
+    def texts_with(self, part: str) -> tuple[tuple[str, Location], ...]:
+        """Return the texts in the files read so far that have a part, with their places."""
+        texts = []
+        for file in self._files.values():
+            if isinstance(file, CppFile) and part in file.syntax.source.text:
+                for node in file.of_kind(*TEXTS):
+                    text = text_of_literal(node) or ""
+                    if part in text:
+                        texts.append((text, node.location))
+        return tuple(texts)
 
     @property
     def read_paths(self) -> frozenset[str]:

@@ -5,10 +5,12 @@ Only what is written as a text, number or constant is known. What is opened unde
 listed as well. Macros, templates and code behind `#if` leave open what a node does.
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
+from grader.base.names import closest
 from grader.base.source import Location
 from grader.ros.cpp.cpp_evaluation import CppEvaluation, LibraryCalls
 from grader.ros.cpp.cpp_values import CppCall, CppName, CppValue
@@ -52,6 +54,7 @@ from grader.ros.package.rclcpp_calls import (
 from grader.ros.python.budget import Budget, OutOfBudget
 
 _SETTING = {"get_parameter": 1, "get_parameter_or": 1}
+_REGISTERED = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(\s*([\w:]+)\s*\)")
 _OF_NODE = 20  # parts of a class that may be that of a node
 _SELF = ("shared_from_this", "weak_from_this", "get_node_base_interface")
 
@@ -90,7 +93,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
                 nodes.setdefault(node.location, node)
             programs += target.programs(package)
             doubts |= dict.fromkeys(target.doubts)
-            faults |= dict.fromkeys(target.faults())
+            faults |= dict.fromkeys((*target.faults(), *target.unregistered(package)))
             loose_frames |= dict.fromkeys(target.loose_frames)
             is_loose = is_loose or target.has_loose_declarations
     except OutOfBudget:
@@ -104,6 +107,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
         has_loose_declarations=is_loose,
         faults=tuple(faults),
         loose_frames=tuple(loose_frames),
+        texts=files.texts_with("package://"),
         cpp_files=files.read_paths,
     )
 
@@ -482,6 +486,25 @@ class _Target:
             self._unit, self._node_classes, is_program=is_program, is_read=is_read
         )
 
+    def unregistered(self, package: Package) -> Iterator[CodeFault]:
+        """Yield the components that CMakeLists.txt registers and no source does."""
+        target, setup = self._compiled.target, package.installation
+        is_read = target.is_certain and not self._compiled.unread
+        if setup is None or not is_read or "CLASS_LOADER_REGISTER_CLASS" in self._unit.uses:
+            return
+        registered: dict[str, Location] = {}
+        for file in self._unit.files:
+            registered |= file.found(_REGISTERED)
+        for component in target.components:
+            if component.plugin in registered:
+                continue
+            meant = closest(component.plugin, registered)
+            guess = f"; did you mean {meant!r}?" if meant is not None else ""
+            message = f"no source registers the component {component.plugin!r}{guess}"
+            related = registered[meant] if meant is not None else None
+            at, is_started = setup.location(component.at), bool(component.executable)
+            yield CodeFault("not registered", message, at, related, is_certain=is_started)
+
     def programs(self, package: Package) -> Iterator[NodeProgram]:
         """Yield the programs that the target is, and those of its components."""
         target = self._compiled.target
@@ -496,7 +519,7 @@ class _Target:
             if component.executable and setup is not None:
                 name = component.plugin.removeprefix("::")
                 found = [self._node(name)] if name in self._facts else []
-                at = setup.location(target.at)
+                at = setup.location(component.at)
                 yield NodeProgram(component.executable, tuple(found), at, "", "")
 
     def _started_by(self, created: _Created) -> NodeFacts:

@@ -123,6 +123,7 @@ _CodeRule = Literal[
     "destroyed at once",
     "no listener",
     "no rotation",
+    "not registered",
 ]
 
 
@@ -178,4 +179,5 @@ class PackageNodes(NamedTuple):
     has_more_faults: bool = False  # perhaps, in modules that are not searched
     # What a program publishes for which no node is known.
     loose_frames: tuple[NodeFrame, ...] = ()
+    texts: tuple[tuple[str, Location], ...] = ()  # in C++, those that name files of packages
     cpp_files: frozenset[str] = frozenset()  # the paths in the package of those that are read

@@ -106,6 +106,14 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
                 path = f"{SHARE}/{match[1]}/{match[2]}"
                 is_used = is_read and not _is_unused_property(workspace, source, match.start())
                 yield _NamedPath(package, path, source.at(match.start()), is_used)
+    for package in workspace.packages:
+        yield from _paths_in_cpp(workspace, package)
+
+
+def _paths_in_cpp(workspace: Workspace, package: Package) -> Iterator[_NamedPath]:
+    for text, at in workspace.nodes_by_package[package.name].texts:
+        for match in _PACKAGE.finditer(f"{text} "):
+            yield _NamedPath(package, f"{SHARE}/{match[1]}/{match[2]}", at, is_read=True)
 
 
 def _is_unused_property(workspace: Workspace, source: Source, at: int) -> bool:

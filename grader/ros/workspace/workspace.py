@@ -750,6 +750,7 @@ def _nodes_of(package: Package) -> PackageNodes:
         field_uses=(*found.field_uses, *compiled.field_uses),
         faults=(*found.faults, *compiled.faults),
         loose_frames=compiled.loose_frames,
+        texts=compiled.texts,
         cpp_files=compiled.cpp_files,
     )
 

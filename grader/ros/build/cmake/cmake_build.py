@@ -243,7 +243,7 @@ class Build:
         after = dict(pairwise(texts))
         name, library, plugin = after.get("EXECUTABLE", ""), texts[:1], after.get("PLUGIN")
         if isinstance(plugin, str) and library and isinstance(library[0], str):
-            component = CmakeComponent(plugin, name if isinstance(name, str) else "")
+            component = CmakeComponent(plugin, command.at, name if isinstance(name, str) else "")
             self.made.register(library[0], component)
         if isinstance(name, Unknown):
             self.give_up("the name of a program is not known", command.at)
@@ -257,7 +257,7 @@ class Build:
         library, *plugins = self.values.texts(command.arguments) or [""]
         for plugin in plugins:
             if isinstance(library, str) and isinstance(plugin, str):
-                self.made.register(library, CmakeComponent(plugin))
+                self.made.register(library, CmakeComponent(plugin, command.at))
 
     def add_sources(self, command: Command) -> None:
         """Add sources to a target."""
