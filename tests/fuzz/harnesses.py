@@ -67,6 +67,12 @@ HARNESSES: dict[str, Harness] = {
     "launch-xml": _launch("xml", "xml frontend"),
     "launch-yaml": _launch("yaml", "frontend yaml"),
     "cmake": _row(packages.cmake, "cmake", 4096, found=["submissions/**/CMakeLists.txt"]),
+    "cpp": _row(
+        packages.cpp,
+        "cpp",
+        3072,
+        found=["tests/labs/*/solution/**/*.cpp"],
+    ),
     "manifest": _row(packages.manifest, "xml manifest", 4096, found=["rubrics/**/package.xml"]),
     "rviz": _row(packages.rviz, "yaml rviz", 4096, found=["rubrics/**/*.rviz"]),
     "yaml": _row(

@@ -11,6 +11,8 @@ from grader.ros.build.setup_py import read_setup
 from grader.ros.config.rviz import read_rviz
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.launch.launch_file import read_launch
+from grader.ros.package.cpp_nodes import read_cpp_nodes
+from grader.ros.package.finding import read_packages
 from grader.ros.python.parse import Position, parse
 from tests.checks.submissions import file_of
 from tests.fuzz.harness import check_location, check_message, decoded
@@ -75,6 +77,36 @@ def cmake(data: bytes) -> None:
     assert {copy.source for copy in found.copies} <= {*tree.files}
     for at in (*(stop.at for stop in found.stops), *(unknown.at for unknown in found.unknown)):
         check_location(found.location(at), {"CMakeLists.txt": text})
+
+
+_CPP_CMAKE = (
+    b"project(my_robot)\nfind_package(ament_cmake REQUIRED)\nfind_package(rclcpp_components REQUIRED)\n"
+    b"add_executable(a src/a.cpp)\nadd_library(b src/a.cpp)\n"
+    b'rclcpp_components_register_node(b PLUGIN "A" EXECUTABLE c)\nament_package()\n'
+)
+_CPP_MANIFEST = b"<package format='3'><name>my_robot</name><export><build_type>ament_cmake</build_type></export></package>"
+
+
+def cpp(data: bytes) -> None:
+    """What the nodes in a C++ file declare and open has a place and a plain name; what is wrong has a message."""
+    files = {"package.xml": _CPP_MANIFEST, "CMakeLists.txt": _CPP_CMAKE, "src/a.cpp": data}
+    tree = make_tree("my_robot", [file_of(path, text) for path, text in files.items()], ())
+    [package] = read_packages(tree, "urdf/a.urdf")
+    found = read_cpp_nodes(package)
+    texts = {path: decoded(text) for path, text in files.items()}
+    for node in found.nodes:
+        check_location(node.location, texts)
+        places = [it.location for it in (*node.endpoints, *node.parameters, *node.timers)]
+        for place in (*places, *(it.location for it in (*node.doubts, *node.frames))):
+            check_location(place, texts)
+        for endpoint in node.endpoints:
+            assert endpoint.name is None or not endpoint.parts
+            assert endpoint.type is None or endpoint.type.count(".") == 2
+    for fault in found.faults:
+        check_message(fault.message)
+        check_location(fault.location, texts)
+    for program in found.programs:
+        check_location(program.location, texts)
 
 
 def manifest(data: bytes) -> None:

@@ -31,6 +31,8 @@ from grader.ros.python.values import Unknown
 
 _MAX_DEPTH = 25
 _MAX_MACRO = 300  # characters
+_MAX_TEXT, _MAX_PARTS = 2_000, 200  # characters of a joined text, and its parts
+_OF_USE = 5  # parts of a place where a name is written
 _DECLARATIONS = (
     "declaration",
     "parameter_declaration",
@@ -76,6 +78,14 @@ class _Write(NamedTuple):
     value: CppValue
 
 
+class _LocalVariable:
+    """A local variable of a function: where it is declared and written, and what changes it."""
+
+    def __init__(self, declared: Sequence[CppNode], uses: Sequence[CppNode]) -> None:
+        self.declared, self.uses = declared, uses
+        self.effects: list[tuple[CppNode, list[_Write] | Unknown]] | None = None
+
+
 class CppEvaluation:
     """Evaluates expressions of files that are compiled together. All work is charged."""
 
@@ -83,6 +93,9 @@ class CppEvaluation:
         self.unit, self._interface, self._budget = unit, interface, budget
         self._active: set[CppNode] = set()
         self._macros: dict[str, CppValue] = {}
+        self._declared: dict[CppNode, CppValue] = {}
+        self._members: dict[CppNode, list[_Write] | Unknown] = {}
+        self._locals: dict[tuple[str, CppNode], _LocalVariable | None] = {}
         self._depth = 0
 
     def value_of(self, node: CppNode | None) -> CppValue:
@@ -185,10 +198,9 @@ class CppEvaluation:
         """Return the value of a local variable, a member, a constant or a macro."""
         name, function = node.text, self.unit.function_around(node)
         if function is not None:
-            local = self._local_uses(name, function)
-            declared = [it for it in local if _declaration_of(it) is not None]
-            if declared:
-                return self._value_of_local(node, declared, local)
+            local = self._local_variable(name, function)
+            if local is not None:
+                return self._value_of_local(node, local)
         scopes = self.unit.scopes_of(function) if function is not None else ()
         variables = self.unit.variables_named(name, scopes)
         if variables:
@@ -219,37 +231,52 @@ class CppEvaluation:
             return self._value_of_variable(variables, node)
         return CppName(node.text, node)
 
-    def _local_uses(self, name: str, function: CppFunction) -> list[CppNode]:
-        """Return where a name is written in a function."""
-        node = function.node
-        uses = self.unit.uses.get(name, ())
-        self._budget.charge(1 + len(uses) // 8)
-        inside = [it for it in uses if it.file is node.file]
-        return [it for it in inside if node.start <= it.start < node.end]
+    def _local_variable(self, name: str, function: CppFunction) -> "_LocalVariable | None":
+        """Return the local variable or parameter of a function that has a name; None without."""
+        key = (name, function.node)
+        if key not in self._locals:
+            node = function.node
+            uses = [it for it in self.unit.uses.get(name, ()) if it.file is node.file]
+            inside = [it for it in uses if node.start <= it.start < node.end]
+            self._budget.charge(1 + len(uses) + _OF_USE * len(inside))
+            declared = [it for it in inside if _declaration_of(it) is not None]
+            self._locals[key] = _LocalVariable(declared, inside) if declared else None
+        return self._locals[key]
 
-    def _value_of_local(
-        self, node: CppNode, declared: Sequence[CppNode], uses: Sequence[CppNode]
-    ) -> CppValue:
-        if len(declared) > 1:
+    def _value_of_local(self, node: CppNode, local: "_LocalVariable") -> CppValue:
+        if len(local.declared) > 1:
             return not_known("the name is declared twice")
-        declaration = _declaration_of(declared[0])
+        name = local.declared[0]
+        declaration = _declaration_of(name)
         assert declaration is not None
         if declaration.kind in ("parameter_declaration", "optional_parameter_declaration"):
-            return CppName(node.text, declared[0])
-        values = dict(declared_in(declaration))
-        value = values.get(declared[0])
+            return CppName(node.text, name)
+        value = dict(declared_in(declaration)).get(name)
         if is_constant(declaration):
-            return self._value_declared(declaration, value)
+            return self._value_once(name, declaration, value)
         writes: list[_Write] = []
         if value is not None:
-            writes.append(_Write("declared", declared[0], self._value_declared(declaration, value)))
-        for use in uses:
-            if use is not declared[0] and use.start < node.start:
-                more = self._effect_of(use, declaration)
-                if isinstance(more, Unknown):
-                    return more
-                writes += more
+            writes.append(_Write("declared", name, self._value_once(name, declaration, value)))
+        if local.effects is None:
+            local.effects = [(name, not_known("it depends on itself"))]
+            effects = [
+                (it, self._effect_of(it, declaration)) for it in local.uses if it is not name
+            ]
+            local.effects = [(use, effect) for use, effect in effects if effect != []]
+        self._budget.charge(1 + len(local.effects))
+        for use, effect in local.effects:
+            if use.start < node.start:
+                if isinstance(effect, Unknown):
+                    return effect
+                writes += effect
         return _last(writes)
+
+    def _value_once(self, name: CppNode, declaration: CppNode, value: CppNode | None) -> CppValue:
+        """Return the value that a variable is declared with, which is evaluated once."""
+        if name not in self._declared:
+            self._declared[name] = not_known("it depends on itself")
+            self._declared[name] = self._value_declared(declaration, value)
+        return self._declared[name]
 
     def _value_declared(self, declaration: CppNode, value: CppNode | None) -> CppValue:
         """Return the value that a declaration gives its variable, maybe in parentheses."""
@@ -276,19 +303,28 @@ class CppEvaluation:
                 declaration = around
                 break
         if variable.is_constant:
-            return self._value_declared(declaration, variable.value)
+            return self._value_once(variable.declarator, declaration, variable.value)
+        if variable.declarator not in self._members:
+            self._members[variable.declarator] = not_known("it depends on itself")
+            self._members[variable.declarator] = self._writes_of(variable, declaration)
+        writes = self._members[variable.declarator]
+        return writes if isinstance(writes, Unknown) else self._value_written(writes, node)
+
+    def _writes_of(self, variable: CppVariable, declaration: CppNode) -> list[_Write] | Unknown:
+        """Return the values that a variable of a namespace or class gets."""
         writes: list[_Write] = []
         if variable.value is not None:
-            value = self._value_declared(declaration, variable.value)
+            value = self._value_once(variable.declarator, declaration, variable.value)
             writes.append(_Write("declared", variable.declarator, value))
         for use in self.unit.uses.get(variable.declarator.text, ()):
+            self._budget.charge(_OF_USE)
             if use is variable.declarator or self._is_of_another(use, variable):
                 continue
             more = self._effect_of(use, None)
             if isinstance(more, Unknown):
                 return more
             writes += more
-        return self._value_written(writes, node)
+        return writes
 
     def _is_of_another(self, use: CppNode, variable: CppVariable) -> bool:
         """Return whether a name certainly is another variable's: of another class, or a local."""
@@ -297,10 +333,9 @@ class CppEvaluation:
         function = self.unit.function_around(use)
         if function is None:
             return False
-        if use.kind == "identifier":
-            local = self._local_uses(use.text, function)
-            if any(_declaration_of(it) is not None for it in local):
-                return True
+        is_local = self._local_variable(use.text, function) is not None
+        if use.kind == "identifier" and is_local:
+            return True
         is_of_this = use.kind == "identifier" or _is_member_of_this(use)
         scopes = self.unit.scopes_of(function)
         found = self.unit.variables_named(use.text, scopes)
@@ -531,6 +566,9 @@ def _joined(values: Sequence[CppValue]) -> CppValue:
     parts: list[CppValue] = []
     for value in values:
         parts += value.parts if isinstance(value, CppSum) else [value]
+    size = sum(len(part) for part in parts if isinstance(part, str))
+    if size > _MAX_TEXT or len(parts) > _MAX_PARTS:
+        return not_known("the text is too long")
     if all(isinstance(part, str) for part in parts):
         return "".join(parts)
     return CppSum(parts)

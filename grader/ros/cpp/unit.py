@@ -1,6 +1,7 @@
 """The C++ files that are compiled into one program or library, and what their names mean."""
 
 import posixpath
+from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
@@ -13,9 +14,10 @@ from grader.ros.cpp.declarations import (
     CppVariable,
     plain_name,
 )
-from grader.ros.cpp.syntax import CppNode
+from grader.ros.cpp.syntax import CppNode, CppSyntax
 
 _MAX_ALIASES = 10  # in a row
+_MAX_OPENED = 20  # namespaces
 
 
 class CppUnit:
@@ -27,7 +29,8 @@ class CppUnit:
 
     def __init__(self, files: Sequence[CppFile]) -> None:
         self.files = tuple(files)
-        self.opened = tuple(dict.fromkeys(name for file in files for name in file.opened))
+        opened = dict.fromkeys(name for file in files for name in file.opened)
+        self.opened = tuple(opened)[:_MAX_OPENED]
 
     @cached_property
     def classes(self) -> Mapping[str, Sequence[CppClass]]:
@@ -44,8 +47,9 @@ class CppUnit:
         return tuple(function for file in self.files for function in file.functions)
 
     @cached_property
-    def _functions_by_node(self) -> Mapping[CppNode, CppFunction]:
-        return {function.node: function for function in self.functions}
+    def _functions_by_file(self) -> Mapping[CppSyntax, Sequence[CppFunction]]:
+        """The functions of each file, in their order; none is in another one."""
+        return {file.syntax: sorted(file.functions, key=_start) for file in self.files}
 
     @cached_property
     def variables(self) -> Mapping[str, Sequence[CppVariable]]:
@@ -155,10 +159,16 @@ class CppUnit:
 
     def function_around(self, node: CppNode) -> CppFunction | None:
         """Return the function that a place is in."""
-        for around in (node, *node.ancestors()):
-            if around in self._functions_by_node:
-                return self._functions_by_node[around]
+        functions = self._functions_by_file.get(node.file, ())
+        after = bisect_right(functions, node.start, key=_start)
+        function = functions[after - 1] if after else None
+        if function is not None and node.start < function.node.end:
+            return function
         return None
+
+
+def _start(function: CppFunction) -> int:
+    return function.node.start
 
 
 def is_conditional(node: CppNode, until: CppNode) -> bool:

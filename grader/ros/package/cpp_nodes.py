@@ -130,6 +130,8 @@ class _Target:
             self.doubts.append(Doubt("its sources are not known", self._start))
         self._facts: dict[str | CppNode, list[_Fact]] = {name: [] for name in self._node_classes}
         self._created = [*self._find_created()]
+        self._created_at = {created.node: created for created in self._created}
+        self._nodes: dict[str | CppNode, NodeFacts] = {}
         for created in self._created:
             if created.class_name in rclcpp_words("nodes"):
                 self._facts[created.node] = []
@@ -236,10 +238,10 @@ class _Target:
             name = self._unit.owner_of(function)
             return name if name in self._facts else None
         made = self._object_of(owner, function)
-        for created in self._created:
-            if created.node is made:
-                return made if made in self._facts else created.class_name
-        return None
+        created = self._created_at.get(made) if made is not None else None
+        if made is None or created is None:
+            return None
+        return made if made in self._facts else created.class_name
 
     def _object_of(self, node: CppNode, function: CppFunction) -> CppNode | None:
         """Return what makes the object that a local variable, which is set once, has."""
@@ -390,6 +392,12 @@ class _Target:
         return tuple(self._node(key) for key in self._facts)
 
     def _node(self, key: "str | CppNode") -> NodeFacts:
+        """Return the facts of a node, once all functions are read."""
+        if key not in self._nodes:
+            self._nodes[key] = self._make_node(key)
+        return self._nodes[key]
+
+    def _make_node(self, key: "str | CppNode") -> NodeFacts:
         endpoints: list[Endpoint] = []
         parameters: list[NodeParameter] = []
         timers: list[Timer] = []
@@ -425,11 +433,9 @@ class _Target:
 
     def _name_of_object(self, node: CppNode) -> str | None:
         """Return the name that a node of rclcpp's own class is given."""
-        for created in self._created:
-            if created.node is node and created.arguments:
-                name = self._evaluation.value_of(created.arguments[0])
-                return name if isinstance(name, str) else None
-        return None
+        arguments = self._created_at[node].arguments
+        name = self._evaluation.value_of(arguments[0]) if arguments else None
+        return name if isinstance(name, str) else None
 
     @cached_property
     def _names(self) -> Mapping[str, _Name]:
