@@ -49,7 +49,9 @@ def test_every_text_is_read(text: str) -> None:
         assert all(node.start <= start <= end <= node.end for start, end in ends)
     file = CppFile(syntax)
     count = text.count("\n") + 1
-    assert all(1 <= each.node.location.line <= count for each in (*file.classes, *file.functions))
+    places = [each.node.location for each in file.classes]
+    places += [each.node.location for each in file.functions]
+    assert all(1 <= place.line <= count for place in places)
     evaluated(f"{text}\nvoid g() {{ use(a); }}", "void h() { use(1); }")
 
 

@@ -96,8 +96,11 @@ def cpp(data: bytes) -> None:
     texts = {path: decoded(text) for path, text in files.items()}
     for node in found.nodes:
         check_location(node.location, texts)
-        places = [it.location for it in (*node.endpoints, *node.parameters, *node.timers)]
-        for place in (*places, *(it.location for it in (*node.doubts, *node.frames))):
+        places = [it.location for it in node.endpoints]
+        places += [it.location for it in node.parameters]
+        places += [it.location for it in node.doubts]
+        places += [it.location for it in node.frames]
+        for place in places:
             check_location(place, texts)
         for endpoint in node.endpoints:
             assert endpoint.name is None or not endpoint.parts
