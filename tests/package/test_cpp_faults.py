@@ -185,3 +185,40 @@ NOT_WAITING = [
 def test_waiting_elsewhere(statement: str, constructor: str) -> None:
     """Outside of callbacks, for a while, or with other threads a node may wait."""
     assert faults_of(constructor, _WAIT.format(statement)) == []
+
+
+_COMPONENT = 'rclcpp_components_register_node(talk PLUGIN "hub::Talker" EXECUTABLE talker)'
+_OTHER = 'rclcpp_components_register_nodes(talk "hub::Talker")'
+_REGISTERED = "RCLCPP_COMPONENTS_REGISTER_NODE({})"
+
+
+def _registered(text: str, command: str = _COMPONENT) -> list[tuple[str, bool]]:
+    cmake = (
+        "project(hub)\nfind_package(ament_cmake REQUIRED)\nfind_package(rclcpp_components REQUIRED)\n"
+        f"add_library(talk SHARED src/talk.cpp)\n{command}\nament_package()\n"
+    )
+    return [(fault.message, fault.is_certain) for fault in nodes_of(text, cmake).faults]
+
+
+def test_components_that_no_source_registers() -> None:
+    """The program of a component certainly stops; a container may never load it."""
+    message = "no source registers the component 'hub::Talker'"
+    assert _registered("int a;") == [(message, True)]
+    assert _registered("int a;", _OTHER) == [(message, False)]
+    meant = f"{message}; did you mean 'hub::Talkr'?"
+    assert _registered(_REGISTERED.format("hub::Talkr")) == [(meant, True)]
+    assert _registered(f"// {_REGISTERED.format('hub::Talker')}") == [(message, True)]
+
+
+REGISTERED = [
+    _REGISTERED.format("hub::Talker"),
+    f"#include <a.hpp>\n{_REGISTERED.format(' hub::Talker ')}\n",
+    f"#if A\n{_REGISTERED.format('hub::Talker')}\n#endif\n",
+    "CLASS_LOADER_REGISTER_CLASS(rclcpp_components::NodeFactoryTemplate<hub::Talker>, rclcpp_components::NodeFactory)",
+]
+
+
+@pytest.mark.parametrize("text", REGISTERED)
+def test_components_that_a_source_may_register(text: str) -> None:
+    """Also under a condition, or by the macro of class_loader."""
+    assert _registered(text) == []

@@ -78,6 +78,10 @@ def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
         yield Problem(kinds.SETUP_UNKNOWN, message, setup.location(unknown.at))
     if not setup.is_cmake:
         yield from _naming_problems(package, setup)
+    elif setup.targets:
+        from grader.ros.package.cmake_problems import cmake_problems  # late: few packages have C++
+
+        yield from cmake_problems(package, setup)
 
 
 def _naming_problems(package: Package, setup: Installation) -> Iterator[Problem]:

@@ -1,0 +1,61 @@
+"""What CMakeLists.txt does not do with the C++ files of a package: compile them, install them."""
+
+import re
+from collections.abc import Iterator
+
+from grader.base.problems import Problem
+from grader.base.source import Location
+from grader.ros.build import package_problems as kinds
+from grader.ros.build.installation import CmakeTarget, Installation
+from grader.ros.package.package import Package
+
+_SOURCES = (".cpp", ".cc", ".cxx")
+_MAX_BYTES = 256 * 1024
+_MAX_FILES = 50
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_PROGRAM = re.compile(r"\bint\s+main\s*\(|^\s*RCLCPP_COMPONENTS_REGISTER_NODE\b", re.MULTILINE)
+_OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|_test\.")
+
+
+def cmake_problems(package: Package, setup: Installation) -> Iterator[Problem]:
+    """Yield programs that no target compiles, and targets that no install() names; nothing where a
+    part of CMakeLists.txt is not known.
+    """
+    is_known = setup.doubt is None and not setup.unknown and not setup.stops
+    if not is_known or not all(target.is_certain for target in setup.targets):
+        return
+    for target in setup.targets:
+        is_of_tests = any(_OF_TESTS.search(path) for path in target.sources)
+        if not target.is_installed and target.sources and not is_of_tests:
+            yield from _not_installed(package, setup, target)
+    yield from _not_compiled(package, setup)
+
+
+def _not_installed(package: Package, setup: Installation, target: CmakeTarget) -> Iterator[Problem]:
+    at = setup.location(target.at)
+    is_ros = any("rclcpp" in _text_of(package, path) for path in target.sources[:_MAX_FILES])
+    message = f"no install() names the target {target.name!r}, so "
+    if target.kind == "executable" and is_ros:
+        yield Problem(kinds.NOT_INSTALLED, f"{message}ros2 run does not find it", at)
+    elif target.components:
+        yield Problem(kinds.NOT_INSTALLED, f"{message}nothing can load its components", at)
+
+
+def _not_compiled(package: Package, setup: Installation) -> Iterator[Problem]:
+    compiled = {path for target in setup.targets for path in target.sources}
+    paths = [path for path in package.tree.files if path.endswith(_SOURCES)]
+    unread = ("test/", *package.inner)
+    others = [path for path in paths if path not in compiled and not path.startswith(unread)]
+    for path in others[:_MAX_FILES]:
+        text = _text_of(package, path)
+        if "rclcpp" in text and _PROGRAM.search(text) and not _OF_TESTS.search(path):
+            message = f"no target of CMakeLists.txt compiles {path}"
+            yield Problem(kinds.NOT_COMPILED, message, Location(package.path(path), 1, 1))
+
+
+def _text_of(package: Package, path: str) -> str:
+    """Return the text of a file without comments; empty for one that is not read."""
+    data = package.tree.read(path, _MAX_BYTES)
+    if data is None or not package.budget.take_of_whole(len(data) // 16):
+        return ""
+    return _COMMENT.sub("", data.decode("utf-8", "replace"))

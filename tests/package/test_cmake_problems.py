@@ -1,0 +1,78 @@
+"""What CMakeLists.txt does not compile or install is a warning, where all of it is known."""
+
+import pytest
+
+from grader.files.tree import make_tree, overlaid
+from grader.ros.package.finding import read_packages
+from grader.ros.package.found_problems import build_problems
+
+_HEAD = "cmake_minimum_required(VERSION 3.8)\nproject(hub)\nfind_package(ament_cmake REQUIRED)\nfind_package(rclcpp_components REQUIRED)\n"
+_NODE = "#include <rclcpp/rclcpp.hpp>\nint main() {}\n"
+_PART = "#include <rclcpp/rclcpp.hpp>\nRCLCPP_COMPONENTS_REGISTER_NODE(Part)\n"
+_BUILT = "add_executable(talk src/talk.cpp)\ninstall(TARGETS talk DESTINATION lib/hub)\n"
+_LIBRARY = 'add_library(part SHARED src/part.cpp)\nrclcpp_components_register_node(part PLUGIN "Part" EXECUTABLE p)\n'
+
+
+def problems(commands: str, **sources: str) -> list[tuple[str, str]]:
+    """Return the problems of CMakeLists.txt in a package with these sources."""
+    manifest = "<package format='3'><name>hub</name><export><build_type>ament_cmake</build_type></export></package>"
+    texts = {
+        "package.xml": manifest,
+        "CMakeLists.txt": f"{_HEAD}{commands}ament_package()\n",
+        **{f"src/{name}.cpp": text for name, text in sources.items()},
+    }
+    files = {f"ws/hub/{path}": text.encode() for path, text in texts.items()}
+    [package] = read_packages(overlaid(make_tree("work", (), ()), files), "urdf/hub.urdf")
+    found = [(it.code, it.message) for it in build_problems(package)]
+    return [each for each in found if each[0] in ("PKG019", "PKG020")]
+
+
+def test_a_source_without_target() -> None:
+    """A file with a main() or a component that no target lists."""
+    assert problems(_BUILT, talk=_NODE) == []
+    message = "no target of CMakeLists.txt compiles src/walk.cpp"
+    assert problems(_BUILT, talk=_NODE, walk=_NODE) == [("PKG019", message)]
+    assert problems(_BUILT, talk=_NODE, walk=_PART) == [("PKG019", message)]
+
+
+NO_PROGRAMS = [
+    "#include <rclcpp/rclcpp.hpp>\nvoid help() {}\n",
+    "int main() {}\n",
+    "// #include <rclcpp/rclcpp.hpp>\nint main() {}\n",
+    "#include <rclcpp/rclcpp.hpp>\n// int main() {}\n",
+]
+
+
+@pytest.mark.parametrize("text", NO_PROGRAMS)
+def test_sources_that_are_no_programs(text: str) -> None:
+    """A file without a main(), or that has nothing to do with ROS 2, may be included or left."""
+    assert problems(_BUILT, talk=_NODE, other=text) == []
+
+
+def test_a_target_that_is_not_installed() -> None:
+    """ros2 run does not find an executable, nor a container a library."""
+    missing = "no install() names the target 'talk', so ros2 run does not find it"
+    assert problems("add_executable(talk src/talk.cpp)\n", talk=_NODE) == [("PKG020", missing)]
+    assert problems("add_executable(talk src/talk.cpp)\n", talk="int main() {}") == []
+    missing = "no install() names the target 'part', so nothing can load its components"
+    assert problems(_LIBRARY, part=_PART) == [("PKG020", missing)]
+    assert problems(f"{_LIBRARY}install(TARGETS part DESTINATION lib)\n", part=_PART) == []
+    assert problems("add_library(part SHARED src/part.cpp)\n", part=_PART) == []
+
+
+UNKNOWN = [
+    "if(UNSEEN_FOUND)\nadd_executable(talk src/talk.cpp)\nendif()\n",
+    "add_executable(talk ${unseen_FILES} src/talk.cpp)\nfind_package(unseen REQUIRED)\nmine()\n",
+    "add_executable(talk src/talk.cpp)\ninstall(TARGETS ${rclcpp_components_TARGETS} DESTINATION lib/hub)\n",
+]
+
+
+@pytest.mark.parametrize("commands", UNKNOWN)
+def test_what_is_not_known(commands: str) -> None:
+    """Nothing is said where a command or a value is not known."""
+    assert problems(commands, talk=_NODE, walk=_NODE) == []
+
+
+def test_targets_of_tests() -> None:
+    """Programs of tests need no installation."""
+    assert problems("add_executable(test_talk src/test_talk.cpp)\n", test_talk=_NODE) == []
