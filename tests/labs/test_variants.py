@@ -14,7 +14,6 @@ FAMILIES = {
     *("files", "frames", "controllers", "parameters", "arguments"),
     *("programs", "topics", "dependencies", "value", "structure"),
     *("services", "interfaces", "code"),
-    *("programs", "topics", "services", "code", "dependencies", "value", "structure"),
 }
 KEYS = (
     {"file", "old", "new"},

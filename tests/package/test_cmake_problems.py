@@ -24,7 +24,7 @@ def problems(commands: str, **sources: str) -> list[tuple[str, str]]:
     files = {f"ws/hub/{path}": text.encode() for path, text in texts.items()}
     [package] = read_packages(overlaid(make_tree("work", (), ()), files), "urdf/hub.urdf")
     found = [(it.code, it.message) for it in build_problems(package)]
-    return [each for each in found if each[0] in ("PKG019", "PKG020")]
+    return [each for each in found if each[0] in ("PKG019", "PKG020", "PKG021")]
 
 
 def test_a_source_without_target() -> None:
@@ -76,3 +76,32 @@ def test_what_is_not_known(commands: str) -> None:
 def test_targets_of_tests() -> None:
     """Programs of tests need no installation."""
     assert problems("add_executable(test_talk src/test_talk.cpp)\n", test_talk=_NODE) == []
+
+
+_FOUND = "find_package(rclcpp REQUIRED)\nfind_package(std_msgs REQUIRED)\nfind_package(tf2_ros REQUIRED)\n"
+_INCLUDING = f"#include <std_msgs/msg/bool.hpp>\n{_NODE}"
+
+
+def test_a_package_that_a_target_does_not_depend_on() -> None:
+    """The headers of a package are found by targets that depend on it, also by way of others."""
+    head = f"{_FOUND}{_BUILT}ament_target_dependencies(talk"
+    message = "src/talk.cpp includes headers of std_msgs, but the target 'talk' does not depend on it: see ament_target_dependencies()"
+    assert problems(f"{head} rclcpp)\n", talk=_INCLUDING) == [("PKG021", message)]
+    assert problems(f"{head} rclcpp std_msgs)\n", talk=_INCLUDING) == []
+    assert (
+        problems(f"{head} rclcpp sensor_msgs)\nfind_package(sensor_msgs)\n", talk=_INCLUDING) == []
+    )
+
+
+DEPENDING = [
+    "ament_target_dependencies(talk rclcpp)\\ninclude_directories(${std_msgs_INCLUDE_DIRS})\n",
+    "target_link_libraries(talk std_msgs::std_msgs)\n",
+    "find_package(unseen REQUIRED)\nament_target_dependencies(talk rclcpp unseen)\n",
+    "",
+]
+
+
+@pytest.mark.parametrize("commands", DEPENDING)
+def test_dependencies_that_are_not_known(commands: str) -> None:
+    """What else is linked may bring the headers; without ament_target_dependencies() nothing is said."""
+    assert problems(f"{_FOUND}{_BUILT}{commands}", talk=_INCLUDING) == []

@@ -32,6 +32,7 @@ IGNORED_ARGUMENT = _kind("PKG017", "warning", "Argument that setup() does not ha
 OF_ROS1 = _kind("PKG018", "note", "Package or launch files of ROS 1")
 NOT_COMPILED = _kind("PKG019", "warning", "C++ file that no target compiles")
 NOT_INSTALLED = _kind("PKG020", "warning", "Target of CMakeLists.txt that is not installed")
+NOT_LINKED = _kind("PKG021", "warning", "Package that a target includes and does not depend on")
 NO_LAUNCH_FILES = _kind("PKG022", "warning", "Launch files that no build installs")
 LAUNCH_SYNTAX = _kind("LCH001", "error", "Unreadable launch file")
 LAUNCH_FAULT = _kind("LCH002", "error", "Error that stops a launch file")

@@ -7,6 +7,7 @@ from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.ros.build import package_problems as kinds
 from grader.ros.build.installation import CmakeTarget, Installation
+from grader.ros.known.known import cmake_table
 from grader.ros.package.package import Package
 
 _SOURCES = (".cpp", ".cc", ".cxx")
@@ -14,12 +15,15 @@ _MAX_BYTES = 256 * 1024
 _MAX_FILES = 50
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _PROGRAM = re.compile(r"\bint\s+main\s*\(|^\s*RCLCPP_COMPONENTS_REGISTER_NODE\b", re.MULTILINE)
+_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[\"<](\w+)/", re.MULTILINE)
+# Other ways to find headers: of all packages, or by their folders.
+_OTHER_WAYS = ("ament_auto", "_INCLUDE_DIR", "link_libraries(")
 _OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|_test\.")
 
 
 def cmake_problems(package: Package, setup: Installation) -> Iterator[Problem]:
-    """Yield programs that no target compiles, and targets that no install() names; nothing where a
-    part of CMakeLists.txt is not known.
+    """Yield programs that no target compiles, targets that no install() names, and packages that a
+    target needs; nothing where a part of CMakeLists.txt is not known.
     """
     is_known = setup.doubt is None and not setup.unknown and not setup.stops
     if not is_known or not all(target.is_certain for target in setup.targets):
@@ -28,6 +32,8 @@ def cmake_problems(package: Package, setup: Installation) -> Iterator[Problem]:
         is_of_tests = any(_OF_TESTS.search(path) for path in target.sources)
         if not target.is_installed and target.sources and not is_of_tests:
             yield from _not_installed(package, setup, target)
+        if not target.links and not is_of_tests:
+            yield from _not_linked(package, setup, target)
     yield from _not_compiled(package, setup)
 
 
@@ -39,6 +45,34 @@ def _not_installed(package: Package, setup: Installation, target: CmakeTarget) -
         yield Problem(kinds.NOT_INSTALLED, f"{message}ros2 run does not find it", at)
     elif target.components:
         yield Problem(kinds.NOT_INSTALLED, f"{message}nothing can load its components", at)
+
+
+def _not_linked(package: Package, setup: Installation, target: CmakeTarget) -> Iterator[Problem]:
+    """Yield packages whose headers a target includes, and that neither ament_target_dependencies()
+    names nor what it names exports.
+    """
+    exports = cmake_table("exports")
+    if any(word in setup.source.text for word in _OTHER_WAYS):
+        return
+    if not target.packages or not {*target.packages} <= exports.keys():
+        return
+    pending, reached = [*target.packages], set[str]()
+    while pending:
+        name = pending.pop()
+        if name not in reached:
+            reached.add(name)
+            pending += str(exports.get(name, "")).split()
+    included: dict[str, str] = {}
+    for path in target.sources[:_MAX_FILES]:
+        for name in _INCLUDE.findall(_text_of(package, path)):
+            included.setdefault(name, path)
+    for name, path in included.items():
+        if name in exports and name not in reached and name != package.name:
+            message = (
+                f"{path} includes headers of {name}, but the target {target.name!r} does not "
+                f"depend on it: see ament_target_dependencies()"
+            )
+            yield Problem(kinds.NOT_LINKED, message, setup.location(target.at))
 
 
 def _not_compiled(package: Package, setup: Installation) -> Iterator[Problem]:

@@ -51,7 +51,7 @@ def cpp_faults(
         is_program: Whether they are all that a program is made of.
         is_read: Whether all of them are read as a whole.
     """
-    search = _Search(unit, nodes)
+    search = _CppSearch(unit, nodes)
     rules = [search.destroyed(), search.without_rotation(), search.waiting()]
     if is_read:
         rules.append(search.without_listener())
@@ -63,7 +63,7 @@ def cpp_faults(
                 yield fault
 
 
-class _Search:
+class _CppSearch:
     """Searches faults in the files of a target."""
 
     def __init__(self, unit: CppUnit, nodes: Collection[str]) -> None:
@@ -140,8 +140,10 @@ class _Search:
                     parts = found.setdefault(match[1], {})
                     parts.setdefault(match[2], []).append(right)
             for path, parts in found.items():
-                zeros = [it for values in parts.values() for it in values if _is_zero(it)]
-                is_zero = len(parts) == 4 and len(zeros) == 4 == sum(map(len, parts.values()))
+                written = [it for values in parts.values() for it in values]
+                numbers = [it for it in written if it.kind == "number_literal"]
+                zeros = [it for it in numbers if _ZERO.fullmatch(it.text)]
+                is_zero = len(parts) == len(zeros) == len(written) == 4
                 if is_zero and self._is_only_sent(path, function):
                     message = "the rotation 0 0 0 0 turns nothing: tf2 ignores the transform"
                     yield CodeFault("no rotation", message, zeros[-1].location)
@@ -280,10 +282,6 @@ def _may_wait(function: CppFunction, unit: CppUnit) -> bool:
         return True
     calls = [it for it in unit.calls_in(function) if it.kind == "call_expression"]
     return any(_SPINNING.search(called_name(call).rpartition("::")[2]) for call in calls)
-
-
-def _is_zero(node: CppNode) -> bool:
-    return node.kind == "number_literal" and _ZERO.fullmatch(node.text) is not None
 
 
 def _outermost_member(node: CppNode) -> CppNode:
