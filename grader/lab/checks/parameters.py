@@ -2,7 +2,6 @@
 the robot.
 """
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import dist
 from typing import Any, Literal
@@ -24,7 +23,6 @@ from grader.ros.workspace.workspace import Workspace
 
 _Measure = Literal["radius", "length", "distance", "lower", "upper", "velocity", "effort"]
 _EXACT = 1e-6
-_OF_CPP = (".cpp", ".cc", ".cxx", ".hpp", ".h")
 _DIGITS = 6  # after the point, as a measure has rounding errors
 
 
@@ -124,7 +122,6 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
     """
     workspace = submission.workspace
     given = workspace.parameter_owners.get(node, [])
-    given = given or [workspace.parameters_given(*it) for it in _named_in_cpp(workspace, node)]
     values = [found.values[parameter] for found in given if parameter in found.values]
     if len({repr(it.value) for it in values}) == 1 and len(values) == len(given):
         return values[0]
@@ -158,8 +155,8 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
 
 
 def _nameless(workspace: Workspace) -> list[tuple[Package, StartedNode]]:
-    """Return the own nodes whose names neither the launch file nor a program in Python gives, with
-    their packages.
+    """Return the own nodes whose names neither the launch file nor their programs give, with their
+    packages.
     """
     found = []
     for _, node in workspace.nodes:
@@ -167,15 +164,6 @@ def _nameless(workspace: Workspace) -> list[tuple[Package, StartedNode]]:
         if package is not None and workspace.name_of(node) is None:
             found.append((package, node))
     return found
-
-
-def _named_in_cpp(workspace: Workspace, name: str) -> Iterator[tuple[Package, StartedNode]]:
-    """Yield the nodes that only the sources of their packages in C++ give this name."""
-    written = re.compile(rf'\bNode>?\s*[({{]\s*"{re.escape(name)}"')
-    for package, node in _nameless(workspace):
-        sources = workspace.sources_of(package, _OF_CPP)
-        if any(written.search(source.text) for source in sources):
-            yield package, node._replace(node_name=name)
 
 
 def _equal(actual: Any, wanted: Any, tolerance: float) -> bool:

@@ -288,6 +288,9 @@ def _given(
 ) -> Iterator[Fact]:
     """Yield the parameters that a node of the workspace is given."""
     owner = f"{node.package}/{node.executable}"
+    if workspace.name_of(node) is None and any(it.path for it in node.parameters or ()):
+        yield Undecided("parameters", f"the name of {node.executable} is computed")
+        return
     given = workspace.read_given(package, node, own_node.name or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
