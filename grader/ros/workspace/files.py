@@ -4,7 +4,7 @@ there.
 
 import posixpath
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from grader.base.names import closest, near
@@ -45,8 +45,18 @@ _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
 
 def file_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the paths at which a build of the workspace installs no file."""
+    yield from _faults_of(workspace, _named_paths(workspace))
+    yield from _map_images(workspace)
+    yield from _models(workspace)
+    # Last: reading C++ takes work that the others need where little is left.
+    for package in workspace.packages:
+        yield from _faults_of(workspace, _paths_in_cpp(workspace, package))
+
+
+def _faults_of(workspace: Workspace, every: Iterable["_NamedPath"]) -> Iterator[Fact]:
+    """Yield the paths that are compared, and then what is wrong with them."""
     found: dict[tuple[str, Location], _NamedPath] = {}
-    for named in _named_paths(workspace):
+    for named in every:
         yield Compared("files", posixpath.normpath(named.path).removeprefix(f"{PREFIX}/"))
         first = found.setdefault((named.path, named.location), named)
         if named.is_needed:
@@ -57,8 +67,6 @@ def file_facts(workspace: Workspace) -> Iterator[Fact]:
                 yield fact._replace(is_certain=False)
             else:
                 yield fact
-    yield from _map_images(workspace)
-    yield from _models(workspace)
 
 
 class _NamedPath(NamedTuple):
@@ -106,8 +114,6 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
                 path = f"{SHARE}/{match[1]}/{match[2]}"
                 is_used = is_read and not _is_unused_property(workspace, source, match.start())
                 yield _NamedPath(package, path, source.at(match.start()), is_used)
-    for package in workspace.packages:
-        yield from _paths_in_cpp(workspace, package)
 
 
 def _paths_in_cpp(workspace: Workspace, package: Package) -> Iterator[_NamedPath]:
