@@ -146,6 +146,14 @@ def path_of(frame: str) -> str:
     return str(PurePath(FOLDERS.get(ending, ""), file))
 
 
+# The files of a package that CMake builds.
+COMPILED = {
+    "package.xml": PACKAGE["package.xml"].replace("ament_python", "ament_cmake"),
+    "src/driver.cpp": "#include <rclcpp/rclcpp.hpp>\n#include <sensor_msgs/msg/imu.hpp>\nint main() {}\n",
+    "src/teleop.cpp": "#include <rclcpp/rclcpp.hpp>\nint main() {}\n",
+}
+
+
 def files_of(name: str, side: str) -> tuple[dict[str, bytes], range]:
     """Return the files of a submission with one side of an example, its own file first, and the lines of the example there."""
     text, lines = framed(name, ENTRIES[name][side])
@@ -162,7 +170,8 @@ def files_of(name: str, side: str) -> tuple[dict[str, bytes], range]:
     path = path_of(file)
     beside = {path_of(frame): FRAMES[name][frame] for frame in ENTRIES[name].get("beside", ())}
     programs = [PurePath(it).stem for it in (*beside, path) if PurePath(it).parent.name == "rover"]
-    others = PACKAGE | (started(programs) if programs else {}) | beside
+    package = COMPILED if path == "CMakeLists.txt" else PACKAGE
+    others = package | (started(programs) if programs else {}) | beside
     if path.startswith("urdf/"):
         others = {it: text for it, text in others.items() if not it.startswith("urdf/")}
         others["urdf/wheel.xacro"] = WHEEL

@@ -4,7 +4,6 @@ import re
 from collections.abc import Iterator
 
 from grader.base.problems import Problem
-from grader.base.source import Location
 from grader.ros.build import package_problems as kinds
 from grader.ros.build.installation import CmakeTarget, Installation
 from grader.ros.known.known import cmake_table
@@ -84,7 +83,7 @@ def _not_compiled(package: Package, setup: Installation) -> Iterator[Problem]:
         text = _text_of(package, path)
         if "rclcpp" in text and _PROGRAM.search(text) and not _OF_TESTS.search(path):
             message = f"no target of CMakeLists.txt compiles {path}"
-            yield Problem(kinds.NOT_COMPILED, message, Location(package.path(path), 1, 1))
+            yield Problem(kinds.NOT_COMPILED, message, setup.location(setup.targets[-1].at))
 
 
 def _text_of(package: Package, path: str) -> str:
