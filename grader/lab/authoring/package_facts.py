@@ -219,21 +219,36 @@ def name_facts(submission: Submission) -> Facts:
     for family in (it for it in FAMILIES if it in found.families):
         fact = _package_fact("names_agree", family, of=family)
         carried = (unbuilt,) if family in _OF_BUILDS else ()
-        odd = _odd(wrong_names(submission.workspace, family, submission.lab_packages.values()))
+        if family == "values":
+            carried = (unbuilt._replace(causes=_measured_words(submission)),)
+        odd = _odd(
+            family, wrong_names(submission.workspace, family, submission.lab_packages.values())
+        )
         yield odd or fact._replace(about=_THE_NAMES, title=_NAME_TITLES[family], carried=carried)
 
 
-def _odd(mismatches: Sequence[Mismatch]) -> Omission | None:
+def _measured_words(submission: Submission) -> tuple[str, ...]:
+    """Return the words of the parameters that may be measures of the robot, each of which is a fact
+    of its own.
+    """
+    words = []
+    for node, name, _ in _given(submission):
+        if _sizes_meant(name, ()) is not None:
+            words.append(f"{node} {name} parameter_is")
+    return tuple(words)
+
+
+def _odd(family: Family, mismatches: Sequence[Mismatch]) -> Omission | None:
     """Return what certainly does not agree in a family, in one line; None if nothing does not."""
     wrong = {it.message: it for it in mismatches}
     if not wrong:
         return None
     first = mismatches[0]
-    text, noun = _ODD[first.family]
+    text, noun = _ODD[family]
     more = (
         f"{text.format(counted(len(wrong), noun))}: {first.location.file_and_line}: {first.message}"
     )
-    return Omission(f"{first.family} names_agree", more)
+    return Omission(f"{family} names_agree", more)
 
 
 def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:

@@ -5,7 +5,7 @@ from grader.base.text import enumerated, first_lines
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.submission.submission import Submission
-from grader.ros.workspace.names import GradedFamily
+from grader.ros.workspace.names import Family
 
 ABOUT = {
     "names_agree": About(
@@ -18,7 +18,7 @@ ABOUT = {
 _MAX_IN_MESSAGE = 3  # mistakes, and places of each
 
 
-def names_agree(submission: Submission, *, of: GradedFamily) -> Outcome:
+def names_agree(submission: Submission, *, of: Family) -> Outcome:
     """The names that files of the packages use are defined: files, frames, parameters, programs and
     so on.
 

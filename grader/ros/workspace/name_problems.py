@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from grader.base.problems import Kind, Problem, kinds_in
-from grader.ros.workspace.names import Agreement, Family
+from grader.ros.workspace.names import Agreement, AnyFamily
 
 _error = partial(Kind, severity="error", effect="other")
 _warning = partial(Kind, severity="warning", effect="other")
@@ -36,7 +36,7 @@ _NO_COMPANION = _warning("REF021", "Node that does not fit the others")
 _ONE_MACHINE = _warning("REF022", "What only one machine has")
 UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
 
-_KINDS: Mapping[Family, Kind] = {
+_KINDS: Mapping[AnyFamily, Kind] = {
     "files": _NO_FILE,
     "frames": _NO_FRAME,
     "controllers": _NO_CONTROLLER,
@@ -54,7 +54,7 @@ _KINDS: Mapping[Family, Kind] = {
     "machine": _ONE_MACHINE,
 }
 # Of what is not certain; of other families it is a similar name.
-_UNCERTAIN: Mapping[Family, Kind] = {
+_UNCERTAIN: Mapping[AnyFamily, Kind] = {
     "code": _MAY_WAIT,
     "values": _OTHER_VALUE,
     "transforms": _OTHER_TRANSFORM,

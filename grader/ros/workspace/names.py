@@ -10,7 +10,7 @@ from grader.base.names import are_of_one_side, closest, near
 from grader.base.source import Location
 from grader.base.text import counted, quoted
 
-GradedFamily = Literal[
+Family = Literal[
     "files",
     "frames",
     "controllers",
@@ -25,8 +25,8 @@ GradedFamily = Literal[
     "values",
     "transforms",
 ]
-FAMILIES: tuple[GradedFamily, ...] = get_args(GradedFamily)
-Family = GradedFamily | Literal["wiring", "machine"]  # of these two, nothing is certain
+FAMILIES: tuple[Family, ...] = get_args(Family)
+AnyFamily = Family | Literal["wiring", "machine"]  # of these two, nothing is certain
 _Kind = Literal[
     "frame",
     "link",
@@ -42,7 +42,7 @@ _Kind = Literal[
     "topic",
     "Gazebo topic",
 ]
-FAMILY_OF: Mapping[_Kind, Family] = {
+FAMILY_OF: Mapping[_Kind, AnyFamily] = {
     **dict.fromkeys(("frame", "link", "joint", "group"), "frames"),
     **dict.fromkeys(("controller", "interface"), "controllers"),
     **dict.fromkeys(("plugin section", "parameter"), "parameters"),
@@ -111,7 +111,7 @@ class Mismatch(NamedTuple):
     fails at run time.
     """
 
-    family: Family
+    family: AnyFamily
     message: str
     location: Location
     related: Location | None = None  # of what was meant
@@ -126,14 +126,14 @@ class Mismatch(NamedTuple):
 class Compared(NamedTuple):
     """That something of a family is there to be compared; of a file its path below the prefix."""
 
-    family: Family
+    family: AnyFamily
     name: str = ""
 
 
 class Undecided(NamedTuple):
     """That the names of a family are not compared, and why."""
 
-    family: Family
+    family: AnyFamily
     reason: str
 
 
@@ -142,7 +142,7 @@ class Counted(NamedTuple):
     names are known.
     """
 
-    family: Family
+    family: AnyFamily
     compared: int
     total: int
     reason: str = ""  # empty where all names are known
@@ -162,13 +162,13 @@ class Agreement(NamedTuple):
     """What does not agree in a workspace, and for each family why something is not known."""
 
     mismatches: tuple[Mismatch, ...]
-    undecided: Mapping[Family, str]
-    families: frozenset[Family]  # of which something is compared
+    undecided: Mapping[AnyFamily, str]
+    families: frozenset[AnyFamily]  # of which something is compared
     files: frozenset[str]  # the paths below the prefix at which files are looked for
-    counts: Mapping[Family, Counted]
+    counts: Mapping[AnyFamily, Counted]
     unused: tuple[Location, ...] = ()  # the files that no other one names
 
-    def holds(self, family: Family) -> bool:
+    def holds(self, family: AnyFamily) -> bool:
         """Return whether something of a family is compared, and all of it certainly agrees."""
         is_wrong = any(it.family == family and it.is_certain for it in self.mismatches)
         return family in self.families and family not in self.undecided and not is_wrong
@@ -200,7 +200,7 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
     found = [fact for fact in every if isinstance(fact, Mismatch)]
     counts = {fact.family: fact for fact in every if isinstance(fact, Counted)}
     undecided = _undecided(every, counts.values())
-    compared: set[Family] = set()
+    compared: set[AnyFamily] = set()
     for use in [fact for fact in every if isinstance(fact, Use)]:
         key = use.kind, use.owner
         is_defined = use.name in known.get(key, {})
@@ -243,9 +243,9 @@ def cost_of_guess(known: int) -> int:
     return 3 * min(known, _MAX_NEAR) + 20 * min(known, _MAX_SIMILAR)
 
 
-def _undecided(facts: Sequence[Fact], counts: Iterable[Counted]) -> dict[Family, str]:
+def _undecided(facts: Sequence[Fact], counts: Iterable[Counted]) -> dict[AnyFamily, str]:
     """Return the families whose names are not compared, and why: the first reason of each."""
-    undecided: dict[Family, str] = {
+    undecided: dict[AnyFamily, str] = {
         fact.family: fact.reason for fact in reversed(facts) if isinstance(fact, Undecided)
     }
     for count in counts:

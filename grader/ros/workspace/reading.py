@@ -22,9 +22,9 @@ from grader.ros.workspace.moveit import moveit_facts
 from grader.ros.workspace.names import (
     FAMILY_OF,
     Agreement,
+    AnyFamily,
     Definition,
     Fact,
-    Family,
     Mismatch,
     Use,
     agreement,
@@ -92,12 +92,12 @@ def read_agreement(workspace: Workspace) -> Agreement:
         found = uncompared(facts, str(error))
         unused = ()
     # names_agree needs a package.
-    families = found.families if workspace.packages else frozenset[Family]()
+    families = found.families if workspace.packages else frozenset[AnyFamily]()
     return found._replace(families=families, unused=unused)
 
 
 def wrong_names(
-    workspace: Workspace, family: Family, packages: Collection[Package]
+    workspace: Workspace, family: AnyFamily, packages: Collection[Package]
 ) -> list[Mismatch]:
     """Return what certainly does not agree in some packages of a workspace."""
     wrong = []
@@ -118,7 +118,7 @@ def read_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def compared_facts(
-    workspace: Workspace, families: Collection[Family]
+    workspace: Workspace, families: Collection[AnyFamily]
 ) -> Iterator[Use | Definition]:
     """Yield the names of these families that files use or define."""
     for fact in read_facts(workspace):

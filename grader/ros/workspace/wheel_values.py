@@ -74,6 +74,10 @@ class _Wheels(NamedTuple):
     base: str
     groups: tuple[tuple[WheelSize, ...], ...]
 
+    def middle_of(self, group: int) -> Vector:
+        """Return the mean of the middles of the wheels of a group."""
+        return _mean([wheel.middle for wheel in self.groups[group]])
+
     @property
     def all(self) -> list[WheelSize]:
         """The wheels of all groups, each joint once."""
@@ -249,7 +253,7 @@ def _faults_of_side(wheels: _Wheels, groups: list[list[_Word]], kind: str) -> It
 
 def _toward_left(wheels: _Wheels) -> Vector:
     """Return the direction from the right wheels to the left ones, or y where there is none."""
-    left, right = (_mean([wheel.middle for wheel in group]) for group in wheels.groups[:2])
+    left, right = wheels.middle_of(0), wheels.middle_of(1)
     return unit((left[0] - right[0], left[1] - right[1], 0.0)) or Y_AXIS
 
 
@@ -295,7 +299,8 @@ def _faults_of_number(
     rounding = _ROUNDING + _TOLERANCE * measured
     if low - rounding <= value <= high + rounding:
         return
-    is_certain = kind == "track" and len(wheels.all) == 2 and _are_known(wheels)
+    are_known = all(wheel.half_width is not None for wheel in wheels.all)
+    is_certain = kind == "track" and len(wheels.all) == 2 and are_known
     is_certain = is_certain and (_is_near(value, 2.0 * measured) or _is_near(value, measured / 2.0))
     message = f"{key} is {value:g} m; {what} {measured:.4g} m"
     if slack:
@@ -305,10 +310,6 @@ def _faults_of_number(
 
 def _is_near(value: float, other: float) -> bool:
     return abs(value - other) <= _TOLERANCE * other
-
-
-def _are_known(wheels: _Wheels) -> bool:
-    return all(wheel.half_width is not None for wheel in wheels.all)
 
 
 def _faults_of_radius(
@@ -333,7 +334,7 @@ def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:
     """Return the distance of the left wheels from the right ones along the axles, by how much the
     width of wheels changes it, and what it is.
     """
-    left, right = (_mean([wheel.middle for wheel in group]) for group in wheels.groups)
+    left, right = wheels.middle_of(0), wheels.middle_of(1)
     widths = [wheel.half_width for wheel in wheels.all]
     slack = 2.0 * max([width for width in widths if width is not None], default=0.0)
     distance = abs(dot(minus(left, right), wheels.axle))
@@ -344,7 +345,7 @@ def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:
 
 def _measure_wheelbase(wheels: _Wheels) -> tuple[float, float, str]:
     """Return the distance of the front wheels from the rear ones across the axles."""
-    front, rear = (_mean([wheel.middle for wheel in group]) for group in wheels.groups)
+    front, rear = wheels.middle_of(0), wheels.middle_of(1)
     x, y, _ = wheels.axle
     distance = abs(dot(minus(front, rear), (y, -x, 0.0)))
     return distance, 0.0, f"the axles of {wheels.names} are apart by"
