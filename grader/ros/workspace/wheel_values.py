@@ -19,6 +19,7 @@ from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.known.known import known
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.numbers import finite_number
+from grader.ros.urdf.rolling import middle_of
 from grader.ros.urdf.wheel_sizes import WheelSize, measure_wheel
 from grader.ros.workspace.controllers import defined_controllers, parameters_of_controllers
 from grader.ros.workspace.gazebo import system_of
@@ -74,9 +75,9 @@ class _Wheels(NamedTuple):
     base: str
     groups: tuple[tuple[WheelSize, ...], ...]
 
-    def middle_of(self, group: int) -> Vector:
+    def middle_of_group(self, group: int) -> Vector:
         """Return the mean of the middles of the wheels of a group."""
-        return _mean([wheel.middle for wheel in self.groups[group]])
+        return middle_of([wheel.middle for wheel in self.groups[group]])
 
     @property
     def all(self) -> list[WheelSize]:
@@ -253,7 +254,7 @@ def _faults_of_side(wheels: _Wheels, groups: list[list[_Word]], kind: str) -> It
 
 def _toward_left(wheels: _Wheels) -> Vector:
     """Return the direction from the right wheels to the left ones, or y where there is none."""
-    left, right = wheels.middle_of(0), wheels.middle_of(1)
+    left, right = wheels.middle_of_group(0), wheels.middle_of_group(1)
     return unit((left[0] - right[0], left[1] - right[1], 0.0)) or Y_AXIS
 
 
@@ -261,7 +262,7 @@ def _exchanged(wheels: _Wheels) -> list[WheelSize]:
     """Return the left wheels that are on the right of the middle between the wheels, and the
     reverse.
     """
-    middle = _mean([wheel.middle for wheel in wheels.all])[1]
+    middle = middle_of([wheel.middle for wheel in wheels.all])[1]
     left, right = wheels.groups[:2]
     found = [wheel for wheel in left if wheel.middle[1] < middle]
     return found + [wheel for wheel in right if wheel.middle[1] > middle]
@@ -274,11 +275,6 @@ def _joints(wheels: Sequence[WheelSize]) -> str:
 def _place(wheel: WheelSize) -> Location | None:
     location = wheel.joint.location
     return location.resolve() if location is not None else None
-
-
-def _mean(points: Sequence[Vector]) -> Vector:
-    sums = [sum(point[number] for point in points) for number in range(3)]
-    return (sums[0] / len(points), sums[1] / len(points), sums[2] / len(points))
 
 
 def _faults_of_number(
@@ -334,7 +330,7 @@ def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:
     """Return the distance of the left wheels from the right ones along the axles, by how much the
     width of wheels changes it, and what it is.
     """
-    left, right = wheels.middle_of(0), wheels.middle_of(1)
+    left, right = wheels.middle_of_group(0), wheels.middle_of_group(1)
     widths = [wheel.half_width for wheel in wheels.all]
     slack = 2.0 * max([width for width in widths if width is not None], default=0.0)
     distance = abs(dot(minus(left, right), wheels.axle))
@@ -345,7 +341,7 @@ def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:
 
 def _measure_wheelbase(wheels: _Wheels) -> tuple[float, float, str]:
     """Return the distance of the front wheels from the rear ones across the axles."""
-    front, rear = wheels.middle_of(0), wheels.middle_of(1)
+    front, rear = wheels.middle_of_group(0), wheels.middle_of_group(1)
     x, y, _ = wheels.axle
     distance = abs(dot(minus(front, rear), (y, -x, 0.0)))
     return distance, 0.0, f"the axles of {wheels.names} are apart by"
@@ -361,7 +357,7 @@ def _measure_half_sum(wheels: _Wheels) -> tuple[float, float, str]:
 
 def _measure_ring(wheels: _Wheels) -> tuple[float, float, str]:
     """Return the mean distance of wheels from the middle between them."""
-    middle = _mean([wheel.middle for wheel in wheels.all])
+    middle = middle_of([wheel.middle for wheel in wheels.all])
     away = [minus(wheel.middle, middle) for wheel in wheels.all]
     distance = sum(hypot(x, y) for x, y, _ in away) / len(away)
     widths = [wheel.half_width or 0.0 for wheel in wheels.all]
