@@ -401,8 +401,43 @@ def test_a_mistake_is_one_problem(problem: str, edits: list[Edit]) -> None:
     assert problems_of(*edits) == [problem]
 
 
+_STAMPED: list[Edit] = _with(
+    _PILOT_NODE,
+    (PILOT, "import Twist\n", "import TwistStamped\n"),
+    (PILOT, "(Twist, ", "(TwistStamped, "),
+    (
+        PILOT,
+        "self.publisher.publish(Twist())",
+        "message = TwistStamped()\n        message.header.frame_id = 'FRAME'\n        self.publisher.publish(message)",
+    ),
+    (HORN, "import Twist\n", "import TwistStamped\n"),
+    (HORN, "(Twist, ", "(TwistStamped, "),
+)
+_UNSET: list[Edit] = [
+    (
+        PILOT,
+        "super().__init__('pilot')\n",
+        (
+            "super().__init__('pilot')\n        self.declare_parameter('port', rclpy.Parameter.Type.STRING)\n"
+            "        self.port = self.get_parameter('port').value\n"
+        ),
+    )
+]
+
+
+def _framed(frame: str) -> list[Edit]:
+    return [(file, old, new.replace("FRAME", frame)) for file, old, new in _STAMPED]
+
+
 CORRECT: list[tuple[str, list[Edit]]] = [
     ("the workspace as it is", []),
+    ("a frame of the robot in a message", _framed("laser")),
+    (
+        "a parameter without a value that is given one",
+        _with(
+            "Node(package='rover', executable='pilot', parameters=[{'port': '/dev/a'}]),", *_UNSET
+        ),
+    ),
     (
         "a separation between the outer edges",
         [(CONTROLLERS, "separation: 0.3", "separation: 0.32")],
@@ -506,3 +541,18 @@ CORRECT: list[tuple[str, list[Edit]]] = [
 def test_what_agrees_is_not_reported(edits: list[Edit]) -> None:
     """Another way to say the same, and what depends on something that is not known, is no problem."""
     assert problems_of(*edits) == []
+
+
+def test_a_frame_of_a_message_exists() -> None:
+    """A frame_id that no robot, transform or node defines is named with its line."""
+    [problem] = problems_of(*_framed("lidar_frame"))
+    assert problem == "REF002 rover/pilot.py:14 frame_id: there is no frame 'lidar_frame'"
+
+
+def test_a_parameter_without_a_value_is_given_one() -> None:
+    """A node that reads a parameter which has a type and no value stops, unless it is given one."""
+    [problem] = problems_of(*_with("Node(package='rover', executable='pilot'),", *_UNSET))
+    assert problem == (
+        "REF004 launch/rover.launch.py:24 the node 'pilot' stops without a value of the parameter "
+        "'port', which it declares without one (rover/rover/pilot.py:9)"
+    )

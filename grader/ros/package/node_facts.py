@@ -60,6 +60,7 @@ class NodeParameter(NamedTuple):
     is_declared: bool = True
     is_plain: bool = True  # without a descriptor, which may allow values of other types
     is_needed: bool = True  # False where it is read, and need not be declared
+    is_unset: bool = False  # declared with a type and no value, so that it has to be given one
 
 
 FrameUse = Literal["publishes", "is above", "looks up", "names"]

@@ -615,6 +615,7 @@ class _Module:
                 is_declared,
                 is_plain,
                 is_needed=method not in _READS_IF_DECLARED,
+                is_unset=isinstance(default, QualifiedName) and _default(default) is None,
             )
 
 

@@ -151,7 +151,9 @@ def facts_of_method(
     elif name == "declare_parameter":
         default = _converted(call.argument(1), call.types[0] if call.types else "")
         is_plain = len(call.args) < 3
-        yield NodeParameter(_text(call.argument(0)), default, at, is_plain=is_plain)
+        is_unset = len(call.args) == 1 and bool(call.types)
+        declared = NodeParameter(_text(call.argument(0)), default, at, is_plain=is_plain)
+        yield declared._replace(is_unset=is_unset)
     else:
         # With a second argument, it returns false for what is not declared.
         is_needed = name == "get_parameter" and len(call.args) == 1

@@ -33,6 +33,7 @@ from grader.ros.xml.parsing import Element
 
 _JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
 _FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
+_FRAME_FIELDS = ("frame_id", "child_frame_id")  # of messages
 # What a program calls the frames that it makes itself.
 _OWN_FRAMES = re.compile(
     r"^(odom|map|world|global|fixed|parent|target)_frame(_id)?$|^frame_prefix$"
@@ -134,6 +135,21 @@ def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[F
         else:
             yield Use("frame", each.name, at, "frame_id")
     yield from _misspelt_roots(named, robots)
+    yield from _frames_in_fields(workspace)
+
+
+def _frames_in_fields(workspace: Workspace) -> Iterator[Use]:
+    """Yield the frames that Python code of started packages writes into messages."""
+    started = {node.package for _, node in workspace.nodes if node.when is not False}
+    for package in workspace.packages:
+        if package.name not in started:
+            continue
+        for field in workspace.nodes_by_package[package.name].field_uses:
+            if field.path[-1] not in _FRAME_FIELDS or len(field.literal) != 1:
+                continue
+            text = field.literal[0]
+            if isinstance(text, str) and text.strip("/"):
+                yield Use("frame", text.removeprefix("/"), field.location, field.path[-1])
 
 
 class _NamedFrame(NamedTuple):

@@ -301,6 +301,30 @@ def _given(
             said = f"the node {workspace.name_of(node) or node.executable!r}"
             yield Use("parameter", name, value.named_at or value.location, said, owner)
     yield from _types_given(own_node, given.values)
+    if not given.unknown and node.arguments == ():
+        yield from _not_given(workspace, node, own_node, given.values)
+
+
+def _not_given(
+    workspace: Workspace,
+    node: StartedNode,
+    own_node: NodeFacts,
+    values: Mapping[str, ParameterValue],
+) -> Iterator[Mismatch]:
+    """Yield the parameters that a node declares without a value and reads, and is not given: rclpy
+    and rclcpp raise ParameterUninitializedException.
+    """
+    read = {it.name for it in own_node.parameters if not it.is_declared and it.is_needed}
+    for parameter in own_node.parameters:
+        name = parameter.name
+        if parameter.is_unset and name in read and name not in values:
+            message = (
+                f"the node {workspace.name_of(node) or node.executable!r} stops without a value of "
+                f"the parameter {name!r}, which it declares without one "
+                f"({parameter.location.file_and_line})"
+            )
+            is_certain = node.when is True and not own_node.doubts
+            yield Mismatch("parameters", message, node.location, parameter.location, is_certain)
 
 
 def _types_given(node: NodeFacts, values: Mapping[str, ParameterValue]) -> Iterator[Mismatch]:
