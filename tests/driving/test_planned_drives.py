@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from grader.lab.checks.driving import plan_drive
 from grader.report.drawing.drive import drive_data
 from grader.report.drawing.picture import picture_of, plain_picture
 from grader.report.drawing.space import space_data, without_names
@@ -83,6 +84,15 @@ def test_a_wheel_that_hangs_does_not_drive() -> None:
     )
     assert (drive["joints"], drive["motion"]) == ([], [])
     assert drive["text"].endswith("and 'foot'; 'left' is 30 mm above the ground.")
+
+
+def test_a_wheel_that_no_joint_turns_does_not_drive() -> None:
+    """The robot is set down only."""
+    robot = configuration(BODY, LEFT.replace("continuous", "fixed"), RIGHT, BALL)
+    drive = plan_drive(robot, ["left", "right"])
+    assert drive is not None
+    assert drive.joints == ()
+    assert drive.text.startswith("on level ground, it stands level on ")
 
 
 def test_page_of_a_robot_without_wheels_has_no_drive() -> None:
