@@ -32,10 +32,12 @@ from grader.ros.known.known import rclcpp_words
 from grader.ros.package.cpp_faults import cpp_faults
 from grader.ros.package.cpp_files import CompiledTarget, CppFiles
 from grader.ros.package.cpp_frames import frames_in
+from grader.ros.package.cpp_message_uses import cpp_field_uses
 from grader.ros.package.node_facts import (
     CodeFault,
     Doubt,
     Endpoint,
+    FieldUse,
     NodeFacts,
     NodeFrame,
     NodeParameter,
@@ -85,6 +87,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
     doubts: dict[Doubt, None] = {}
     faults: dict[CodeFault, None] = {}
     loose_frames: dict[NodeFrame, None] = {}
+    field_uses: dict[FieldUse, None] = {}
     is_loose, files = False, CppFiles(package)
     try:
         for compiled in files.compiled:
@@ -95,6 +98,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
             doubts |= dict.fromkeys(target.doubts)
             faults |= dict.fromkeys((*target.faults(), *target.unregistered(package)))
             loose_frames |= dict.fromkeys(target.loose_frames)
+            field_uses |= dict.fromkeys(target.field_uses)
             is_loose = is_loose or target.has_loose_declarations
     except OutOfBudget:
         start = Location(package.path("CMakeLists.txt"), 1, 1)
@@ -107,6 +111,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
         has_loose_declarations=is_loose,
         faults=tuple(faults),
         loose_frames=tuple(loose_frames),
+        field_uses=tuple(field_uses),
         texts=files.texts_with("package://"),
         cpp_files=files.read_paths,
     )
@@ -122,6 +127,7 @@ class _Target:
         self.has_loose_declarations = False
         self.doubts: list[Doubt] = []
         self.loose_frames: list[NodeFrame] = []
+        self.field_uses: list[FieldUse] = []
         for unread in compiled.unread:
             self.doubts.append(
                 Doubt(f"C++ is not read as a whole: {unread.reason}", unread.location)
@@ -290,6 +296,7 @@ class _Target:
                 self._read_this(node, owner)
             elif node.kind == "call_expression":
                 self._read_call(node, function, scopes, owner)
+        self.field_uses += cpp_field_uses(function, self._unit)
         frames = frames_in(function, self._unit, self._evaluation)
         if owner in self._facts:
             self._facts[owner] += frames
