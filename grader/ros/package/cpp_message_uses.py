@@ -6,9 +6,16 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 
-from grader.ros.cpp.declarations import CppFunction, declared_in, name_in, plain, plain_name
+from grader.ros.cpp.declarations import (
+    CONDITIONS,
+    CppFunction,
+    declared_in,
+    name_in,
+    plain,
+    plain_name,
+)
 from grader.ros.cpp.syntax import CppNode
-from grader.ros.cpp.unit import CppUnit, called_name, is_conditional, template_arguments
+from grader.ros.cpp.unit import CppUnit, called_name, template_arguments
 from grader.ros.package.message_uses import ITEM
 from grader.ros.package.node_facts import FieldUse
 
@@ -30,8 +37,8 @@ def cpp_field_uses(function: CppFunction, unit: CppUnit) -> Iterator[FieldUse]:
     types = _types_in(function, unit)
     if not types:
         return
-    for node in function.node.walk():
-        if node.kind != "field_expression" or is_conditional(node, function.node):
+    for node in _unconditional(function.node):
+        if node.kind != "field_expression":
             continue
         around = node.parent
         is_called = around is not None and around.kind == "call_expression"
@@ -41,6 +48,16 @@ def cpp_field_uses(function: CppFunction, unit: CppUnit) -> Iterator[FieldUse]:
         field = node.child("field")
         if root is not None and field is not None and path and root.text in types:
             yield FieldUse(types[root.text], path, field.location)
+
+
+def _unconditional(function: CppNode) -> Iterator[CppNode]:
+    """Yield the nodes in a function that the preprocessor never leaves out."""
+    pending = [function]
+    while pending:
+        node = pending.pop()
+        if node.kind not in CONDITIONS:
+            yield node
+            pending += reversed(node.children)
 
 
 def _types_in(function: CppFunction, unit: CppUnit) -> dict[str, str]:
