@@ -17,6 +17,7 @@ from grader.ros.workspace.workspace import Workspace
 
 _FIND = re.compile(r"\$\(find ([\w-]+)\)|package://([\w-]+)/")
 _OF_ROS = ("rclpy", "tf2_ros")
+_RUNTIME = "rosidl_default_runtime"  # what generated interfaces need
 _IMPORT = re.compile(r"^(?:from|import)\s+(\w+)", re.MULTILINE)
 
 
@@ -68,6 +69,9 @@ def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Locatio
     for owner, _, launch in workspace.launches:
         if owner is package:
             yield from _launched(launch)
+    generated_at = workspace.interfaces[package.name].location
+    if generated_at is not None:
+        yield _RUNTIME, generated_at
     names = {other.name for other in workspace.packages}
     for source in workspace.sources_of(package, (".xacro", ".urdf")):
         for match in _FIND.finditer(source.text):
