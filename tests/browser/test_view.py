@@ -110,7 +110,7 @@ def test_a_change_keeps_camera_joints_and_choices(open_page: Open, file: Path) -
 def test_a_broken_file_is_shown_in_grey(
     open_page: Open, file: Path, viewport: dict[str, int]
 ) -> None:
-    """The problem with its line is above the robot, which is as it was; both fit the screen. It is mended with the file."""
+    """The problem with its line is above the robot, which is as it was; both fit the screen. It is fixed with the file."""
     text = file.read_text()
     with viewing(file) as view:
         page = open_page(view.server.url, viewport=viewport).page

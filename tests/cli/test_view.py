@@ -119,10 +119,10 @@ def test_a_broken_file_leaves_the_last_robot(file: Path, text: str, words: str) 
         assert (state["isBroken"], state["isStale"], broken.sizes) == (True, True, first.sizes)
         assert words in broken.part("broken")
         put(box(5), file)
-        mended = view.next(broken)
-        state = mended.data["view"]
+        fixed = view.next(broken)
+        state = fixed.data["view"]
         assert (state["isBroken"], state["isStale"]) == (False, False)
-        assert (mended.sizes, mended.part("broken")) == ({"base": [5, 1, 1]}, "")
+        assert (fixed.sizes, fixed.part("broken")) == ({"base": [5, 1, 1]}, "")
 
 
 def test_a_file_may_be_broken_at_first(file: Path) -> None:

@@ -556,3 +556,20 @@ def test_a_parameter_without_a_value_is_given_one() -> None:
         "REF004 launch/rover.launch.py:24 the node 'pilot' stops without a value of the parameter "
         "'port', which it declares without one (rover/rover/pilot.py:9)"
     )
+
+
+def test_a_robot_with_too_many_parts_is_not_compared() -> None:
+    """More wheels than a robot drives, and more links than a footprint is compared with, are open."""
+    names = ", ".join(["left_wheel_joint"] * 20)
+    wrong = (CONTROLLERS, "wheel_separation: 0.3", "wheel_separation: 0.4")
+    many = (CONTROLLERS, "[left_wheel_joint]", f"[{names}]")
+    assert problems_of(wrong) != []
+    assert [it for it in problems_of(wrong, many) if "wheel_separation" in it] == []
+    links = "".join(
+        f'<link name="l{number}"/><joint name="j{number}" type="fixed">'
+        f'<parent link="base_link"/><child link="l{number}"/></joint>'
+        for number in range(300)
+    )
+    small = (COSTMAP, "robot_radius: 0.25", "robot_radius: 0.1")
+    assert problems_of(small) != []
+    assert problems_of(small, (ROBOT, "</robot>\n", f"{links}</robot>\n")) == []

@@ -4,7 +4,7 @@ Lengths are metres, in the frame of a link that is given. Only cylinders and sph
 of a joint have a size that is known; meshes have none.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from operator import itemgetter
 from typing import NamedTuple
 
@@ -48,12 +48,14 @@ def measure_wheel(robot: Configuration, joint: Joint, base: str) -> WheelSize:
 
 def _standing_for(robot: Configuration, joint: Joint) -> Iterator[Joint]:
     """Yield the joints that mimic a joint, and then those that turn below these and below it."""
-    moving = [it for it in robot.robot.joints if it.has_position and it is not joint]
-    following = [it for it in moving if it.mimic is not None and it.mimic.joint == joint.name]
+    turning = [it for it in robot.robot.joints if it.has_position and it is not joint]
+    following = [it for it in turning if it.mimic is not None and it.mimic.joint == joint.name]
     yield from following
-    for other in moving:
-        above = robot.chain(other.parent)
-        if joint in above or any(follower in above for follower in following):
+    below = {joint.child, *(follower.child for follower in following)}
+    for link in [*below]:
+        below |= {*_links_below(robot, link)}
+    for other in turning:
+        if other.parent in below:
             yield other
 
 
@@ -64,7 +66,7 @@ def _measure_own(robot: Configuration, joint: Joint, base: str) -> WheelSize:
     T_base_joint = robot.pose(joint.child, relative_to=base)
     axis = T_base_joint.rotate(robot.axis(joint))
     found: list[tuple[float, float, Vector]] = []
-    for link in _fixed_links(robot, joint.child):
+    for link in _links_below(robot, joint.child, is_fixed=True):
         T_base_link = robot.pose(link, relative_to=base)
         elements: list[Collision | Visual] = [*robot.link(link).collisions]
         elements += robot.link(link).visuals
@@ -88,13 +90,17 @@ def _measure_own(robot: Configuration, joint: Joint, base: str) -> WheelSize:
     return WheelSize(joint, axis, found[0][2], radii, max(width for _, width, _ in found))
 
 
-def _fixed_links(robot: Configuration, link: str) -> Iterator[str]:
-    """Yield a link and the links that are fixed to it."""
-    pending, seen = [link], {link}
+def _links_below(robot: Configuration, link: str, *, is_fixed: bool = False) -> Iterable[str]:
+    """Return a link and those that joints connect to it, downward; with `is_fixed`, fixed joints
+    only.
+    """
+    children: dict[str, list[str]] = {}
+    for joint in robot.robot.joints:
+        if joint.type == "fixed" or not is_fixed:
+            children.setdefault(joint.parent, []).append(joint.child)
+    reached, pending = {link: None}, [link]
     while pending:
-        name = pending.pop()
-        yield name
-        for joint in robot.robot.joints:
-            if joint.parent == name and joint.type == "fixed" and joint.child not in seen:
-                seen.add(joint.child)
-                pending.append(joint.child)
+        added = [child for child in children.get(pending.pop(), ()) if child not in reached]
+        reached |= dict.fromkeys(added)
+        pending += added
+    return reached

@@ -23,6 +23,7 @@ from grader.ros.workspace.workspace import KnownRobot, Workspace
 
 _DIRECTIONS = 36  # horizontal directions in which the robot is measured
 _TOLERANCE, _ROUNDING = 0.05, 0.005  # of a length; metres
+_MAX_LINKS, _OF_LINK = 300, 20  # of a robot that is compared; parts of each
 _BASE, _RADIUS, _FOOTPRINT = "robot_base_frame", "robot_radius", "footprint"
 _PLACING = ("origin", "axis", "cylinder", "sphere", "box")
 
@@ -56,7 +57,11 @@ def footprint_facts(workspace: Workspace) -> Iterator[Fact]:
     if not rooms or workspace.has_other_robots or may_vary(workspace, *_PLACING):
         return
     for room in rooms:
-        beyond = [_beyond(room, robot) for robot in workspace.robots]
+        small = [it for it in workspace.robots if len(it.robot.links) <= _MAX_LINKS]
+        if len(small) < len(workspace.robots):
+            continue
+        workspace.charge(sum(_OF_LINK * len(it.robot.links) for it in small))
+        beyond = [_beyond(room, robot) for robot in small]
         if not beyond:
             continue
         yield Compared("values")

@@ -2,7 +2,7 @@
 less than the robot, not more.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import isfinite
 from typing import NamedTuple
 
@@ -84,7 +84,7 @@ def _said_by_control(robot: KnownRobot, system: Element) -> Iterator[_Said]:
                     yield _Said(limit, name, value, words, robot.place(param))
 
 
-def _wider(said: _Said, robots: "list[KnownRobot] | tuple[KnownRobot, ...]") -> Iterator[Fact]:
+def _wider(said: _Said, robots: Sequence[KnownRobot]) -> Iterator[Fact]:
     """Yield that every robot with the joint allows less than a file says."""
     joints = [it.robot.joint(said.joint) for it in robots if it.robot.has_joint(said.joint)]
     limits = [(joint, joint.limit) for joint in joints if joint.limit is not None]

@@ -36,6 +36,7 @@ class _Edge(NamedTuple):
     by: str
     location: Location
     is_static: bool = False
+    is_of_robot: bool = False
     pose: Transform | None = None  # T_parent_child, where it never changes and is known
 
 
@@ -60,7 +61,7 @@ def transform_facts(workspace: Workspace) -> Iterator[Fact]:
                 if parent and child:
                     by = STATIC_PUBLISHER[1]
                     pose = static_pose(node)
-                    edges.append(_Edge(parent, child, by, node.location, True, pose))
+                    edges.append(_Edge(parent, child, by, node.location, is_static=True, pose=pose))
             elif node.executable == _ROBOT_PUBLISHER:
                 has_robot = has_robot or not node.frame_prefix
             else:
@@ -96,7 +97,7 @@ def _joints_of_robot(workspace: Workspace) -> Mapping[str, _Edge]:
             by = f"the joint {quoted(joint.name)} of the robot"
             is_fixed = joint.type == "fixed" and joint.origin is not None
             pose = joint.origin.placed_in() if is_fixed and joint.origin is not None else None
-            edges[joint.child] = _Edge(joint.parent, joint.child, by, at, is_fixed, pose)
+            edges[joint.child] = _Edge(joint.parent, joint.child, by, at, is_fixed, True, pose)
     return edges
 
 
@@ -197,7 +198,7 @@ def _cycles(edges: Sequence[_Edge]) -> Iterator[Mismatch]:
             continue
         cycle = path[path.index(frame) :]
         own = [above[name] for name in cycle if above[name] in edges]
-        published = [edge for edge in own if not edge.by.startswith("the joint ")] or own
+        published = [edge for edge in own if not edge.is_of_robot] or own
         names = " -> ".join(quoted(name) for name in [*reversed(cycle), cycle[-1]])
         message = f"the frames {names} are a cycle: tf2 has no transform of them"
         yield Mismatch("transforms", message, published[0].location)

@@ -36,6 +36,7 @@ _SIDED = ("track", "pivots", "half sum")  # whose first groups are left and righ
 _ROLLING = ("track", "half sum", "radius", "diameter")  # of joints that turn wheels
 _PLACING = ("origin", "axis", "cylinder", "sphere")  # elements that place and size wheels
 _BASE = "base_frame_id"
+_MAX_WHEELS = 20  # that one parameter is about; each takes as long as the robot has joints
 
 
 class _Word(NamedTuple):
@@ -168,6 +169,8 @@ def _faults_of(source: _Source, robot: Configuration) -> Iterator[Mismatch]:
     rows = sorted(source.rows.items(), key=lambda row: row[1]["is"] not in _SIDED)
     for key, row in rows:
         kind, groups = row["is"], [source.joints(keys) for keys in row["of"]]
+        if sum(map(len, groups)) > _MAX_WHEELS:
+            continue
         with suppress(MissingElement, NotDecided):
             wheels = _measured(source, robot, groups)
             names = {wheel.joint.name for wheel in wheels.all}
