@@ -31,7 +31,7 @@ ROOMS = {
     "base": (
         "errors markup merge_conflicts text reuse pairing transforms",
         "source names processor_time",
-        "problems element_edits slips",
+        "extents problems element_edits slips",
         "ignore_comments",
     ),
     "ros": (
@@ -114,7 +114,7 @@ LIBRARIES = {
 # How dense the code may be: see `tests/prose.py`. A limit may only get lower, but that of nodes: what the code weighs
 # grows with what it can do, and with nothing else.
 LIMITS = {
-    "nodes": 647_000,
+    "nodes": 648_500,
     "nodes of a simple statement, mean": 14.6,
     "nodes of a simple statement, 90th percentile": 26,
     "comprehensions for each 1,000 nodes": 5.3,

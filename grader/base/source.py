@@ -14,14 +14,19 @@ _START_TAG = r"(?s)<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<(?![/!?])"
 class Location(NamedTuple):
     """A location in a file of the submission; line and column count from 1, columns in characters.
 
-    `calls` are the macro calls of xacro that led to it, outermost first: the name of each macro,
-    and where it is called.
+    A character is a code point: neither a byte, as Python counts the columns of its syntax, nor a
+    unit of UTF-16, as editors do. `calls` are the macro calls of xacro that led to it, outermost
+    first: the name of each macro, and where it is called. The end is the place after the last
+    character of the name, value or tag that is meant; it is 0 until `extents.ended` is asked for
+    it, because most places are never shown.
     """
 
     path: str
     line: int
     column: int
     calls: "tuple[tuple[str, Location], ...]" = ()
+    end_line: int = 0
+    end_column: int = 0
 
     @property
     def file_and_line(self) -> str:

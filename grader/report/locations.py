@@ -7,11 +7,10 @@ from collections.abc import Callable, Iterator, Sequence
 from difflib import SequenceMatcher
 from itertools import groupby
 
+from grader.base.extents import end_of
 from grader.base.source import Edit, Location, Source
 from grader.base.text import first_lines, printable
 
-# attribute, tag, word
-_MEANT = r"""[^\s=<>"'/]+\s*=\s*(?:"[^"]*"?|'[^']*'?)|<[^\s>]*[^>]*>?|[\w.]+"""
 _ARCHIVE = r"(?is)(.*?\.(?:zip|tar|tgz|tar\.gz))/"
 SourceOf = Callable[[str], Source | None]
 # A line of a file: its number, its text up to the marked part, that part if it has one, and the
@@ -26,25 +25,27 @@ _MAX_LENGTH = 200  # the same for a diff: of a longer line only the old and the 
 _MAX_LINES = 40  # of a diff
 
 
-def width_of(line: str, column: int) -> int:
-    """Return the length of the attribute, tag or word at a column; 1 if there is none."""
-    found = re.match(_MEANT, line[column - 1 :])
-    if found:
-        return len(found[0].rstrip())
-    return 1
+def _end_in_line(source: Source, where: Location) -> int:
+    """Return the offset in its line after what begins at a location: the line's end where it goes
+    on in others.
+    """
+    end_line, end_column = end_of(source, where)
+    if end_line != where.line:
+        end_column = len(source.line(where.line).rstrip()) + 1
+    return max(where.column, end_column - 1)
 
 
 def excerpt(
     source: Source, where: Location, room: int, indent: int | None = None
 ) -> tuple[str, str, str]:
-    """Return the source line of a location: the text before the marked part, that part, and the
-    rest.
+    """Return the source line of a location: the text before what is meant, that text as far as it
+    is in the line, and the rest.
 
     Together they have a number of characters around the marked part; without `indent` the line is
     not indented.
     """
     line, start = source.line(where.line), where.column - 1
-    end = start + width_of(line, where.column)
+    end = _end_in_line(source, where)
     cut = len(line) - len(line.lstrip()) if indent is None else min(indent, start)
     if end - cut > room:
         cut = max(0, min(start - _MARGIN, len(line)))

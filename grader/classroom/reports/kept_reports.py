@@ -145,7 +145,7 @@ def _restored(report: Report, values: Mapping[str, Any]) -> Report:
 
 def _hint_of(values: Mapping[str, Any], own: str) -> Hint:
     """Return a hint of plain values, for a submission whose URDF has this path."""
-    path, line, column, calls = _with_path(values["at"], own)
+    path, line, column, calls, *_ = _with_path(values["at"], own)
     at = Location(path, line, column, tuple(calls))
     edits = tuple(Edit(*_with_path(edit, own)) for edit in values["edits"])
     gains = {name: Decimal(points) for name, points in values["gains"].items()}

@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from typing import NamedTuple
 
+from grader.base.extents import ended
 from grader.base.problems import Severity
 from grader.base.source import Base, Location
 from grader.base.text import printable, without_tag_commands
@@ -17,7 +18,7 @@ from grader.lab.grading.report import Report
 from grader.report.content import closing_lines, head, other_problems, report_sections, score_text
 from grader.report.criteria import Entry, earned_text, is_failure, is_manual, remarks_on
 from grader.report.inspection import Inspection, effect
-from grader.report.locations import SourceOf, archive_around, location_text, width_of
+from grader.report.locations import SourceOf, archive_around, location_text
 
 _MAX_ANNOTATIONS = 10  # of each type
 _MAX_MESSAGE = 4000  # characters
@@ -125,10 +126,13 @@ def _annotation_place(where: Location | None, source_of: SourceOf, base: Base) -
         return {}
     if archive := base.archive or archive_around(where.path):
         return {"file": printable(archive if base.archive else base.folder + archive)}
-    source, line = source_of(where.path), str(where.line)
-    width = width_of(source.line(where.line), where.column) if source is not None else 1
-    ends = {"col": str(where.column), "endColumn": str(where.column + width - 1)}
-    return {"file": printable(base.folder + where.path), "line": line, "endLine": line, **ends}
+    where = ended(where, source_of)
+    file, end_line = printable(base.folder + where.path), str(where.end_line)
+    place = {"file": file, "line": str(where.line), "endLine": end_line}
+    if where.end_line == where.line:  # GitHub takes the columns of a single line only
+        place["col"] = str(where.column)
+        place["endColumn"] = str(max(where.column, where.end_column - 1))
+    return place
 
 
 def _annotation_text(lines: list[str], where: Location | None, base: Base) -> str:

@@ -2,8 +2,12 @@
 follows.
 """
 
+from collections.abc import Iterable
+from functools import cache
 from typing import Any, get_args
 
+from grader.base.extents import ended
+from grader.base.problems import Problem
 from grader.base.source import Certainty
 from grader.lab.grading.report import Hint, Report, Result
 from grader.report.json_data import (
@@ -33,11 +37,17 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
+from grader.report.locations import SourceOf
 
+# The end is the place after the last character; where it is not known, that of the start.
+_EXTENT = {**PLACE, **each(COUNT, "end_line end_column")}
 _CALL = JsonObject(
-    {"macro": (TEXT, lambda call: call[0]), "location": (JsonObject(PLACE), lambda call: call[1])}
+    {
+        "macro": (TEXT, lambda call: call[0]),
+        "location": (JsonObject(_EXTENT), lambda call: call[1]),
+    }
 )
-_LOCATION = JsonObject({**PLACE, "calls": Many(_CALL)}, ("calls",))
+_LOCATION = JsonObject({**_EXTENT, "calls": Many(_CALL)}, ("calls",))
 PROBLEM = JsonObject(
     {
         "code": {"type": "string", "pattern": "^[A-Z]+[0-9]{3}$"},
@@ -157,4 +167,26 @@ def render_json(report: Report) -> str:
     """Return the report. It has no clock, absolute path or random order: the same input gives the
     same bytes.
     """
-    return to_json(REPORT.data(report))
+    return to_json(REPORT.data(_with_ends(report)))
+
+
+def _with_ends(report: Report) -> Report:
+    """Return a report whose locations have their ends."""
+    source_of = cache(report.submission.source)  # reads each file once
+    results = []
+    for result in report.results:
+        at = result.outcome.location
+        if at is not None:
+            at = ended(at, source_of)
+        results.append(result._replace(outcome=result.outcome._replace(location=at)))
+    return report._replace(
+        results=tuple(results), problems=problems_with_ends(report.problems, source_of)
+    )
+
+
+def problems_with_ends(problems: Iterable[Problem], source_of: SourceOf) -> tuple[Problem, ...]:
+    """Return problems whose locations have their ends."""
+    found = []
+    for problem in problems:
+        found.append(problem._replace(location=ended(problem.location, source_of)))
+    return tuple(found)

@@ -1,5 +1,8 @@
 """An inspection as JSON, schema grader/inspect/v2."""
 
+from dataclasses import replace
+from functools import cache
+
 from grader.base.transforms import Transform
 from grader.report.inspection import EFFECTS, InspectedRobot, Inspection, main_root
 from grader.report.json_data import (
@@ -17,7 +20,7 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.report.writers.as_json import PROBLEM
+from grader.report.writers.as_json import PROBLEM, problems_with_ends
 
 
 def _poses(robot: InspectedRobot) -> dict[str, list[list[float]] | None]:
@@ -81,4 +84,17 @@ INSPECTION = JsonObject(
 
 def inspection_json(inspection: Inspection) -> str:
     """Return the inspection as JSON. An undefined pose is null."""
-    return to_json(INSPECTION.data(inspection))
+    return to_json(INSPECTION.data(_with_ends(inspection)))
+
+
+def _with_ends(inspection: Inspection) -> Inspection:
+    """Return an inspection whose locations have their ends."""
+    source_of = cache(inspection.source)  # reads each file once
+    robots = []
+    for robot in inspection.robots:
+        problems = problems_with_ends(robot.reading.problems, source_of)
+        hidden = frozenset(problems_with_ends(robot.hidden, source_of))
+        reading = robot.reading._replace(problems=problems)
+        robots.append(replace(robot, reading=reading, hidden=hidden))
+    of_packages = problems_with_ends(inspection.package_problems, source_of)
+    return replace(inspection, robots=tuple(robots), package_problems=of_packages)

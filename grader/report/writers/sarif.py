@@ -6,10 +6,12 @@ https://docs.github.com/en/code-security/code-scanning/integrating-with-code-sca
 
 import json
 from collections.abc import Sequence
+from functools import cache
 from typing import Any
 from urllib.parse import quote
 
 from grader import __version__
+from grader.base.extents import ended
 from grader.base.source import Base
 from grader.lab.grading.report import Report
 from grader.report.findings import (
@@ -23,6 +25,7 @@ from grader.report.findings import (
 )
 from grader.report.inspection import Inspection
 from grader.report.json_data import to_json
+from grader.report.locations import SourceOf
 
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _ROOT = "%SRCROOT%"  # of the repository, as GitHub calls it
@@ -30,15 +33,15 @@ _ROOT = "%SRCROOT%"  # of the repository, as GitHub calls it
 
 def render_sarif(report: Report, base: Base) -> str:
     """Return the findings of a report; their rules are criteria and kinds of problems."""
-    return _log(findings_in_report(report), base)
+    return _log(findings_in_report(report), base, cache(report.submission.source))
 
 
 def sarif_inspection(inspection: Inspection) -> str:
     """Return the findings of an inspection; their rules are kinds of problems."""
-    return _log(findings_in_inspection(inspection), inspection.base)
+    return _log(findings_in_inspection(inspection), inspection.base, cache(inspection.source))
 
 
-def _log(findings: Sequence[Finding], base: Base) -> str:
+def _log(findings: Sequence[Finding], base: Base, source_of: SourceOf) -> str:
     """Return a log of one run, with the rules that have a result."""
     rules = {finding.rule.id: _rule(finding) for finding in reversed(findings)}
     names = sorted(rules)
@@ -49,7 +52,7 @@ def _log(findings: Sequence[Finding], base: Base) -> str:
             "ruleIndex": names.index(finding.rule.id),
             "level": finding.severity,
             "message": {"text": message_in_repository(finding, base)},
-            "locations": [{"physicalLocation": _physical_location(finding, base)}],
+            "locations": [{"physicalLocation": _physical_location(finding, base, source_of)}],
             "partialFingerprints": {"grader/v1": fingerprint},
         }
         results.append(result)
@@ -80,9 +83,13 @@ def _rule(finding: Finding) -> dict[str, Any]:
     return data
 
 
-def _physical_location(finding: Finding, base: Base) -> dict[str, Any]:
+def _physical_location(finding: Finding, base: Base, source_of: SourceOf) -> dict[str, Any]:
     path, where = place_in_repository(finding, base)
     place: dict[str, Any] = {"artifactLocation": {"uri": quote(path), "uriBaseId": _ROOT}}
     if where is not None:
-        place["region"] = {"startLine": where.line, "startColumn": where.column}
+        region = {"startLine": where.line, "startColumn": where.column}
+        end = ended(where, source_of)
+        if end[:3] != (where.path, end.end_line, end.end_column):
+            region |= {"endLine": end.end_line, "endColumn": end.end_column}
+        place["region"] = region
     return place
