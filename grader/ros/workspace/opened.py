@@ -1,10 +1,12 @@
 """Opened files: their packages, and their robots."""
 
 from collections.abc import Collection
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from grader.base.errors import NotDecided
 from grader.base.problems import Problem
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
@@ -15,7 +17,9 @@ from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Unreadab
 
 if TYPE_CHECKING:
     from grader.ros.package.mesh_loading import Around, MeshLoader
+    from grader.ros.workspace.all_names import WorkspaceNames
     from grader.ros.workspace.extent import Extent
+    from grader.ros.workspace.names import Fact
     from grader.ros.workspace.workspace import Workspace
 
 _NO_FILES = make_tree("", (), ())
@@ -105,6 +109,16 @@ class OpenedWorkspace:
         found += listed_problems(self.workspace)
         found += compared_names(self.workspace)
         return found
+
+    def names(self) -> "WorkspaceNames":
+        """Return the names that its files define and use, each where it is written."""
+        from grader.ros.workspace.all_names import read_names  # late: only editors ask for them
+        from grader.ros.workspace.reading import read_facts
+
+        facts: list[Fact] = []
+        with suppress(NotDecided):  # what is found before there is too much of it
+            facts += read_facts(self.workspace)
+        return read_names(self.workspace, facts)
 
     def of_release(self, distro: Release | None, place: str) -> "OpenedWorkspace":
         """Return it for a release of ROS 2 that an option or a setting gives; without one, for

@@ -1,0 +1,108 @@
+"""The arguments of launch files as they are written: where a file declares them, and where it uses
+them.
+"""
+
+import ast
+import re
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import NamedTuple
+
+from grader.base import markup
+from grader.base.source import Source
+from grader.ros.python.parse import Code, location_in, parse, position_of
+from grader.ros.xml.parsing import XmlFault, XmlFile
+
+# The classes of launch whose first argument is the name of a launch configuration, with the keyword
+# that it may have, and whether they give it a value.
+_CALLS = {
+    "DeclareLaunchArgument": ("name", True),
+    "SetLaunchConfiguration": ("name", True),
+    "UnsetLaunchConfiguration": ("name", False),
+    "LaunchConfiguration": ("variable_name", False),
+    "LaunchConfigurationEquals": ("launch_configuration_name", False),
+    "LaunchConfigurationNotEquals": ("launch_configuration_name", False),
+}
+_OPENING = re.compile(r"(?i:[rbuf]{0,2})(\"{3}|'{3}|\"|')")
+_VARIABLE = re.compile(r"\$\(\s*var\s+['\"]?([\w.-]+)")
+_COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
+_YAML_COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*")
+_YAML_ARGUMENT = re.compile(
+    r"-\s+(?:arg|let)\s*:\s*\{?\s*(?:[\w-]+\s*:[^\n{}]*\n\s*)*?name\s*:\s*['\"]?([\w.-]+)"
+)
+
+
+class _ArgumentName(NamedTuple):
+    """The name of a launch argument, at the offsets in a text, without quotes."""
+
+    name: str
+    is_definition: bool
+    start: int
+    end: int
+
+
+def argument_names(data: bytes, path: str) -> tuple[Source, list[_ArgumentName]]:
+    """Return the text of a launch file, and the names of arguments in it in the order of the
+    text.
+    """
+    if path.endswith(".py"):
+        code = parse(data, path)
+        found = [*_in_python(code)] if isinstance(code, Code) else []
+        return code.source, sorted(found, key=lambda it: it.start)
+    source = Source(path, data.decode("utf-8", "replace"))
+    read = _in_yaml(source) if path.endswith((".yaml", ".yml")) else _in_xml(data, source)
+    found = [*read]
+    return source, sorted(found, key=lambda it: it.start)
+
+
+def _in_python(code: Code) -> Iterator[_ArgumentName]:
+    for node in ast.walk(code.tree):
+        if not isinstance(node, ast.Call):
+            continue
+        called = node.func.attr if isinstance(node.func, ast.Attribute) else None
+        if isinstance(node.func, ast.Name):
+            called = node.func.id
+        if called not in _CALLS:
+            continue
+        keyword, is_definition = _CALLS[called]
+        named = [it.value for it in node.keywords if it.arg == keyword]
+        for value in (*node.args[:1], *named):
+            span = _span_of_text(code.source, value)
+            if span is not None and isinstance(value, ast.Constant):
+                yield _ArgumentName(str(value.value), is_definition, *span)
+
+
+def _span_of_text(source: Source, value: ast.expr) -> tuple[int, int] | None:
+    """Return the offsets of a text without its quotes; None for what is no plain text."""
+    if not isinstance(value, ast.Constant) or not isinstance(value.value, str):
+        return None
+    at = location_in(source, position_of(value))
+    opened = _OPENING.match(source.text, source.offset(at.line, at.column))
+    if opened is None:
+        return None
+    end = opened.end() + len(value.value)
+    is_plain = source.text[opened.end() : end] == value.value
+    return (opened.end(), end) if is_plain else None
+
+
+def _in_xml(data: bytes, source: Source) -> Iterator[_ArgumentName]:
+    with suppress(XmlFault):
+        file = XmlFile(data, source)
+        for element in file.root.iter("arg", "let"):
+            parent = element.getparent()
+            at = file.location(element)
+            start = source.offset(at.line, at.column)
+            name = markup.attribute(source.text, start, "name")
+            if name is not None and (parent is None or parent.tag != "include"):
+                yield _ArgumentName(source.text[slice(*name.value)], True, *name.value)
+    text = _COMMENT.sub(lambda found: " " * len(found[0]), source.text)
+    for found in _VARIABLE.finditer(text):
+        yield _ArgumentName(found[1], False, *found.span(1))
+
+
+def _in_yaml(source: Source) -> Iterator[_ArgumentName]:
+    text = _YAML_COMMENT.sub(lambda found: " " * len(found[0]), source.text)
+    for found in _YAML_ARGUMENT.finditer(text):
+        yield _ArgumentName(found[1], True, *found.span(1))
+    for found in _VARIABLE.finditer(text):
+        yield _ArgumentName(found[1], False, *found.span(1))

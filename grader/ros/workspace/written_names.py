@@ -1,0 +1,265 @@
+"""Where exactly a name is written: its own characters, or the expression that it is made of.
+
+A fact is at the tag, value or call that a finding is about. An editor needs the name in it.
+"""
+
+import re
+from collections.abc import Callable, Iterator
+from typing import Literal, NamedTuple
+
+from grader.base import markup
+from grader.base.extents import end_offset
+from grader.base.source import Location, Source
+
+Role = Literal["definition", "use"]
+Span = tuple[int, int]  # the offsets of the first character and after the last one
+
+
+class WrittenName(NamedTuple):
+    """A name at the place where a file defines or uses it, with its end.
+
+    The text there is the name, but where `is_made`: then it is an expression, such as
+    `${side}_wheel`, an f-string or a call, that a rename cannot change. Names of one kind are the
+    same within one owner only: a robot, a launch file, a macro.
+
+    >>> at = Location("a.urdf", 2, 15, end_line=2, end_column=19)
+    >>> WrittenName("link", "base", "definition", at, "a.urdf").covers("a.urdf", 2, 16)
+    True
+    """
+
+    kind: str
+    name: str
+    role: Role
+    location: Location
+    owner: str = ""
+    is_made: bool = False
+
+    def covers(self, path: str, line: int, column: int) -> bool:
+        """Return whether a place of a file is in the name, or just after it."""
+        at = self.location
+        start, end = (at.line, at.column), (at.end_line, at.end_column)
+        return at.path == path and start <= (line, column) <= end
+
+
+def written_name(
+    source: Source, span: Span, kind: str, name: str, role: Role, owner: str = ""
+) -> WrittenName:
+    """Return a name at a span of a text; it is made if the text is another one."""
+    start, end = source.at(span[0]), source.at(span[1])
+    location = start._replace(end_line=end.line, end_column=end.column)
+    is_made = source.text[slice(*span)] != name
+    return WrittenName(kind, name, role, location, owner, is_made)
+
+
+_MAX_CALL = 8_000  # characters of a call in which a name is searched
+_MAX_LINES = 400  # above a value, among which its keys are
+# The attribute, argument or key that usually has a name of a kind.
+_USUAL = {
+    "node": ("name", "exec", "executable"),
+    "controller": ("arguments", "args"),
+    "frame": ("arguments", "args"),
+    "launch argument": ("launch_arguments",),
+}
+_IN_XML = ("name", "reference", "link", "joint", "link1", "link2", "value")
+_ATTRIBUTE_START = re.compile(r"""[^\s=<>"'/]+\s*=\s*(["'])""")
+_TOKEN_OF_CALL = re.compile(
+    r'''(?P<text>(?i:[rbuf]{0,2})(?:"""(?s:(?:[^\\]|\\.)*?)"""|"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'))'''
+    r"|(?P<open>[\[({])|(?P<close>[\])}])|(?P<keyword>\w+)\s*=(?!=)|(?P<comment>#[^\n]*|//[^\n]*)|;"
+)
+_QUOTES = re.compile(r'''(?i:[rbuf]{0,2}|u8)("""|\'\'\'|"|')''')
+
+
+def span_of_name(source: Source, where: Location, kind: str, name: str) -> Span | None:
+    """Return the span of a name, or of the expression that makes it, in what begins at a place;
+    None where the name is not written there.
+    """
+    start = source.offset(where.line, where.column)
+    if not 0 <= start < len(source.text):
+        return None
+    if source.path.endswith((".yaml", ".yml", ".rviz")):
+        return _in_yaml(source, start, name)
+    if source.path.endswith((".py", ".cpp", ".hpp", ".cc", ".h", ".cxx")):
+        return _in_code(source, start, kind, name)
+    return _in_markup(source, start, kind, name)
+
+
+def _part(text: str, span: Span, name: str) -> Span | None:
+    """Return the part of a written value that is a name, or all of it where it makes the name."""
+    start, end = span
+    written = text[start:end]
+    if written == name:
+        return span
+    if "$" in written or "{" in written:
+        return span
+    bare = name.strip("/")
+    found = re.search(rf"(?<![\w.-]){re.escape(bare)}(?![\w-]|\.\w)", written) if bare else None
+    if found is None:
+        return None
+    slash = name.startswith("/") and written.startswith("/", max(0, found.start() - 1))
+    return start + found.start() - int(slash and found.start() > 0), start + found.end()
+
+
+# --- XML
+
+
+def _in_markup(source: Source, start: int, kind: str, name: str) -> Span | None:
+    text = source.text
+    if text[start] == "<":
+        return _in_tag(text, start, kind, name)
+    opened = _ATTRIBUTE_START.match(text, start)
+    if opened is None:
+        return _part(text, (start, end_offset(source, start)), name)
+    end = text.find(opened[1], opened.end())
+    return _part(text, (opened.end(), end), name) if end >= 0 else None
+
+
+def _in_tag(text: str, start: int, kind: str, name: str) -> Span | None:
+    """Return where a name is in an element: in an attribute, in its text, or in an argument that an
+    include passes.
+    """
+    found = {it.name: it.value for it in markup.attributes(text, start)}
+    order = [key for key in (*_USUAL.get(kind, ()), *_IN_XML) if key in found]
+    values = [found[key] for key in dict.fromkeys([*order, *found])]
+    head, is_empty = markup.head_end(text, start)
+    if not is_empty:
+        content = re.compile(r"\s*([^<]*?)\s*(?=<)").match(text, head)
+        values += [content.span(1)] if content is not None and content[1] else []
+    for span in values:
+        if text[slice(*span)] == name:
+            return span
+    if kind == "launch argument":
+        return _passed_in_element(text, start, name)
+    for span in values:
+        part = _part(text, span, name)
+        if part is not None:
+            return part
+    return None
+
+
+def _passed_in_element(text: str, start: int, name: str) -> Span | None:
+    end = min(markup.element_end(text, start), start + _MAX_CALL)
+    passed = re.compile(rf"<arg\b[^<>]*?\bname\s*=\s*[\"']({re.escape(name)})[\"']")
+    found = passed.search(text, start, end)
+    return found.span(1) if found is not None else None
+
+
+# --- YAML
+
+
+def _in_yaml(source: Source, start: int, name: str) -> Span | None:
+    text, end = source.text, end_offset(source, start)
+    span = _without_quotes(text, (start, end))
+    if text[slice(*span)] == name:
+        return span
+    key = _key_above(text, start, name)
+    if key is not None:
+        return key
+    return _part(text, span, name)
+
+
+def _without_quotes(text: str, span: Span) -> Span:
+    opened = _QUOTES.match(text, span[0])
+    if opened is None or opened.end() > span[1]:
+        return span
+    width = len(opened[1])
+    is_closed = text.endswith(opened[1], opened.end(), span[1])
+    return opened.end(), span[1] - width * int(is_closed)
+
+
+def _key_above(text: str, start: int, name: str) -> Span | None:
+    """Return the key of this name whose value is at an offset, or has it in its mapping."""
+    key = re.compile(rf"(?:- +)*([\"']?)({re.escape(name)})\1\s*:(?=\s|$)")
+    line_start = text.rfind("\n", 0, start) + 1
+    before = text[line_start:start]
+    indent = len(before) - len(before.lstrip(" "))
+    for _ in range(_MAX_LINES):
+        line_end = text.find("\n", line_start)
+        line = text[line_start : line_end if line_end >= 0 else len(text)]
+        own = len(line) - len(line.lstrip(" "))
+        is_outer = bool(line.strip()) and not line.lstrip().startswith("#") and own <= indent
+        found = key.match(text, line_start + own) if is_outer else None
+        if found is not None and found.end() <= start:
+            return found.span(2)
+        if is_outer and line[own:].strip():
+            indent = own if line.lstrip().startswith("- ") else min(indent, max(own - 1, 0))
+        if line_start == 0:
+            return None
+        line_start = text.rfind("\n", 0, line_start - 1) + 1
+    return None
+
+
+# --- Python and C++
+
+
+def _in_code(source: Source, start: int, kind: str, name: str) -> Span | None:
+    text, end = source.text, end_offset(source, start)
+    if text.startswith("class ", start):
+        return None  # a parameter that every node has
+    if _QUOTES.match(text, start) is not None:
+        return _part(text, _without_quotes(text, (start, end)), name)
+    if kind == "xacro argument":
+        return _given_to_xacro(text, start, name)
+    return _in_call(text, start, kind, name) or (start, end)
+
+
+def _in_call(text: str, start: int, kind: str, name: str) -> Span | None:
+    """Return the text of a call that is a name, in the usual argument if several are; else the
+    first that has it as a word.
+    """
+    first: Span | None = None
+    word: Span | None = None
+    for keyword, span in _texts_in_call(text, start):
+        part = _part(text, span, name)
+        if part is None or text[slice(*part)].strip("/") != name.strip("/"):
+            continue
+        is_whole = text[slice(*span)].strip("/") == name.strip("/")
+        if is_whole and keyword in _USUAL.get(kind, ()):
+            return part
+        if is_whole:
+            first = first or part
+        word = word or part
+    return first or word
+
+
+def _given_to_xacro(text: str, start: int, name: str) -> Span | None:
+    """Return where a command gives xacro an argument, `name:=`, or a table of arguments has it."""
+    given = re.compile(rf"(?<![\w.-]){re.escape(name)}(?=\s*:=)")
+    keys: list[Span] = []
+    for _, span in _texts_in_call(text, start):
+        found = given.search(text, *span)
+        if found is not None:
+            return found.span()
+        keys += [span] if text[slice(*span)] == name else []
+    return keys[0] if keys else None
+
+
+def _texts_in_call(text: str, start: int) -> Iterator[tuple[str, Span]]:
+    """Yield the texts in a call, or up to the end of a statement of C++, each with the keyword of
+    its argument.
+    """
+    depth, keyword, has_opened = 0, "", False
+    for token in _TOKEN_OF_CALL.finditer(text, start, start + _MAX_CALL):
+        if token["text"]:
+            yield keyword, _without_quotes(text, token.span())
+        elif token["open"]:
+            depth, has_opened = depth + 1, True
+        elif token["close"]:
+            depth -= 1
+        elif token["keyword"] and depth == 1:
+            keyword = token["keyword"]
+        if token[0] == ";" or depth < 0 or (has_opened and depth == 0):
+            return
+
+
+def reader_of(read: Callable[[str], bytes | None]) -> Callable[[str], Source | None]:
+    """Return what gives the texts of files by their paths, and reads each file once."""
+    known: dict[str, Source | None] = {}
+
+    def source(path: str) -> Source | None:
+        if path not in known:
+            data = read(path)
+            text = data.decode("utf-8", "replace") if data is not None else ""
+            known[path] = Source(path, text) if data is not None else None
+        return known[path]
+
+    return source
