@@ -107,10 +107,10 @@ def _names_of_facts(workspace: Workspace, facts: Iterable[Fact]) -> Iterator[Wri
             continue
         source = source_of(fact.location.path)
         span = None
+        role: Role = "definition" if isinstance(fact, Definition) else "use"
         if source is not None:
-            span = span_of_name(source, fact.location, fact.kind, fact.name)
+            span = span_of_name(source, fact.location, fact.kind, fact.name, role)
         if source is not None and span is not None:
-            role: Role = "definition" if isinstance(fact, Definition) else "use"
             yield written_name(source, span, fact.kind, fact.name, role, fact.owner)
 
 

@@ -52,10 +52,13 @@ def written_name(
 
 
 _MAX_CALL = 8_000  # characters of a call in which a name is searched
+_MAX_KEY = 40  # characters between a key of a table in Python and its value
 _MAX_LINES = 400  # above a value, among which its keys are
+# A node that a launch file starts: its name is in `name`, and nothing else that is called the same.
+_STARTED = "started node"
 # The attribute, argument or key that usually has a name of a kind.
 _USUAL = {
-    "node": ("name", "exec", "executable"),
+    _STARTED: ("name",),
     "controller": ("arguments", "args"),
     "frame": ("arguments", "args"),
     "launch argument": ("launch_arguments",),
@@ -69,10 +72,12 @@ _TOKEN_OF_CALL = re.compile(
 _QUOTES = re.compile(r'''(?i:[rbuf]{0,2}|u8)("""|\'\'\'|"|')''')
 
 
-def span_of_name(source: Source, where: Location, kind: str, name: str) -> Span | None:
+def span_of_name(source: Source, where: Location, kind: str, name: str, role: Role) -> Span | None:
     """Return the span of a name, or of the expression that makes it, in what begins at a place;
     None where the name is not written there.
     """
+    if (kind, role) == ("node", "definition"):
+        kind = _STARTED
     start = source.offset(where.line, where.column)
     if not 0 <= start < len(source.text):
         return None
@@ -120,6 +125,8 @@ def _in_tag(text: str, start: int, kind: str, name: str) -> Span | None:
     found = {it.name: it.value for it in markup.attributes(text, start)}
     order = [key for key in (*_USUAL.get(kind, ()), *_IN_XML) if key in found]
     values = [found[key] for key in dict.fromkeys([*order, *found])]
+    if kind == _STARTED:
+        values = [found["name"]] if "name" in found else []
     head, is_empty = markup.head_end(text, start)
     if not is_empty:
         content = re.compile(r"\s*([^<]*?)\s*(?=<)").match(text, head)
@@ -199,6 +206,11 @@ def _in_code(source: Source, start: int, kind: str, name: str) -> Span | None:
         return _part(text, _without_quotes(text, (start, end)), name)
     if kind == "xacro argument":
         return _given_to_xacro(text, start, name)
+    key = re.compile(rf"[\"']({re.escape(name)})[\"']\s*:\s*[\[(]?\Z")
+    at = max(0, start - len(name) - _MAX_KEY)
+    before = key.search(text[at:start])
+    if before is not None:
+        return at + before.start(1), at + before.end(1)
     return _in_call(text, start, kind, name) or (start, end)
 
 
@@ -215,6 +227,8 @@ def _in_call(text: str, start: int, kind: str, name: str) -> Span | None:
         is_whole = text[slice(*span)].strip("/") == name.strip("/")
         if is_whole and keyword in _USUAL.get(kind, ()):
             return part
+        if kind == _STARTED:
+            continue
         if is_whole:
             first = first or part
         word = word or part
