@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from grader.base.extents import ended
 from grader.base.source import Location, Source
 from grader.files.tree import Tree, make_tree, overlaid
 from grader.lab.submission.opening import open_workspace
@@ -12,7 +13,7 @@ from grader.ros.package.robot_file import Read
 from grader.ros.workspace.all_names import WorkspaceNames
 from grader.ros.workspace.all_robots import read_workspace
 from grader.ros.workspace.opened import OpenedWorkspace
-from grader.ros.workspace.written_names import WrittenName
+from grader.ros.workspace.written_names import Role, WrittenName, span_of_name
 
 _ROOT = Path(__file__).parent.parent.parent
 _CART = _ROOT / "tests" / "corpus" / "given" / "cartkit"
@@ -42,6 +43,26 @@ def test_the_text_at_a_place_is_the_name(folder: Path) -> None:
         text = _text_at(opened.whole_tree, name.location)
         assert text.strip() == text != ""
         assert (text != name.name) == name.is_made, (name, text)
+
+
+@pytest.mark.parametrize("folder", [*_LABS, _CART, *_SAMPLES], ids=lambda it: it.name)
+def test_what_a_finding_is_about_is_in_the_file(folder: Path) -> None:
+    """The end of each finding of a lab or sample is in its file, and not before its start."""
+    opened = open_workspace(str(folder), _SIZE, {}).of_release(None, "")
+    problems = [*opened.package_problems()]
+    for robot in opened.robots:
+        if isinstance(robot, Read):
+            problems += opened.problems_of(robot)
+    for problem in problems:
+        at = ended(problem.location, opened.source)
+        source = opened.source(at.path)
+        assert source is not None
+        start, end = source.offset(at.line, at.column), source.offset(at.end_line, at.end_column)
+        assert start <= end <= len(source.text)
+        meant = source.text[start:end]
+        begins_here = source.text[start : start + 1].strip() != ""
+        assert meant == meant.strip()
+        assert bool(meant) == begins_here
 
 
 _URDF = """<robot name="bot">
@@ -290,3 +311,62 @@ def test_a_place_without_a_name_has_none() -> None:
     found = [column for column in range(1, 12) if names.at("a.urdf", 1, column)]
     assert found == [5, 6, 7, 8, 9]
     assert not names.at("b.urdf", 1, 5)
+
+
+def _span_text(path: str, text: str, kind: str, name: str, role: Role = "use") -> str | None:
+    """Return the text of a name in what begins at the mark in a text."""
+    start = text.index("«")
+    source = Source(path, text.replace("«", ""))
+    span = span_of_name(source, source.at(start), kind, name, role)
+    return None if span is None else source.text[slice(*span)]
+
+
+@pytest.mark.parametrize(
+    ("path", "text", "kind", "name", "written"),
+    [
+        ("a.xml", '«<node exec="s" args="arm --p $(var f)"/>', "controller", "arm", "arm"),
+        ("a.xml", '«<node args="0 $(var arm)/x"/>', "controller", "arm", "0 $(var arm)/x"),
+        ("a.xml", "<a><b>«<f>\n camera </f></b></a>", "frame", "camera", "camera"),
+        ("a.xml", '«<node pkg="a" exec="a"/>', "joint", "b", None),
+        (
+            "a.xml",
+            '«<include file="a"><arg name="gui" value="gui"/></include>',
+            "launch argument",
+            "gui",
+            "gui",
+        ),
+        ("a.xml", "<a b=«'/left arm/'/>", "frame", "left", "left"),
+        ("a.yaml", "arm:\n  type: «a/B\n", "controller", "arm", "arm"),
+        ("a.yaml", "arm: {x: 1}\nleg:\n  type: «a/B\n", "controller", "arm", None),
+        ("a.yaml", "m:\n  'arm':\n  # no\n\n    - type: «a/B\n", "controller", "arm", "arm"),
+        ("a.yaml", "m:\n- arm: 1\n- type: «a/B\n", "controller", "arm", None),
+        ("a.yaml", "arm:\n- x: 1\n- type: «a/B\n", "controller", "arm", "arm"),
+        ("a.yaml", "- arm:\n    x: 1\n    type: «a/B\n", "controller", "arm", "arm"),
+        ("a.yaml", 'x: «"/base"\n', "frame", "base", "base"),
+        ("a.py", "«Node(name='a', arguments=['a'])", "controller", "a", "a"),
+        ("a.py", "«Node(arguments=[f'{x}'])", "controller", "a", "Node"),
+        ("a.py", "«Command(['xacro', ' f:=', f])", "xacro argument", "f", "f"),
+        ("a.py", "«process(f, mappings={'f': '1'})", "xacro argument", "f", "f"),
+        ("a.py", "{'rate': «LaunchConfiguration('rate')}", "parameter", "rate", "rate"),
+        ("a.cpp", "x = «node->create(\"a\", /* ( */ 'b');", "topic", "/a", "a"),
+        ("a.py", "«class A(Node):\n  'use_sim_time'", "parameter", "use_sim_time", None),
+    ],
+)
+def test_a_name_is_found_in_what_a_fact_is_about(
+    path: str, text: str, kind: str, name: str, written: str | None
+) -> None:
+    """The name is the attribute, text, key or argument of that name, else what makes it."""
+    assert _span_text(path, text, kind, name) == written
+
+
+def test_a_node_that_is_started_has_its_name_in_one_argument() -> None:
+    """A program of the same name is another one; without a name the call makes it."""
+    call = "«Node(package='amcl', executable='amcl'{})"
+    assert _span_text("a.py", call.format(""), "node", "amcl", "definition") == "Node"
+    named = call.format(", name='amcl'")
+    start = named.replace("«", "").rindex("amcl")
+    source = Source("a.py", named.replace("«", ""))
+    span = span_of_name(source, source.at(0), "node", "amcl", "definition")
+    assert span == (start, start + 4)
+    xml = '«<node exec="amcl"/>'
+    assert _span_text("a.xml", xml, "node", "amcl", "definition") is None

@@ -67,7 +67,7 @@ def _name_of_key(mapping: YamlNode, key: str) -> WrittenName:
 def _frames_of_rviz(tree: YamlNode) -> Iterator[WrittenName]:
     for value in values_in(tree):
         name = value.node.text
-        if value.keys and value.keys[-1] in _FRAMES_OF_RVIZ and name:
+        if value.keys and value.keys[-1] in _FRAMES_OF_RVIZ and name and name[0] != "<":
             start, end = value.node.span
             quotes = int(value.node.quoted)
             span = start + quotes, end - quotes

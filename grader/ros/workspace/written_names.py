@@ -69,6 +69,8 @@ _TOKEN_OF_CALL = re.compile(
     r'''(?P<text>(?i:[rbuf]{0,2})(?:"""(?s:(?:[^\\]|\\.)*?)"""|"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'))'''
     r"|(?P<open>[\[({])|(?P<close>[\])}])|(?P<keyword>\w+)\s*=(?!=)|(?P<comment>#[^\n]*|//[^\n]*)|;"
 )
+_LINE = re.compile(r"(?P<indent> *)(?P<dash>- )?[^\s#]")  # of YAML, that is no comment
+_EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)|\{[^{}]*\}")
 _QUOTES = re.compile(r'''(?i:[rbuf]{0,2}|u8)("""|\'\'\'|"|')''')
 
 
@@ -94,9 +96,13 @@ def _part(text: str, span: Span, name: str) -> Span | None:
     written = text[start:end]
     if written == name:
         return span
-    if "$" in written or "{" in written:
-        return span
     bare = name.strip("/")
+    if "$" in written or "{" in written:
+        plain = _EXPRESSION.sub(lambda found: "$" * len(found[0]), written)
+        alone = re.search(rf"(?<!\S)/?({re.escape(bare)})(?!\S)", plain) if bare else None
+        if alone is None:
+            return span
+        return start + alone.start(1), start + alone.end(1)
     found = re.search(rf"(?<![\w.-]){re.escape(bare)}(?![\w-]|\.\w)", written) if bare else None
     if found is None:
         return None
@@ -177,19 +183,18 @@ def _key_above(text: str, start: int, name: str) -> Span | None:
     """Return the key of this name whose value is at an offset, or has it in its mapping."""
     key = re.compile(rf"(?:- +)*([\"']?)({re.escape(name)})\1\s*:(?=\s|$)")
     line_start = text.rfind("\n", 0, start) + 1
-    before = text[line_start:start]
-    indent = len(before) - len(before.lstrip(" "))
+    around, is_item = start - line_start, False  # how far a line around is indented at most
     for _ in range(_MAX_LINES):
-        line_end = text.find("\n", line_start)
-        line = text[line_start : line_end if line_end >= 0 else len(text)]
-        own = len(line) - len(line.lstrip(" "))
-        is_outer = bool(line.strip()) and not line.lstrip().startswith("#") and own <= indent
-        found = key.match(text, line_start + own) if is_outer else None
-        if found is not None and found.end() <= start:
-            return found.span(2)
-        if is_outer and line[own:].strip():
-            indent = own if line.lstrip().startswith("- ") else min(indent, max(own - 1, 0))
-        if line_start == 0:
+        line = _LINE.match(text, line_start)
+        if line is not None and len(line["indent"]) <= around:
+            is_beside = is_item and line["dash"] and len(line["indent"]) == around
+            found = key.match(text, line.end("indent"))
+            if found is not None and found.end() <= start and not is_beside:
+                return found.span(2)
+            if not is_beside:
+                is_item = bool(line["dash"])
+                around = len(line["indent"]) - int(not is_item)
+        if line_start == 0 or around < 0:
             return None
         line_start = text.rfind("\n", 0, line_start - 1) + 1
     return None
