@@ -85,5 +85,6 @@ def test_reports_name_the_calls(tmp_path: Path) -> None:
     problem = json.loads(
         run(("inspect", tmp_path / "my_robot.urdf.xacro", "--format", "json")).stdout
     )["robots"][0]["problems"][0]
-    called = {"path": "my_robot.urdf.xacro", "line": 4, "column": 1}
+    called = {"path": "my_robot.urdf.xacro", "line": 4, "column": 1, "end_line": 4}
+    called["end_column"] = 1 + len('<xacro:wheel side="left"/>')
     assert problem["location"]["calls"] == [{"macro": "wheel", "location": called}]
