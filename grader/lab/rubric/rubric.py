@@ -11,6 +11,7 @@ from pathlib import Path
 
 from grader.base.errors import InputError, RubricError
 from grader.base.names import did_you_mean
+from grader.base.reuse import Memory
 from grader.base.text import printable_path, shell_quoted, texts_in
 from grader.files.limits import ARCHIVES, ROBOT_ENDINGS
 from grader.files.reading import read_capped, sha256_of, shipped_folder
@@ -38,7 +39,6 @@ from grader.lab.rubric.validation import BoundCarried, BoundCheck, Validation
 from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Submission
 from grader.ros.known.releases import Release
-from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import is_selector
 from grader.ros.urdf.reader import Reading, find_xacro, read_urdf
@@ -135,8 +135,8 @@ class Rubric:
     links: frozenset[str] = frozenset()  # that criteria name
     # the packages of other people whose programs criteria name
     installed: frozenset[str] = frozenset()
-    _launch_cache: LaunchCache = field(
-        default_factory=LaunchCache, init=False, compare=False, repr=False
+    _memory: Memory = field(
+        default_factory=Memory, init=False, compare=False, repr=False
     )  # of its submissions
 
     @property
@@ -148,7 +148,7 @@ class Rubric:
             self.folders,
             self.links,
             self.packages,
-            self._launch_cache,
+            self._memory,
             self.installed,
             self.distro,
         )
@@ -360,7 +360,7 @@ def _reference_solution(rubric: TomlRow, path: Path, data: bytes) -> ReferenceSo
         package,
         rubric.get("folders", ()),
         packages=rubric.get("packages", ()),
-        launch_cache=LaunchCache(),
+        memory=Memory(),
         distro=rubric.get("distro", "jazzy"),
     )
 

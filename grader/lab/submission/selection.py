@@ -280,7 +280,7 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
 
 
 def _packages_in(tree: Tree, lab: Lab) -> tuple[Package, ...]:
-    return read_packages(tree, lab.urdf, lab.package, lab.packages, lab.launch_cache, lab.installed)
+    return read_packages(tree, lab.urdf, lab.package, lab.packages, lab.memory, lab.installed)
 
 
 def _project_robots(robots: Sequence[RobotFile], labs: LabFolders) -> set[str]:

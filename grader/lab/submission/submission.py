@@ -6,12 +6,12 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.reuse import Memory
 from grader.base.text import enumerated, was_not_committed
 from grader.files.limits import MAX_FILE_SIZE, ROBOT_ENDINGS
 from grader.files.reading import URDF_LIMIT, sha256_of
 from grader.files.tree import File, Tree, make_tree
 from grader.ros.known.releases import Release
-from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.package.package import NO_PACKAGE, Package
 from grader.ros.package.robot_file import (
     Absent,
@@ -46,7 +46,7 @@ class Lab(NamedTuple):
     folders: tuple[str, ...] = ()  # names of the lab's folder
     links: frozenset[str] = frozenset()  # the names of the robot's links
     packages: tuple[str, ...] = ()  # the names of all packages, if there are several
-    launch_cache: LaunchCache | None = None  # of its submissions, where several are read
+    memory: Memory | None = None  # of its submissions, where several are read
     # the packages of other people whose programs the lab asks for: they are on its machines
     installed: frozenset[str] = frozenset()
     distro: Release | None = None  # of ROS 2; None for any

@@ -15,6 +15,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.base.merge_conflicts import resolve_conflicts
+from grader.base.reuse import Answers, Memory
 from grader.base.source import Location, Source
 from grader.ros.build.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.ros.config.yaml_nodes import yaml_value
@@ -29,7 +30,6 @@ from grader.ros.launch.api import (
     is_a,
 )
 from grader.ros.launch.call_arguments import LaunchFunctions, join_path, kind_of
-from grader.ros.launch.launch_cache import KeptLaunch, LaunchCache, MachineRecorder
 from grader.ros.launch.launch_model import (
     MAX_STEPS,
     Contents,
@@ -43,6 +43,7 @@ from grader.ros.launch.launch_model import (
     UnknownText,
     texts_by_name,
 )
+from grader.ros.launch.machine_recorder import MachineRecorder
 from grader.ros.launch.substitutions import (
     PART_UNKNOWN,
     check_xacro_words,
@@ -96,7 +97,7 @@ def read_launch(
     installed: str,
     machine: Machine,
     arguments: Mapping[str, str] = _NO_ARGUMENTS,
-    cache: LaunchCache | None = None,
+    memory: Memory | None = None,
     work: Budget | None = None,
 ) -> Launch:
     """Read a launch file and evaluate it. Never raises.
@@ -107,28 +108,23 @@ def read_launch(
         installed: Its path below the prefix after a build.
         machine: What is installed besides.
         arguments: The launch arguments that it is given.
-        cache: The launch files that were read before.
+        memory: The launch files that were read before.
         work: The budget of all files of the submission.
     """
     work = work or Budget()
+
+    def read(answers: Answers[Machine]) -> Launch:
+        context = Context(
+            f"{PREFIX}/{installed}",
+            MachineRecorder(answers),
+            dict(arguments),
+            given=frozenset(arguments),
+            budget=Budget(MAX_STEPS, whole=work),
+        )
+        return _LaunchReader().read(data, path, installed, context)
+
     key = (data, path, installed, tuple(arguments.items()))
-    kept = cache.find(key, machine) if cache is not None else None
-    if kept is not None and kept.cost <= work.left:
-        work.left -= kept.cost
-        return kept.launch
-    recorder, before = MachineRecorder(machine), work.left
-    context = Context(
-        f"{PREFIX}/{installed}",
-        recorder,
-        dict(arguments),
-        given=frozenset(arguments),
-        budget=Budget(MAX_STEPS, whole=work),
-    )
-    launch = _LaunchReader().read(data, path, installed, context)
-    # What other files of a submission leave too little work for is another launch elsewhere.
-    if cache is not None and not work.is_spent:
-        cache.keep(key, KeptLaunch(recorder, launch, before - work.left))
-    return launch
+    return (memory or Memory()).recall(key, machine, work, read)
 
 
 @dataclass(slots=True)

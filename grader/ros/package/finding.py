@@ -7,11 +7,11 @@ from itertools import product
 
 from grader.base.errors import InputError
 from grader.base.names import closest, folded
+from grader.base.reuse import Memory
 from grader.base.source import Location, Source
 from grader.files.tree import Tree
 from grader.ros.build.manifest import Manifest, read_manifest
 from grader.ros.build.places import SHARE
-from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
 from grader.ros.package.robot_file import launch_folders
 from grader.ros.package.robots import RobotFile
@@ -89,7 +89,7 @@ def read_packages(
     urdf: str,
     name: str = "",
     names: tuple[str, ...] = (),
-    launch_cache: LaunchCache | None = None,
+    memory: Memory | None = None,
     installed: frozenset[str] = frozenset(),
     most: int = _MAX_PACKAGES,
     *,
@@ -106,13 +106,13 @@ def read_packages(
         urdf: The path of the URDF in the package.
         name: The name that the package should have.
         names: The names of all packages, if there are several.
-        launch_cache: The launch files that were read for the same lab.
+        memory: The launch files that were read for the same lab.
         installed: The packages that are on the lab's machines.
         most: How many are read.
         are_whole: Whether packages also have the files of those in them, as builds copy them.
     """
     known: dict[str, Package] = {}
-    cache = launch_cache if launch_cache is not None else LaunchCache()
+    cache = memory if memory is not None else Memory()
     wanted = names or (name,)
     work = whole_budget(file.size for file in tree.files.values() if file.name.endswith(_TEXTS))
     folders = find_packages(tree, wanted, most)
@@ -133,7 +133,7 @@ def read_packages(
             installed_besides=installed,
             ignored_by=_find_marker(tree, folder),
             inner=inner,
-            launch_cache=cache,
+            memory=cache,
             work=work,
         )
         packages.append(package)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.names import closest, near
+from grader.base.reuse import Memory
 from grader.base.source import Location, Source
 from grader.base.text import enumerated, was_not_committed
 from grader.files.tree import IS_LINK, Tree
@@ -22,7 +23,6 @@ from grader.ros.build.places import (
     launch_stem,
     share_parts,
 )
-from grader.ros.launch.launch_cache import LaunchCache
 from grader.ros.python.budget import PYTHON_LIMIT, Budget
 
 # The readers are imported when they are needed: a URDF on its own needs none of them.
@@ -77,7 +77,7 @@ class Package:
     ignored_by: str = ""  # the path of a file for which colcon ignores it
     # Folders of packages in it, each with a slash, whose files it has: a build copies them.
     inner: tuple[str, ...] = ()
-    launch_cache: LaunchCache = field(default_factory=LaunchCache)
+    memory: Memory = field(default_factory=Memory)
     arguments: "Mapping[str, str]" = field(default_factory=dict)  # that its launch files are given
     work: Budget = field(default_factory=Budget)  # to read and compare all files of the submission
     # The package without other launch arguments: what a build installs does not depend on them.
@@ -380,7 +380,7 @@ class Package:
                 data = self.tree.files[path].read(PYTHON_LIMIT)
             installed = self._installed_path(path)
             launch = read_launch(
-                data, full, installed, self, self.arguments, self.launch_cache, self.work
+                data, full, installed, self, self.arguments, self.memory, self.work
             )
         except InputError as error:
             launch = Launch(Source(full, ""), unread=str(error))

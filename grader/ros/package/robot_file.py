@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.problems import Problem, causes, in_order
+from grader.base.reuse import Answers, Memory
 from grader.base.slips import Slip
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from grader.ros.launch.launch_model import NamedFile
     from grader.ros.xacro.expansion import ExpandedSource
     from grader.ros.xacro.texts import OtherArguments
+    from grader.ros.xacro.xacro_files import SurroundingFiles
 
 _MAX_FOLDERS = 40  # whose launch files are read
 _NO_FILES = make_tree("", (), ())
@@ -134,6 +136,7 @@ class Surroundings(NamedTuple):
     ask: Callable[[str], object] = lambda _: (
         None
     )  # is called with the name of each other file that xacro reads
+    memory: Memory | None = None  # of robots that were read before
 
     def robot_references(self, path: str) -> "list[NamedFile]":
         """Return where launch files of the graded package, else of others, read a URDF; or those in
@@ -383,7 +386,6 @@ def _expand_xacro(
     is: what is in it cannot be determined.
     """
     from grader.ros.build.places import SHARE  # late: most URDFs are no xacro
-    from grader.ros.xacro.expansion import expand
     from grader.ros.xacro.texts import INSTALLED
 
     launched = dict(references[0].arguments) if references else {}
@@ -402,7 +404,30 @@ def _expand_xacro(
             given[name] = f"{INSTALLED}/{package}/share/{package}/{inside}".rstrip("/")
     arguments = {**surroundings.launch_arguments, **given, **surroundings.arguments}
     others = surroundings.other_arguments(path, references)
-    read = partial(expand, data, path, surroundings, arguments, others)
+    key = (data, path, tuple(arguments.items()), others)
+    if surroundings.memory is None:
+        return _read_expanded(*key, surroundings)
+
+    from grader.ros.package.recorded_files import RecordedFiles  # late: only editors read twice
+
+    def read(answers: "Answers[SurroundingFiles]") -> Reading:
+        return _read_expanded(*key, RecordedFiles(answers, surroundings.budget))
+
+    files: SurroundingFiles = surroundings
+    return surroundings.memory.recall(key, files, surroundings.budget, read)
+
+
+def _read_expanded(
+    data: bytes,
+    path: str,
+    arguments: "tuple[tuple[str, str | None], ...]",
+    others: "OtherArguments",
+    files: "SurroundingFiles",
+) -> Reading:
+    """Return the robot that xacro makes of a file with these arguments, as `_expand_xacro` does."""
+    from grader.ros.xacro.expansion import expand  # late: as above
+
+    read = partial(expand, data, path, files, dict(arguments), others)
     expansion = read()
     if expansion.root is None and expansion.recovered is None and expansion.problems:
         raw = read_urdf(data, path)

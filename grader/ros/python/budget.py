@@ -72,6 +72,22 @@ class Budget:
             self.whole.left -= parts
         return not self.is_spent
 
+    def mark(self) -> tuple[int, int]:
+        """Return the parts that are left, of this budget and of that of all files."""
+        return self.left, self.whole.left if self.whole is not None else 0
+
+    def repeat(self, cost: tuple[int, int]) -> bool:
+        """Charge again what was charged for the same work, as two marks tell; return whether it was
+        left.
+        """
+        own, of_whole = cost
+        if own > self.left or (self.whole is not None and of_whole > self.whole.left):
+            return False
+        self.left -= own
+        if self.whole is not None:
+            self.whole.left -= of_whole
+        return True
+
     def measure(self, value: py.Value, kind: str = "plain") -> int:
         """Charge a value and return its size: its parts, each as often as it occurs. Raises
         Undetermined.

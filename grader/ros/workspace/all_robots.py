@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import TypeGuard
 
 from grader.base.errors import InputError, NotDecided
+from grader.base.reuse import Memory
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree
@@ -27,7 +28,11 @@ _MAX_PACKAGES, _MAX_ROBOTS = 1000, 200
 
 
 def read_workspace(
-    tree: Tree, identity: str, max_size: int, arguments: Mapping[str, str]
+    tree: Tree,
+    identity: str,
+    max_size: int,
+    arguments: Mapping[str, str],
+    memory: Memory | None = None,
 ) -> OpenedWorkspace:
     """Return the packages in a file tree, and their robots in the order of their paths.
 
@@ -36,8 +41,10 @@ def read_workspace(
         identity: The name of the folder or archive.
         max_size: The largest size of a robot, in bytes.
         arguments: The arguments of xacro that the user gives.
+        memory: What was read of an earlier state of the files.
     """
-    packages = _outermost(read_packages(tree, "", most=_MAX_PACKAGES, are_whole=True))
+    found = read_packages(tree, "", memory=memory, most=_MAX_PACKAGES, are_whole=True)
+    packages = _outermost(found)
     ros1_packages = tuple(package for package in packages if package.is_of_ros1)
     return OpenedWorkspace(
         identity,
@@ -45,8 +52,9 @@ def read_workspace(
         packages=tuple(package for package in packages if package not in ros1_packages),
         whole_tree=tree,
         is_single=False,
-        robots=tuple(_read_robots(tree, packages, max_size, arguments)),
+        robots=tuple(_read_robots(tree, packages, max_size, arguments, memory)),
         ros1_packages=ros1_packages,
+        memory=memory,
     )
 
 
@@ -62,7 +70,11 @@ def _outermost(packages: tuple[Package, ...]) -> tuple[Package, ...]:
 
 
 def _read_robots(
-    tree: Tree, packages: tuple[Package, ...], max_size: int, arguments: Mapping[str, str]
+    tree: Tree,
+    packages: tuple[Package, ...],
+    max_size: int,
+    arguments: Mapping[str, str],
+    memory: Memory | None,
 ) -> list[Read | Unreadable]:
     found = find_robots(tree, max_size=max_size)
     launched = launched_paths(tree, packages, found)
@@ -74,7 +86,13 @@ def _read_robots(
         budget = Budget(whole=whole)
         around = package_around(packages, file.path)
         surroundings = Surroundings(
-            budget, tree, around, packages, arguments, assumes_defaults=True
+            budget,
+            tree,
+            around,
+            packages,
+            arguments,
+            assumes_defaults=True,
+            memory=memory,
         )
         robot = _read(tree, file, max_size, surroundings)
         is_loaded = file.path in launched and file.path not in included

@@ -16,6 +16,7 @@ from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Unreadable, Urdf
 
 if TYPE_CHECKING:
+    from grader.base.reuse import Memory
     from grader.ros.package.mesh_loading import Around, MeshLoader
     from grader.ros.workspace.all_names import WorkspaceNames
     from grader.ros.workspace.extent import Extent
@@ -42,6 +43,7 @@ class OpenedWorkspace:
     distro: Release | None = None  # the release of ROS 2 that a lab is for
     stated: StatedReleases = NOT_STATED  # those that a workspace is for
     around: "Around | None" = None  # of a URDF on its own: reads the packages around it
+    memory: "Memory | None" = None  # what was read of an earlier state of the files
 
     @cached_property
     def workspace(self) -> "Workspace":
@@ -54,7 +56,9 @@ class OpenedWorkspace:
         urdfs = tuple(it for it in (*self.robots, self.urdf) if isinstance(it, Read))
         has_unread = has_other_robots or any(isinstance(it, Unreadable) for it in self.robots)
         releases = (self.distro,) if self.distro is not None else self.stated.releases
-        return Workspace(self.packages, urdfs, self.whole_tree, has_unread, releases)
+        return Workspace(
+            self.packages, urdfs, self.whole_tree, has_unread, releases, memory=self.memory
+        )
 
     @property
     def path(self) -> str | None:

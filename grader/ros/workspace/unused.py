@@ -7,7 +7,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 
-from grader.base.source import Location
+from grader.base.source import Location, Source
 from grader.files.tree import Tree
 from grader.ros.package.made_paths import made_paths
 from grader.ros.workspace.workspace import Workspace
@@ -80,7 +80,11 @@ def _made(workspace: Workspace) -> Iterator[re.Pattern[str]]:
     """Yield patterns for the paths that texts of the workspace make of variables."""
     for package in workspace.packages:
         for source in workspace.sources_of(package, _MAKERS):
-            yield from made_paths(source)
+            yield from workspace.recall(_made_in, source.path, source.text)
+
+
+def _made_in(path: str, text: str) -> list[re.Pattern[str]]:
+    return [*made_paths(Source(path, text))]
 
 
 def _words_of_files(workspace: Workspace) -> dict[str, frozenset[bytes]]:
@@ -88,16 +92,21 @@ def _words_of_files(workspace: Workspace) -> dict[str, frozenset[bytes]]:
     words: dict[str, frozenset[bytes]] = {}
     for package in workspace.packages:
         for path in package.tree.files:
-            words.update(_words(package.tree, path, package.path(path)))
+            data = _text(package.tree, path)
+            if data is not None:
+                words[package.path(path)] = workspace.recall(_words, data)
     for path in workspace.tree.files:
-        if path not in words:
-            words.update(_words(workspace.tree, path, path))
+        data = _text(workspace.tree, path) if path not in words else None
+        if data is not None:
+            words[path] = workspace.recall(_words, data)
     return words
 
 
-def _words(tree: Tree, path: str, whole_path: str) -> Iterator[tuple[str, frozenset[bytes]]]:
-    """Yield the words of a file that is a text, with its path in the submission."""
+def _text(tree: Tree, path: str) -> bytes | None:
+    """Return the bytes of a file that is a text; None for another one."""
     is_text = path.endswith(_TEXTS) or posixpath.basename(path) in _TEXTS_BY_NAME
-    data = tree.read(path, _MAX_TEXT) if is_text else None
-    if data is not None:
-        yield whole_path, frozenset(_WORD.findall(data))
+    return tree.read(path, _MAX_TEXT) if is_text else None
+
+
+def _words(data: bytes) -> frozenset[bytes]:
+    return frozenset(_WORD.findall(data))

@@ -9,8 +9,10 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
+from typing import TypeVar, TypeVarTuple
 
 from grader.base.errors import InputError, NotDecided
+from grader.base.reuse import Memory
 from grader.base.source import LazyLocation, Location, Source
 from grader.files.tree import Tree, parents
 from grader.ros.build.places import (
@@ -37,7 +39,7 @@ from grader.ros.launch.node_parameters import (
 from grader.ros.package.finding import is_backup
 from grader.ros.package.installed_files import are_installs_known, open_meant
 from grader.ros.package.node_facts import NodeFacts, PackageNodes
-from grader.ros.package.package import Package
+from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.package_interfaces import PackageInterfaces, read_interfaces
 from grader.ros.package.python_nodes import read_nodes
 from grader.ros.package.robot_file import Read
@@ -46,6 +48,8 @@ from grader.ros.urdf.model import Robot
 from grader.ros.xml.elements import readable
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile
 
+_Read = TypeVarTuple("_Read")
+_T = TypeVar("_T")
 _SYSTEM = re.compile(r"<ros2_control\b")
 MANAGER, SPAWNERS = "controller_manager", ("spawner", "spawner.py")
 _NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
@@ -68,6 +72,13 @@ _PROGRAMS = (".py", ".cpp", ".cc", ".hpp", ".sh", "CMakeLists.txt")
 _USUAL_FOLDERS = (
     *("action", "config", "include", "launch", "maps", "meshes", "models", "msg", "params"),
     *("resource", "rviz", "scripts", "src", "srv", "test", "urdf", "worlds"),
+)
+# Of files without code: parameters, models, pictures and texts.
+_NO_CODE = frozenset(
+    {
+        *(".yaml", ".yml", ".urdf", ".xacro", ".srdf", ".sdf", ".world", ".rviz", ".xml"),
+        *(".stl", ".dae", ".obj", ".png", ".jpg", ".jpeg", ".gif", ".pgm", ".pdf", ".md"),
+    }
 )
 _WITH_LINES = (".yaml", ".yml", ".py")  # files whose comments begin with #
 _COMMENT_LINE = re.compile(r"(?:^|(?<=\s))#[^\n]*")
@@ -117,6 +128,7 @@ class Workspace:
     tree: Tree  # all files, also those outside of packages
     has_unread_robots: bool  # whether other files may be robots
     releases: tuple[Release, ...] = ()  # in one of which names should be; () for any
+    memory: Memory | None = None  # what was read of an earlier state of the files
 
     @cached_property
     def _work(self) -> Budget:
@@ -245,13 +257,15 @@ class Workspace:
             launched = {path for owner, path, _ in self.launches if owner is package}
             for path in _read_paths(package, (it for it in paths if it not in launched)):
                 whole_path, data = package.path(path), package.tree.read(path, _MAX_YAML)
-                if data is None:
-                    continue
-                try:
-                    files[whole_path] = read_yaml(data, whole_path)
-                except YamlFault as fault:
-                    files[whole_path] = fault
+                if data is not None:
+                    files[whole_path] = self.recall(_read_yaml, data, whole_path)
         return files
+
+    def recall(self, read: Callable[[*_Read], _T], *of: *_Read) -> _T:
+        """Return what a function makes of texts and nothing else, or made of them before."""
+        if self.memory is None:
+            return read(*of)
+        return self.memory.recall((read, *of), None, self._work, lambda _: read(*of))
 
     @property
     def trees(self) -> Iterator[tuple[str, YamlNode]]:
@@ -318,7 +332,13 @@ class Workspace:
     @cached_property
     def nodes_by_package(self) -> Mapping[str, PackageNodes]:
         """The nodes of the installed Python modules and of C++, by the names of packages."""
-        return {package.name: _nodes_of(package) for package in self.packages}
+        return {package.name: self._nodes_in(package) for package in self.packages}
+
+    def _nodes_in(self, package: Package) -> PackageNodes:
+        if self.memory is None:
+            return _nodes_of(package)
+        key = ("nodes", package.name, _program_texts(package))
+        return self.memory.recall(key, None, package.budget, lambda _: _nodes_of(package))
 
     @cached_property
     def interfaces(self) -> Mapping[str, PackageInterfaces]:
@@ -731,6 +751,24 @@ class Workspace:
         for package in self.packages:
             sources += self.sources_of(package, (".py",))
         return tuple(source.text for source in sources)
+
+
+def _read_yaml(data: bytes, path: str) -> YamlNode | YamlFault:
+    try:
+        return read_yaml(data, path)
+    except YamlFault as fault:
+        return fault
+
+
+def _program_texts(package: Package) -> tuple[tuple[str, bytes | None], ...]:
+    """Return the files of a package, each with its bytes unless its ending says that it has no
+    code.
+    """
+    texts: list[tuple[str, bytes | None]] = []
+    for path, file in package.tree.files.items():
+        has_code = path == MANIFEST or file.suffix not in _NO_CODE
+        texts.append((path, package.tree.read(path, _MAX_YAML) if has_code else None))
+    return tuple(texts)
 
 
 def _nodes_of(package: Package) -> PackageNodes:
