@@ -78,8 +78,9 @@ class Memory:
     file for each edit. An editor owns a large one, for all files of a workspace.
     """
 
-    def __init__(self, most: int = 4) -> None:
-        self._most = most
+    def __init__(self, most: int = 4, check: Callable[[], object] = lambda: None) -> None:
+        """`most` results are kept. `check` is called before each work, and raises what ends it."""
+        self._most, self._check = most, check
         self._kept: dict[Hashable, _Kept] = {}
         self._used: set[Hashable] = set()
 
@@ -98,6 +99,7 @@ class Memory:
             work: The budget to which the work is charged, also where it is not done again.
             make: Does the work; it asks by way of the answers.
         """
+        self._check()
         kept = self._kept.get(key)
         if kept is not None and kept.answers.are_those_of(asked) and work.repeat(kept.cost):
             self._used.add(key)

@@ -11,8 +11,9 @@ from grader.base.reuse import Memory
 from grader.files.opening import open_tree
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree, overlaid
+from grader.ros.package.robot_file import Read
 from grader.ros.workspace.all_robots import read_workspace
-from tests.checkout import ROOT
+from tests.command_line import ROOT
 
 _WORKSPACES = [
     "rubrics/diffdrive",
@@ -39,7 +40,7 @@ def _found(files: _Files, memory: Memory | None) -> list[Problem]:
     opened = read_workspace(tree, "ws", URDF_LIMIT, {}, memory).of_release(None, "")
     found = opened.package_problems()
     for robot in opened.robots:
-        if not isinstance(robot, tuple) or hasattr(robot, "loaded"):
+        if isinstance(robot, Read):
             found += opened.problems_of(robot)
     return found
 
@@ -76,7 +77,7 @@ def _edited(files: _Files, draw: random.Random) -> _Files:
 
 @pytest.mark.parametrize("folder", _WORKSPACES)
 def test_equals_one_from_nothing(folder: str) -> None:
-    draw = random.Random(folder)  # noqa: S311  no secret
+    draw = random.Random(folder)
     files = _files_of(ROOT / folder)
     memory, now = Memory(10_000), files
     for number in range(25):

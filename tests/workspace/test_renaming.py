@@ -90,7 +90,7 @@ def _uses() -> list[tuple[Use, Edit]]:
     return [
         (use, edit)
         for use, slip in slips
-        for edit in correction_edits(cart(cart_files()), slip)[:1]
+        for edit in correction_edits(cart(cart_files()).source, slip)[:1]
     ]
 
 

@@ -24,6 +24,7 @@ COMMANDS = {
     "grade": "grade",
     "inspect": "inspect",
     "view": "view",
+    "lsp": "lsp",
     "batch": "batch",
     "mark": "review",
     "review": "review",

@@ -30,7 +30,7 @@ def compared_names(
     known = frozenset(families)
     for fact in compared_facts(submission.workspace, known) if known else ():
         correction = Correction(fact.location, fact.name, misspelt(fact.name))
-        for edit in correction_edits(submission, correction)[:1]:
+        for edit in correction_edits(submission.source, correction)[:1]:
             yield fact, edit
 
 

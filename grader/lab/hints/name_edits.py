@@ -3,7 +3,7 @@ parameters.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import chain, combinations
 from os.path import commonprefix
 from typing import Any, NamedTuple
@@ -120,7 +120,7 @@ def _ways(
     """Yield the edits that make a correction, or the reverse one; none into the name that fewer
     places write.
     """
-    ways = [correction_edits(submission, it) or spelling.only_edit(it) for it in either]
+    ways = [correction_edits(submission.source, it) or spelling.only_edit(it) for it in either]
     is_only = len(ways) == 1
     for edits in ways:
         if not edits:
@@ -175,11 +175,11 @@ def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterat
             return
 
 
-def correction_edits(submission: Submission, correction: Correction) -> Edits:
+def correction_edits(source_of: Callable[[str], Source | None], correction: Correction) -> Edits:
     """Return the edits that make a correction in the text; none where the name is not written there
     as a whole.
     """
-    at, source = correction.location, submission.source(correction.location.path)
+    at, source = correction.location, source_of(correction.location.path)
     if source is None:
         return ()
     for old, new in _as_written(correction.old, correction.new):

@@ -101,15 +101,22 @@ def is_on_every_machine(package: str) -> bool:
     return package in _machine()["packages"] or package in _machine()["other_packages"]
 
 
-def is_known_package(name: str) -> bool:
-    """Return whether a table names a package."""
+@cache
+def known_packages() -> frozenset[str]:
+    """Return the packages that a table names."""
     packages = {*known()["without_frames"], *known()["programs"], *known()["metapackages"]}
     for members in known()["metapackages"].values():
         packages.update(members)
     for names in (known()["node_names"], known()["controllers"]):
         packages.update(each.partition("/")[0] for each in names)
     packages.update(path.split("/")[1] for path in known()["launch_arguments"])
-    return name in packages or is_on_every_machine(name) or name in started_by_launch_files()
+    packages.update(_machine()["packages"], _machine()["other_packages"])
+    return frozenset(packages.union(started_by_launch_files()))
+
+
+def is_known_package(name: str) -> bool:
+    """Return whether a table names a package."""
+    return name in known_packages()
 
 
 def programs_of(package: str) -> Sequence[str]:

@@ -3,8 +3,10 @@
 from collections.abc import Collection, Iterator
 from functools import lru_cache
 from itertools import chain
+from typing import NamedTuple
 
 from grader.base.errors import NotDecided
+from grader.base.source import Location
 from grader.ros.package.package import Package
 from grader.ros.workspace.arguments import argument_facts
 from grader.ros.workspace.bridges import bridge_facts
@@ -78,22 +80,44 @@ _READERS = (
 _OF_FACT, _OF_MISMATCH = 3, 1_000
 
 
+class _Facts(NamedTuple):
+    facts: list[Fact]
+    why_not_all: NotDecided | None = None
+
+
 @lru_cache(maxsize=2)
 def read_agreement(workspace: Workspace) -> Agreement:
     """Return what does not agree in a workspace; what is found before the budget of the submission
     is spent, and that the rest is not compared.
     """
-    facts: list[Fact] = []
+    facts, error = _facts_of(workspace)
+    unused: tuple[Location, ...] = ()
     try:
-        facts += read_facts(workspace)
+        if error is not None:
+            raise error
         found = agreement(facts, workspace.charge)
         unused = tuple(unused_files(workspace))
-    except NotDecided as error:
-        found = uncompared(facts, str(error))
-        unused = ()
+    except NotDecided as reason:
+        found = uncompared(facts, str(reason))
     # names_agree needs a package.
     families = found.families if workspace.packages else frozenset[AnyFamily]()
     return found._replace(families=families, unused=unused)
+
+
+@lru_cache(maxsize=2)
+def _facts_of(workspace: Workspace) -> _Facts:
+    """Return what is read before the budget of the submission is spent."""
+    facts: list[Fact] = []
+    try:
+        facts += read_facts(workspace)
+    except NotDecided as error:
+        return _Facts(facts, error)
+    return _Facts(facts)
+
+
+def names_in(workspace: Workspace) -> list[Definition | Use]:
+    """Return the names that files define and use, as far as they are read."""
+    return [fact for fact in _facts_of(workspace).facts if isinstance(fact, Definition | Use)]
 
 
 def wrong_names(

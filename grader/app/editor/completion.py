@@ -1,0 +1,133 @@
+"""The names that an editor offers at a place where one is written."""
+
+import re
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from lsprotocol import types as lsp
+
+from grader.app.editor.look import Look
+from grader.app.editor.places import TextPlace
+from grader.ros.workspace.offered_names import OfferedKind, offered_names
+
+_MAX_BEFORE = 2_000  # characters, in which it is searched what is asked for
+_MAX_OFFERED = 500
+_PACKAGE = r"(?P<owner>[\w.-]+)"
+_QUOTE = "[\"']"
+
+
+class _Context(NamedTuple):
+    """What may be written behind a text: its pattern may name the owner of the names."""
+
+    endings: tuple[str, ...]
+    before: re.Pattern[str]
+    kinds: Sequence[OfferedKind]
+
+
+def _context(endings: Sequence[str], before: str, *kinds: OfferedKind) -> _Context:
+    return _Context(tuple(endings), re.compile(rf"{before}[\w.~/-]*\Z", re.DOTALL), kinds)
+
+
+def _attribute(tags: str, name: str) -> str:
+    """Return the pattern of the beginning of an attribute of some tags."""
+    return rf"<(?:{tags})\b[^<>]*\s{name}\s*=\s*{_QUOTE}"
+
+
+_XML = (".urdf", ".xacro", ".xml", ".sdf", ".srdf", ".world", ".launch")
+_YAML = (".yaml", ".yml")
+_PYTHON = (".py",)
+_LIST_BEFORE = rf"(?:\s*:\s*\[?|\s*:\s*(?:\n\s*-[^\n]*)*\n\s*-|[^\n]*\[[^\]\n]*[\[,])\s*{_QUOTE}?"
+_CONTEXTS: Sequence[_Context] = (
+    _context(
+        _XML, r"\$\(find(?:-pkg-share)?\s+" + _PACKAGE + r"\)/(?=[^\"'<>]*\Z)[^\"'<>]*?", "file"
+    ),
+    _context(_XML, "package://" + _PACKAGE + "/", "file"),
+    _context(_XML, r"(?:package://|\$\(find(?:-pkg-share)?\s+)", "package"),
+    _context(_XML, r"\$\(arg\s+", "xacro argument"),
+    _context(_XML, r"\$\(var\s+", "launch argument"),
+    _context(_XML, _attribute("parent|child|disable_collisions", "link[12]?"), "link"),
+    _context(_XML, _attribute("mimic", "joint"), "joint"),
+    _context(_XML, _attribute("gazebo", "reference"), "link", "joint"),
+    _context(_XML, _attribute("joint", "name"), "joint"),
+    _context(_XML, _attribute("material", "name"), "material"),
+    _context(_XML, _attribute("node|executable|composable_node", "pkg"), "package"),
+    _context(
+        _XML,
+        rf"<(?:node|executable)\b[^<>]*\spkg\s*=\s*{_QUOTE}{_PACKAGE}{_QUOTE}[^<>]*"
+        rf"\sexec\s*=\s*{_QUOTE}",
+        "program",
+    ),
+    _context(_YAML, r"\b\w*(?:joints?|wheel_names|wheels?_name)" + _LIST_BEFORE, "joint"),
+    _context(_YAML, r"\b\w*(?:frames?|frame_id|_link)" + _LIST_BEFORE, "frame"),
+    _context(
+        _PYTHON,
+        rf"package\s*=\s*{_QUOTE}{_PACKAGE}{_QUOTE}[^()]*executable\s*=\s*{_QUOTE}",
+        "program",
+    ),
+    _context(
+        _PYTHON,
+        rf"(?:get_package_share_directory|FindPackageShare)\s*\(\s*{_QUOTE}{_PACKAGE}{_QUOTE}"
+        rf"\s*\)+\s*,\s*{_QUOTE}launch{_QUOTE}\s*,\s*{_QUOTE}",
+        "launch file",
+    ),
+    _context(
+        _PYTHON,
+        rf"(?:package\s*=|(?:get_package_share_directory|FindPackageShare)\s*\()\s*{_QUOTE}",
+        "package",
+    ),
+    _context(_PYTHON, rf"LaunchConfiguration\s*\(\s*{_QUOTE}", "launch argument"),
+    _context(_PYTHON, rf"frame_id\s*=\s*{_QUOTE}", "frame"),
+    _context(_PYTHON, rf"\bfrom\s+{_PACKAGE}\.msg\s+import\s+(?:\w+\s*,\s*)*", "message"),
+    _context(_PYTHON, rf"\bfrom\s+{_PACKAGE}\.srv\s+import\s+(?:\w+\s*,\s*)*", "service"),
+    _context(_PYTHON, rf"\bfrom\s+{_PACKAGE}\.action\s+import\s+(?:\w+\s*,\s*)*", "action"),
+)
+# Above a line of YAML that a key begins: the sections that it is in.
+_KEY = re.compile(r"(?P<indent> *)(?P<key>[\w/*.-]+):")
+_PARAMETERS = "ros__parameters"
+
+
+def completions(look: Look, place: TextPlace) -> list[lsp.CompletionItem]:
+    """Return the names that may be written at a place."""
+    before = place.lines.text_before(place.line, place.column)[-_MAX_BEFORE:]
+    for context in _CONTEXTS:
+        found = context.before.search(before) if place.path.endswith(context.endings) else None
+        if found is not None:
+            owner = found.groupdict().get("owner") or ""
+            workspace = look.opened.workspace
+            names = [
+                name for kind in context.kinds for name in offered_names(workspace, kind, owner)
+            ]
+            return _items(names, context.kinds[0])
+    if place.path.endswith(_YAML):
+        node = _node_around(before)
+        if node:
+            names = offered_names(look.opened.workspace, "parameter", node)
+            return _items(names, "parameter")
+    return []
+
+
+def _node_around(before: str) -> str:
+    """Return the node whose parameters are written where a line of YAML begins; empty where none
+    are.
+    """
+    *above, line = before.split("\n")
+    if not re.fullmatch(r" *[\w.]*", line):
+        return ""
+    indent = len(line) - len(line.lstrip(" "))
+    is_parameters = False
+    for text in reversed(above):
+        key = _KEY.match(text)
+        if key is None or len(key["indent"]) >= indent:
+            continue
+        indent = len(key["indent"])
+        if is_parameters:
+            return key["key"].rpartition("/")[2]
+        is_parameters = key["key"] == _PARAMETERS
+    return ""
+
+
+def _items(names: Iterable[str], kind: OfferedKind) -> list[lsp.CompletionItem]:
+    shown = [*dict.fromkeys(names)][:_MAX_OFFERED]
+    return [
+        lsp.CompletionItem(name, kind=lsp.CompletionItemKind.Value, detail=kind) for name in shown
+    ]

@@ -1,0 +1,49 @@
+"""Corrections that an editor offers at a problem."""
+
+from collections.abc import Iterator
+
+from lsprotocol import types as lsp
+
+from grader.app.editor.look import Look
+from grader.app.editor.places import TextPlace
+from grader.base.source import Edits, Location
+from grader.base.text import quoted
+from grader.lab.hints.name_edits import correction_edits
+from grader.ros.package.robot_file import Read
+
+
+def actions(look: Look, place: TextPlace, wanted: lsp.Range) -> list[lsp.CodeAction]:
+    """Return the corrections of what is wrong in a range of a file."""
+    ranges = place.ranges(look)
+    found = []
+    for title, at, edits in [*_of_names(look, place.path), *_of_robots(look, place.path)]:
+        if edits and _overlap(ranges.range(at), wanted):
+            edit = ranges.workspace_edit(edits)
+            found.append(lsp.CodeAction(title, lsp.CodeActionKind.QuickFix, edit=edit))
+    return found
+
+
+def _of_names(look: Look, path: str) -> Iterator[tuple[str, Location, Edits]]:
+    """Yield the corrections of names that do not agree, with their titles and places."""
+    for mismatch in look.mismatches.values():
+        if mismatch.location.path == path:
+            for each in mismatch.corrections:
+                title = f"Change {quoted(each.old)} to {quoted(each.new)}"
+                where = each.location
+                if where.path != path:
+                    title += f" in {where.file_and_line}"
+                yield title, mismatch.location, correction_edits(look.opened.source, each)
+
+
+def _of_robots(look: Look, path: str) -> Iterator[tuple[str, Location, Edits]]:
+    """Yield the words of robots that surely are others, corrected."""
+    for robot in look.opened.robots:
+        for slip in robot.slips if isinstance(robot, Read) else ():
+            if slip.location.path == path and slip.edits:
+                changes = [f"{quoted(it.old)} to {quoted(it.new)}" for it in slip.edits[:1]]
+                yield f"Change {changes[0]}", slip.location, slip.edits
+
+
+def _overlap(one: lsp.Range, other: lsp.Range) -> bool:
+    """Return whether two ranges share a line."""
+    return one.start.line <= other.end.line and other.start.line <= one.end.line

@@ -1,0 +1,307 @@
+"""grader lsp: a language server on standard input and output."""
+
+import asyncio
+import gc
+import logging
+import os
+import time
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+from typing import Any, TypeVar
+
+from lsprotocol import types as lsp
+from pygls.lsp.server import LanguageServer
+from pygls.uris import from_fs_path, to_fs_path
+
+from grader import __version__
+from grader.app.editor import completion, describing, fixes, places, renaming, symbols
+from grader.app.editor.diagnostics import diagnostics_of
+from grader.app.editor.edited_files import EditedFiles
+from grader.app.editor.look import Look
+from grader.app.editor.session import EditorSession, SupersededError
+from grader.app.editor.text_ranges import TextRanges
+from grader.base.errors import GraderError
+from grader.base.text import counted
+
+_PAUSE = 0.1  # seconds after a key before the files are looked at
+_MANIFEST = "package.xml"
+_SOURCE = "grader"
+_T = TypeVar("_T")
+_Diagnostics = Mapping[str, list[lsp.Diagnostic]]
+
+
+class GraderServer(LanguageServer):
+    """The server of one editor, with a session for each folder that is open in it."""
+
+    def __init__(self, rubric: str) -> None:
+        super().__init__("grader", __version__, lsp.TextDocumentSyncKind.Incremental)
+        self.rubric = rubric
+        self.sessions: dict[Path, EditorSession] = {}
+        self._pool = ThreadPoolExecutor(max_workers=1)
+        self._refreshing: dict[Path, asyncio.Task[None]] = {}
+        self._published: dict[Path, set[str]] = {}
+
+    def open_folders(self) -> None:
+        """Start a session for each folder of the editor."""
+        for folder in self.workspace.folders.values():
+            path = to_fs_path(folder.uri)
+            if path is not None:
+                self.session_in(Path(os.path.realpath(path)))
+
+    def session_in(self, root: Path) -> EditorSession:
+        """Return the session of a folder, which is started if there is none."""
+        if root not in self.sessions:
+            self.sessions[root] = EditorSession(root, self.rubric)
+            self.refresh(root)
+        return self.sessions[root]
+
+    def session_of(self, uri: str) -> tuple[EditorSession, str] | None:
+        """Return the session that a file belongs to, with its path there. Of a file outside of all
+        folders it is that of its package, or of its folder.
+        """
+        name = to_fs_path(uri)
+        if name is None:
+            return None
+        file = Path(os.path.realpath(name))
+        roots = [root for root in self.sessions if file.is_relative_to(root)]
+        if roots:
+            root = max(roots, key=lambda it: len(it.parts))
+        else:
+            packages = (it for it in file.parents if (it / _MANIFEST).is_file())
+            root = next(packages, file.parent)
+        session = self.session_in(root)
+        path = session.files.path_of(file)
+        return (session, path) if path is not None else None
+
+    def report_server_error(self, error: Exception, source: Any) -> None:
+        """Say nothing: the editor gets what is wrong as the answer to its request."""
+
+    def change(self, uri: str, change: Callable[[EditedFiles, str], None]) -> None:
+        """Change the files of a session, and look at them again soon."""
+        found = self.session_of(uri)
+        if found is not None:
+            session, path = found
+            session.change(lambda files: change(files, path))
+            self.refresh(session.files.root)
+
+    def refresh(self, root: Path) -> None:
+        """Look at the files of a folder again soon, in place of what is waiting."""
+        waiting = self._refreshing.get(root)
+        if waiting is not None:
+            waiting.cancel()
+        self._refreshing[root] = asyncio.ensure_future(self._refresh(root))
+
+    async def _refresh(self, root: Path) -> None:
+        session = self.sessions[root]
+        await asyncio.sleep(_PAUSE)
+        start = time.monotonic()
+        try:
+            look = await self.in_thread(session.look)
+            found = await self.in_thread(partial(diagnostics_of, look, root))
+            self._publish(root, found)
+            graded = await self.in_thread(partial(session.graded, look))
+            if graded:
+                found = await self.in_thread(partial(diagnostics_of, look, root, graded))
+                self._publish(root, found)
+            seconds = time.monotonic() - start
+            files = counted(len(look.tree.files), "file")
+            text = f"{root.name}: looked at {files} in {seconds:.2f} s"
+            self.window_log_message(lsp.LogMessageParams(lsp.MessageType.Log, text))
+        except SupersededError:
+            pass
+        except GraderError as error:
+            self.window_log_message(lsp.LogMessageParams(lsp.MessageType.Warning, str(error)))
+        except Exception as error:  # noqa: BLE001  a fault of a reader must not end the server
+            self._publish(root, {_at_fault(session): [_fault(error)]})
+
+    async def in_thread(self, work: Callable[[], _T]) -> _T:
+        """Return what some work returns that is done beside the messages of the editor."""
+        return await asyncio.get_running_loop().run_in_executor(self._pool, work)
+
+    def _publish(self, root: Path, found: _Diagnostics) -> None:
+        """Show what is wrong in a folder; of files in which nothing is wrong any more, nothing."""
+        for path in sorted({*found, *self._published.get(root, ())}):
+            uri = uri_of(root, path)
+            params = lsp.PublishDiagnosticsParams(uri, found.get(path, []))
+            self.text_document_publish_diagnostics(params)
+        self._published[root] = set(found)
+
+    async def answer(
+        self,
+        uri: str,
+        position: lsp.Position,
+        make: Callable[[Look, "places.TextPlace"], _T],
+    ) -> _T | None:
+        """Return an answer about a place in a file, from a look at the files as they are now; None
+        where there is none.
+        """
+        found = self.session_of(uri)
+        if found is None:
+            return None
+        session, path = found
+
+        def work() -> _T:
+            look = session.look()
+            lines = TextRanges(look, session.files.root).lines(path)
+            line, column = lines.place(position)
+            return make(look, places.TextPlace(session.files.root, path, lines, line, column))
+
+        try:
+            return await self.in_thread(work)
+        except (GraderError, SupersededError):
+            return None
+
+
+def uri_of(root: Path, path: str) -> str:
+    """Return the address of a file of a folder."""
+    return from_fs_path(str(root / path)) or ""
+
+
+def _at_fault(session: EditorSession) -> str:
+    """Return the file to show a fault of the grader at: one that is typed, else any."""
+    return next(iter(session.files.typed), _MANIFEST)
+
+
+def _fault(error: Exception) -> lsp.Diagnostic:
+    start = lsp.Position(0, 0)
+    message = f"the grader itself failed ({type(error).__name__}); please report it"
+    return lsp.Diagnostic(
+        lsp.Range(start, start), message, severity=lsp.DiagnosticSeverity.Error, source=_SOURCE
+    )
+
+
+def make_server(rubric: str) -> GraderServer:
+    """Return the server of an editor, which grades with a rubric, an id or a file; empty for that
+    of the settings, or none.
+    """
+    server = GraderServer(rubric)
+    _follow_texts(server)
+    _answer_about_names(server)
+    _list_names(server)
+    _offer_changes(server)
+    return server
+
+
+def _follow_texts(server: GraderServer) -> None:
+    """Let a server follow what is typed and saved."""
+
+    @server.feature(lsp.INITIALIZED)
+    def initialized(ls: GraderServer, _: lsp.InitializedParams) -> None:
+        ls.open_folders()
+        watched = ls.client_capabilities.workspace
+        files = watched.did_change_watched_files if watched is not None else None
+        if files is not None and files.dynamic_registration:
+            options = {"watchers": [{"globPattern": "**/*"}]}
+            method = lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES
+            registration = lsp.Registration("watched-files", method, options)
+            ls.client_register_capability(lsp.RegistrationParams([registration]))
+
+    @server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)
+    def opened(ls: GraderServer, params: lsp.DidOpenTextDocumentParams) -> None:
+        text = params.text_document.text
+        ls.change(params.text_document.uri, lambda files, path: files.type(path, text))
+
+    @server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)
+    def changed(ls: GraderServer, params: lsp.DidChangeTextDocumentParams) -> None:
+        uri = params.text_document.uri
+        text = ls.workspace.get_text_document(uri).source
+        ls.change(uri, lambda files, path: files.type(path, text))
+
+    @server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)
+    def closed(ls: GraderServer, params: lsp.DidCloseTextDocumentParams) -> None:
+        ls.change(params.text_document.uri, lambda files, path: files.close(path))
+
+    @server.feature(lsp.TEXT_DOCUMENT_DID_SAVE)
+    def saved(ls: GraderServer, params: lsp.DidSaveTextDocumentParams) -> None:
+        ls.change(params.text_document.uri, lambda files, _: files.read_again())
+
+    @server.feature(lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES)
+    def written(ls: GraderServer, params: lsp.DidChangeWatchedFilesParams) -> None:
+        for uri in {change.uri for change in params.changes}:
+            ls.change(uri, lambda files, _: files.read_again())
+
+    @server.feature(lsp.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
+    def folders_changed(ls: GraderServer, _: lsp.DidChangeWorkspaceFoldersParams) -> None:
+        ls.open_folders()
+
+
+def _answer_about_names(server: GraderServer) -> None:
+    """Let a server say what is at a place."""
+
+    @server.feature(lsp.TEXT_DOCUMENT_HOVER)
+    async def hover(ls: GraderServer, params: lsp.HoverParams) -> lsp.Hover | None:
+        return await ls.answer(params.text_document.uri, params.position, describing.hover)
+
+    @server.feature(lsp.TEXT_DOCUMENT_DEFINITION)
+    async def definition(
+        ls: GraderServer, params: lsp.DefinitionParams
+    ) -> list[lsp.Location] | None:
+        return await ls.answer(params.text_document.uri, params.position, places.definitions)
+
+    @server.feature(lsp.TEXT_DOCUMENT_REFERENCES)
+    async def references(
+        ls: GraderServer, params: lsp.ReferenceParams
+    ) -> list[lsp.Location] | None:
+        return await ls.answer(params.text_document.uri, params.position, places.references)
+
+
+def _list_names(server: GraderServer) -> None:
+    """Let a server list names: those that may be written at a place, and those of files."""
+
+    @server.feature(
+        lsp.TEXT_DOCUMENT_COMPLETION,
+        lsp.CompletionOptions(trigger_characters=['"', "'", "/", "(", "{", "[", ".", " "]),
+    )
+    async def complete(
+        ls: GraderServer, params: lsp.CompletionParams
+    ) -> list[lsp.CompletionItem] | None:
+        return await ls.answer(params.text_document.uri, params.position, completion.completions)
+
+    @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
+    async def document_symbols(
+        ls: GraderServer, params: lsp.DocumentSymbolParams
+    ) -> list[lsp.DocumentSymbol] | None:
+        start = lsp.Position(0, 0)
+        return await ls.answer(params.text_document.uri, start, symbols.in_document)
+
+    @server.feature(lsp.WORKSPACE_SYMBOL)
+    async def workspace_symbols(
+        ls: GraderServer, params: lsp.WorkspaceSymbolParams
+    ) -> list[lsp.SymbolInformation]:
+        found: list[lsp.SymbolInformation] = []
+        for session in [*ls.sessions.values()]:
+            make = partial(symbols.in_workspace, session, params.query)
+            found += await ls.in_thread(make)
+        return found
+
+
+def _offer_changes(server: GraderServer) -> None:
+    """Let a server correct problems and rename."""
+
+    @server.feature(
+        lsp.TEXT_DOCUMENT_CODE_ACTION,
+        lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix]),
+    )
+    async def code_actions(
+        ls: GraderServer, params: lsp.CodeActionParams
+    ) -> list[lsp.CodeAction] | None:
+        make = partial(fixes.actions, wanted=params.range)
+        return await ls.answer(params.text_document.uri, params.range.start, make)
+
+    @server.feature(lsp.TEXT_DOCUMENT_PREPARE_RENAME)
+    async def prepare_rename(ls: GraderServer, params: lsp.PrepareRenameParams) -> lsp.Range | None:
+        return await ls.answer(params.text_document.uri, params.position, renaming.prepared)
+
+    @server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))
+    async def rename(ls: GraderServer, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+        make = partial(renaming.renamed, new=params.new_name)
+        return await ls.answer(params.text_document.uri, params.position, make)
+
+
+def serve(rubric: str) -> None:
+    """Answer an editor on standard input and output until it says that it ends."""
+    logging.disable()  # what is refused is an answer, and no traceback on standard error
+    gc.enable()  # unlike other commands, this one may run for hours
+    make_server(rubric).start_io()

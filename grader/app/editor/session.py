@@ -1,0 +1,75 @@
+"""A workspace that is open in an editor: what was seen of it last, and what to look at next."""
+
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from threading import Lock
+
+from grader.app.editor.edited_files import EditedFiles
+from grader.app.editor.look import Look, look_at
+from grader.app.settings import Settings, read_settings
+from grader.base.errors import GraderError
+from grader.base.reuse import Memory
+from grader.report.findings import Finding
+
+_MOST = 20_000  # results that are kept of a look
+
+
+class SupersededError(Exception):
+    """The files have changed again: a look at them as they were is of no use."""
+
+
+class EditorSession:
+    """The state of a workspace in an editor.
+
+    Its methods may be called from several threads. Looks are made one after another; a look ends
+    early where the files change meanwhile.
+    """
+
+    def __init__(self, root: Path, rubric: str = "") -> None:
+        self.files = EditedFiles(root)
+        self._rubric = rubric
+        self._version = 0  # of the files
+        self._seen = -1  # the version at which the last look was made
+        self._looking = -1
+        self._look: Look | None = None
+        self._memory = Memory(_MOST, self._check)
+        self._lock = Lock()
+
+    def change(self, change: Callable[[EditedFiles], None]) -> int:
+        """Change the files, and return the number of their new version."""
+        change(self.files)
+        self._version += 1
+        return self._version
+
+    @property
+    def settings(self) -> Settings:
+        """The settings of the workspace; none where they cannot be read. Raises nothing."""
+        with suppress(GraderError):
+            return read_settings(str(self.files.root))
+        return Settings()
+
+    def look(self) -> Look:
+        """Return a look at the files as they are now. Raises GraderError, SupersededError."""
+        with self._lock:
+            if self._look is None or self._seen != self._version:
+                self._looking = self._version
+                tree = self.files.tree()
+                self._look = look_at(tree, self.files.root, self.settings, self._memory)
+                self._seen = self._looking
+            return self._look
+
+    def _check(self) -> None:
+        if self._looking != self._version:
+            raise SupersededError
+
+    def graded(self, look: Look) -> list[Finding]:
+        """Return the criteria of the rubric that fail, each at the line to change as far as the
+        rubric's hints tell; none without a rubric. Raises GraderError.
+        """
+        name = self._rubric or self.settings.rubric
+        if not name:
+            return []
+        from grader.app.editor.criteria import criteria_findings  # late: most look without a rubric
+
+        return criteria_findings(name, look.tree, self.files.root.name)
