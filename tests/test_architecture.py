@@ -78,7 +78,13 @@ ROOMS = {
         "commands",
         "review",
     ),
-    "app": ("bundle saving settings", "ignoring hints_and_fix", "grading", "commands", "cli api"),
+    "app": (
+        "bundle saving settings",
+        "ignoring hints_and_fix",
+        "grading",
+        "commands editor",
+        "cli api",
+    ),
 }
 # The packages, or rooms of them, that may import a library: each has one concern.
 LIBRARIES = {
@@ -108,6 +114,8 @@ LIBRARIES = {
     "csv": {"classroom.tables"},
     "xlsxwriter": {"classroom.spreadsheet"},
     "pyflakes": {"ros.package"},
+    "pygls": {"app.editor"},
+    "lsprotocol": {"app.editor"},
 }
 
 

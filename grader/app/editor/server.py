@@ -16,7 +16,7 @@ from pygls.lsp.server import LanguageServer
 from pygls.uris import from_fs_path, to_fs_path
 
 from grader import __version__
-from grader.app.editor import completion, describing, fixes, places, renaming, symbols
+from grader.app.editor import completions, describing, fixes, places, renaming, symbols
 from grader.app.editor.diagnostics import diagnostics_of
 from grader.app.editor.edited_files import EditedFiles
 from grader.app.editor.look import Look
@@ -257,7 +257,7 @@ def _list_names(server: GraderServer) -> None:
     async def complete(
         ls: GraderServer, params: lsp.CompletionParams
     ) -> list[lsp.CompletionItem] | None:
-        return await ls.answer(params.text_document.uri, params.position, completion.completions)
+        return await ls.answer(params.text_document.uri, params.position, completions.completions)
 
     @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
     async def document_symbols(
