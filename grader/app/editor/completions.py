@@ -8,7 +8,6 @@ from lsprotocol import types as lsp
 
 from grader.app.editor.look import Look
 from grader.app.editor.places import TextPlace
-from grader.ros.workspace.offered_names import OfferedKind, offered_names
 
 _MAX_BEFORE = 2_000  # characters, in which it is searched what is asked for
 _MAX_OFFERED = 500
@@ -21,10 +20,10 @@ class _Context(NamedTuple):
 
     endings: tuple[str, ...]
     before: re.Pattern[str]
-    kinds: Sequence[OfferedKind]
+    kinds: Sequence[str]
 
 
-def _context(endings: Sequence[str], before: str, *kinds: OfferedKind) -> _Context:
+def _context(endings: Sequence[str], before: str, *kinds: str) -> _Context:
     return _Context(tuple(endings), re.compile(rf"{before}[\w.~/-]*\Z", re.DOTALL), kinds)
 
 
@@ -93,16 +92,14 @@ def completions(look: Look, place: TextPlace) -> list[lsp.CompletionItem]:
         found = context.before.search(before) if place.path.endswith(context.endings) else None
         if found is not None:
             owner = found.groupdict().get("owner") or ""
-            workspace = look.opened.workspace
-            names = [
-                name for kind in context.kinds for name in offered_names(workspace, kind, owner)
-            ]
+            names: list[str] = []
+            for kind in context.kinds:
+                names += look.names.offered(kind, owner)
             return _items(names, context.kinds[0])
     if place.path.endswith(_YAML):
         node = _node_around(before)
         if node:
-            names = offered_names(look.opened.workspace, "parameter", node)
-            return _items(names, "parameter")
+            return _items(look.names.offered("parameter", node), "parameter")
     return []
 
 
@@ -126,7 +123,7 @@ def _node_around(before: str) -> str:
     return ""
 
 
-def _items(names: Iterable[str], kind: OfferedKind) -> list[lsp.CompletionItem]:
+def _items(names: Iterable[str], kind: str) -> list[lsp.CompletionItem]:
     shown = [*dict.fromkeys(names)][:_MAX_OFFERED]
     return [
         lsp.CompletionItem(name, kind=lsp.CompletionItemKind.Value, detail=kind) for name in shown

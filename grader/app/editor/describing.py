@@ -10,41 +10,35 @@ from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import counted, enumerated, printable
 from grader.report.inspection import main_root
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.workspace.names import Definition, Use
 
 _MAX_NAMED = 3  # places
 
 
 def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
     """Return what is known of the name at a place; None where there is none."""
-    found = place.name(look)
+    found = look.names.at(*place.triple)
     if found is None:
         return None
-    rows = [_summary(look, found.fact), *_of_robots(look, found.fact)]
-    text = "\n\n".join(map(printable, rows))
-    markup = lsp.MarkupContent(lsp.MarkupKind.Markdown, text)
-    return lsp.Hover(markup, place.ranges(look).range(found.written or found.whole))
-
-
-def _summary(look: Look, fact: Definition | Use) -> str:
-    """Return what a name is, where it is defined, and how often it is used."""
-    same = look.names.same(fact)
-    defined = [it.location.file_and_line for it in same if isinstance(it, Definition)]
-    used = len({it.location[:3] for it in same if isinstance(it, Use)})
+    same = look.names.same(found)
+    defined = [it.at.file_and_line for it in same if it.is_definition]
     where = "defined nowhere in this workspace"
     if defined:
         where = f"defined at {enumerated([*dict.fromkeys(defined)], _MAX_NAMED)}"
-    return f"**{fact.kind}** `{fact.name}`: {where}; used {counted(used, 'time')}"
+    used = counted(sum(not it.is_definition for it in same), "time")
+    rows = [f"**{found.kind}** `{found.name}`: {where}; used {used}"]
+    rows += _of_robots(look, found.kind, found.name)
+    markup = lsp.MarkupContent(lsp.MarkupKind.Markdown, "\n\n".join(map(printable, rows)))
+    return lsp.Hover(markup, place.ranges(look).range(found.at))
 
 
-def _of_robots(look: Look, fact: Definition | Use) -> Iterator[str]:
+def _of_robots(look: Look, kind: str, name: str) -> Iterator[str]:
     """Yield the pose of a link and what a joint does, in each robot that has it."""
     for path, robot in look.robots.items():
         model = robot.robot
-        if fact.kind in ("link", "frame") and model.has_link(fact.name):
-            yield f"{_pose(robot, fact.name)} ({path})"
-        if fact.kind == "joint" and model.has_joint(fact.name):
-            yield f"{_joint(robot, fact.name)} ({path})"
+        if kind == "frame" and model.has_link(name):
+            yield f"{_pose(robot, name)} ({path})"
+        if kind == "joint" and model.has_joint(name):
+            yield f"{_joint(robot, name)} ({path})"
 
 
 def _pose(robot: Configuration, link: str) -> str:

@@ -25,7 +25,7 @@ def actions(look: Look, place: TextPlace, wanted: lsp.Range) -> list[lsp.CodeAct
 
 def _of_names(look: Look, path: str) -> Iterator[tuple[str, Location, Edits]]:
     """Yield the corrections of names that do not agree, with their titles and places."""
-    for mismatch in look.mismatches.values():
+    for mismatch in look.names.mismatches.values():
         if mismatch.location.path == path:
             for each in mismatch.corrections:
                 title = f"Change {quoted(each.old)} to {quoted(each.new)}"

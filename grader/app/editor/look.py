@@ -15,9 +15,9 @@ from grader.report.inspection import InspectedRobot, Inspection
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.workspace.all_robots import read_workspace
-from grader.ros.workspace.names import Definition, Mismatch, Use
+from grader.ros.workspace.names import Mismatch
 from grader.ros.workspace.opened import OpenedWorkspace
-from grader.ros.workspace.reading import names_in, read_agreement
+from grader.ros.workspace.name_places import NamePlaces
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -30,23 +30,14 @@ class Look:
     settings: Settings
 
     @cached_property
-    def mismatches(self) -> Mapping[tuple[str, str, int], Mismatch]:
-        """What does not agree, by its message, file and line."""
-        found = {}
-        for mismatch in read_agreement(self.opened.workspace).mismatches:
-            at = mismatch.location
-            found[mismatch.message, at.path, at.line] = mismatch
-        return found
+    def names(self) -> NamePlaces:
+        """The names that files define and use."""
+        return NamePlaces(self.opened)
 
     def mismatch_of(self, finding: Finding) -> Mismatch | None:
         """Return the names that do not agree for which there is a finding; None for another one."""
         at = finding.location
-        return self.mismatches.get((finding.message, at.path, at.line))
-
-    @cached_property
-    def names(self) -> "Names":
-        """The names that files define and use."""
-        return Names(names_in(self.opened.workspace))
+        return self.names.mismatches.get((finding.message, at.path, at.line))
 
     @cached_property
     def robots(self) -> Mapping[str, Configuration]:
@@ -57,37 +48,6 @@ class Look:
             if model is not None:
                 found[robot.path] = Configuration(model)
         return found
-
-
-class Names:
-    """The names of a workspace: where they are defined and used."""
-
-    def __init__(self, facts: Sequence[Definition | Use]) -> None:
-        self.facts = facts
-
-    def in_file(self, path: str) -> list[Definition | Use]:
-        """Return the names in a file."""
-        return [fact for fact in self.facts if fact.location.path == path]
-
-    def same(self, fact: Definition | Use) -> list[Definition | Use]:
-        """Return each place that means the same name."""
-        return [other for other in self.facts if _are_same(fact, other)]
-
-    def of_kinds(self, kinds: Sequence[str]) -> list[Definition]:
-        """Return the definitions of some kinds of names."""
-        return [it for it in self.facts if isinstance(it, Definition) and it.kind in kinds]
-
-
-def _are_same(fact: Definition | Use, other: Definition | Use) -> bool:
-    """Return whether two facts are about one name; of two owners, both have their own."""
-    if fact_key(fact) != fact_key(other):
-        return False
-    return not fact.owner or not other.owner or fact.owner == other.owner
-
-
-def fact_key(fact: Definition | Use) -> tuple[str, str]:
-    """Return the kind and the name that a fact is about. Links are frames."""
-    return "frame" if fact.kind == "link" else fact.kind, fact.name
 
 
 def look_at(tree: Tree, root: Path, settings: Settings, memory: Memory) -> Look:

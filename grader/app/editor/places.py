@@ -1,15 +1,12 @@
 """Where a name is defined, and where it is used."""
 
-from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from lsprotocol import types as lsp
 
 from grader.app.editor.look import Look
-from grader.app.editor.names_at import NamePlace, name_at, places_of
 from grader.app.editor.text_ranges import Lines, TextRanges
-from grader.ros.workspace.names import Definition, Use
 
 
 class TextPlace(NamedTuple):
@@ -23,9 +20,10 @@ class TextPlace(NamedTuple):
     line: int
     column: int
 
-    def name(self, look: Look) -> NamePlace | None:
-        """Return the name there."""
-        return name_at(look, self.path, self.line, self.column)
+    @property
+    def triple(self) -> tuple[str, int, int]:
+        """The file, the line and the column."""
+        return self.path, self.line, self.column
 
     def ranges(self, look: Look) -> TextRanges:
         """Return the ranges in the files of a look."""
@@ -34,23 +32,20 @@ class TextPlace(NamedTuple):
 
 def definitions(look: Look, place: TextPlace) -> list[lsp.Location]:
     """Return where the name at a place is defined."""
-    return [*_located(look, place, (Definition,))]
+    return _located(look, place, are_defined=True)
 
 
 def references(look: Look, place: TextPlace) -> list[lsp.Location]:
     """Return where the name at a place is defined and used."""
-    return [*_located(look, place, (Definition, Use))]
+    return _located(look, place, are_defined=False)
 
 
-def _located(look: Look, place: TextPlace, kinds: tuple[type, ...]) -> Iterator[lsp.Location]:
-    found = place.name(look)
-    if found is None:
-        return
+def _located(look: Look, place: TextPlace, *, are_defined: bool) -> list[lsp.Location]:
+    found = look.names.at(*place.triple)
     ranges = place.ranges(look)
-    facts = [fact for fact in look.names.same(found.fact) if isinstance(fact, kinds)]
-    seen: Sequence[lsp.Location] = []
-    for other in places_of(look, facts):
-        at = ranges.place(other.written or other.whole)
-        if at not in seen:
-            seen = [*seen, at]
-            yield at
+    located: list[lsp.Location] = []
+    for other in look.names.same(found) if found is not None else ():
+        at = ranges.place(other.at)
+        if (other.is_definition or not are_defined) and at not in located:
+            located.append(at)
+    return located

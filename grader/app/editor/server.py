@@ -114,7 +114,8 @@ class GraderServer(LanguageServer):
         except GraderError as error:
             self.window_log_message(lsp.LogMessageParams(lsp.MessageType.Warning, str(error)))
         except Exception as error:  # noqa: BLE001  a fault of a reader must not end the server
-            self._publish(root, {_at_fault(session): [_fault(error)]})
+            typed = next(iter(session.files.typed), _MANIFEST)
+            self._publish(root, {typed: [_fault(error)]})
 
     async def in_thread(self, work: Callable[[], _T]) -> _T:
         """Return what some work returns that is done beside the messages of the editor."""
@@ -157,11 +158,6 @@ class GraderServer(LanguageServer):
 def uri_of(root: Path, path: str) -> str:
     """Return the address of a file of a folder."""
     return from_fs_path(str(root / path)) or ""
-
-
-def _at_fault(session: EditorSession) -> str:
-    """Return the file to show a fault of the grader at: one that is typed, else any."""
-    return next(iter(session.files.typed), _MANIFEST)
 
 
 def _fault(error: Exception) -> lsp.Diagnostic:

@@ -3,15 +3,12 @@
 from lsprotocol import types as lsp
 
 from grader.app.editor.look import Look
-from grader.app.editor.names_at import places_of
 from grader.app.editor.places import TextPlace
 from grader.app.editor.session import EditorSession, SupersededError
 from grader.app.editor.text_ranges import TextRanges
 from grader.base.errors import GraderError
-from grader.ros.workspace.names import Definition
 
 _KINDS = {
-    "link": lsp.SymbolKind.Object,
     "frame": lsp.SymbolKind.Object,
     "joint": lsp.SymbolKind.Property,
     "controller": lsp.SymbolKind.Class,
@@ -28,11 +25,10 @@ def in_document(look: Look, place: TextPlace) -> list[lsp.DocumentSymbol]:
     """Return the names that a file defines, in the order of the file."""
     ranges = place.ranges(look)
     found = []
-    defined = [it for it in look.names.in_file(place.path) if isinstance(it, Definition)]
-    for each in places_of(look, defined):
-        at = ranges.range(each.written or each.whole)
-        kind = _KINDS.get(each.fact.kind, lsp.SymbolKind.Constant)
-        found.append(lsp.DocumentSymbol(each.fact.name, kind, at, at, detail=each.fact.kind))
+    for each in look.names.defined_in(place.path):
+        at = ranges.range(each.at)
+        kind = _KINDS.get(each.kind, lsp.SymbolKind.Constant)
+        found.append(lsp.DocumentSymbol(each.name, kind, at, at, detail=each.kind))
     return sorted(found, key=lambda it: (it.range.start.line, it.range.start.character))
 
 
@@ -43,16 +39,9 @@ def in_workspace(session: EditorSession, query: str) -> list[lsp.SymbolInformati
     except (GraderError, SupersededError):
         return []
     ranges = TextRanges(look, session.files.root)
-    asked = query.lower()
-    defined = []
-    for fact in look.names.facts:
-        if isinstance(fact, Definition) and asked in fact.name.lower():
-            defined.append(fact)
     found = []
-    for each in [*places_of(look, defined[:_MOST])]:
-        place = ranges.place(each.written or each.whole)
-        kind = _KINDS.get(each.fact.kind, lsp.SymbolKind.Constant)
-        found.append(
-            lsp.SymbolInformation(place, each.fact.name, kind, container_name=each.fact.kind)
-        )
+    for each in look.names.holding(query, _MOST):
+        kind = _KINDS.get(each.kind, lsp.SymbolKind.Constant)
+        place = ranges.place(each.at)
+        found.append(lsp.SymbolInformation(place, each.name, kind, container_name=each.kind))
     return found
