@@ -1,19 +1,19 @@
 """What is kept of an earlier look at a workspace changes no result, and saves most of the work."""
 
 import random
-import re
-from pathlib import Path
+from collections.abc import Mapping
+from typing import Any
 
 import pytest
 
 from grader.base.problems import Problem
 from grader.base.reuse import Memory
-from grader.files.opening import open_tree
 from grader.files.reading import URDF_LIMIT
-from grader.files.tree import Tree, make_tree, overlaid
+from grader.files.tree import make_tree, overlaid
 from grader.ros.package.robot_file import Read
 from grader.ros.workspace.all_robots import read_workspace
 from tests.command_line import ROOT
+from tests.workspace.random_edits import Files, edited_files, edited_text, files_of
 
 _WORKSPACES = [
     "rubrics/diffdrive",
@@ -24,19 +24,11 @@ _WORKSPACES = [
     "tests/labs/laundry",
     "tests/labs/twolink",
 ]
-_WORD = re.compile(rb"[\w.]+")
 _EMPTY = make_tree("ws", (), ())
-_Files = dict[str, bytes]
 
 
-def _files_of(folder: Path) -> _Files:
-    tree = open_tree(folder)
-    assert tree is not None
-    return {path: file.read(URDF_LIMIT) for path, file in tree.files.items()}
-
-
-def _found(files: _Files, memory: Memory | None) -> list[Problem]:
-    tree: Tree = overlaid(_EMPTY, files)
+def _found(files: Mapping[str, bytes], memory: Memory | None) -> list[Problem]:
+    tree = overlaid(_EMPTY, files)
     opened = read_workspace(tree, "ws", URDF_LIMIT, {}, memory).of_release(None, "")
     found = opened.package_problems()
     for robot in opened.robots:
@@ -45,42 +37,63 @@ def _found(files: _Files, memory: Memory | None) -> list[Problem]:
     return found
 
 
-def _edited(files: _Files, draw: random.Random) -> _Files:
-    """Return the files after an edit such as people make: a word, a line, a file."""
-    path = draw.choice(sorted(files))
-    data = files[path]
-    words = [found.span() for found in _WORD.finditer(data)] or [(0, 0)]
-    start, end = draw.choice(words)
-    other = draw.choice(sorted(files))
-    lines = data.splitlines(keepends=True) or [b""]
-    number = draw.randrange(len(lines))
-    match draw.randrange(8):
-        case 0:
-            new = data[:start] + data[end:]
-        case 1:
-            a, b = draw.choice(words)
-            new = data[:start] + data[a:b] + data[end:]
-        case 2:
-            new = b"".join(lines[:number] + lines[number + 1 :])
-        case 3:
-            new = b"".join(lines[: number + 1] + lines[number:])
-        case 4:
-            new = data[:start] + data[start:end][::-1] + data[end:]
-        case 5:
-            return {name: text for name, text in files.items() if name != path} or files
-        case 6:
-            return {**files, f"{path}.backup": data, f"{path[:-5]}x{path[-5:]}": files[other]}
-        case _:
-            new = data[:start]
-    return {**files, path: new}
+def _compare(files: Files, count: int, draw: random.Random) -> None:
+    """Look at a workspace after each of some edits, with what is kept and from nothing."""
+    memory, now = Memory(10_000), files
+    for number in range(count):
+        assert _found(now, memory) == _found(now, None), number
+        memory.forget_unused()
+        now = edited_files(files if number % 5 == 4 else now, draw)
 
 
 @pytest.mark.parametrize("folder", _WORKSPACES)
 def test_equals_one_from_nothing(folder: str) -> None:
-    draw = random.Random(folder)
-    files = _files_of(ROOT / folder)
-    memory, now = Memory(10_000), files
-    for number in range(25):
-        assert _found(now, memory) == _found(now, None), number
+    _compare(files_of(ROOT / folder), 15, random.Random(folder))
+
+
+@pytest.mark.exhaustive
+@pytest.mark.parametrize("folder", _WORKSPACES)
+def test_equals_one_from_nothing_often(folder: str) -> None:
+    _compare(files_of(ROOT / folder), 300, random.Random(f"{folder}!"))
+
+
+def twenty_packages() -> Files:
+    """Return a workspace of 20 packages, each of which drives a robot of its own."""
+    files: Files = {}
+    for path, data in files_of(ROOT / "rubrics/diffdrive/diffdrive_robot").items():
+        for number in range(20):
+            name = f"rover{number}_robot"
+            text = data.replace(b"diffdrive_robot", name.encode())
+            files[f"src/{name}/{path.replace('diffdrive_robot', name)}"] = text
+    return files
+
+
+class _CountedMemory(Memory):
+    """What is kept, with the number of results that were asked for and made."""
+
+    def __init__(self) -> None:
+        super().__init__(10_000)
+        self.asked = self.made = 0
+
+    def recall(self, key: Any, asked: Any, work: Any, make: Any) -> Any:
+        self.asked += 1
+
+        def counted(answers: Any) -> Any:
+            self.made += 1
+            return make(answers)
+
+        return super().recall(key, asked, work, counted)
+
+
+def test_a_change_of_one_package_is_little_work() -> None:
+    """After a change in one of 20 packages, at most a fifth of what is kept is made again."""
+    files, draw = twenty_packages(), random.Random(20)
+    memory = _CountedMemory()
+    _found(files, memory)
+    memory.forget_unused()
+    for path in sorted(path for path in files if path.startswith("src/rover7_robot/")):
+        memory.asked = memory.made = 0
+        _found({**files, path: edited_text(files[path], draw)}, memory)
+        assert memory.made <= memory.asked / 5, path
+        _found(files, memory)
         memory.forget_unused()
-        now = _edited(files if number % 5 == 4 else now, draw)

@@ -32,6 +32,19 @@ _T = TypeVar("_T")
 _Diagnostics = Mapping[str, list[lsp.Diagnostic]]
 
 
+# What is asked about one place of a file, with what answers it.
+_ANSWERS: Mapping[str, Callable[[Look, places.TextPlace], Any]] = {
+    lsp.TEXT_DOCUMENT_HOVER: describing.hover,
+    lsp.TEXT_DOCUMENT_DEFINITION: places.definitions,
+    lsp.TEXT_DOCUMENT_REFERENCES: places.references,
+    lsp.TEXT_DOCUMENT_COMPLETION: completions.completions,
+    lsp.TEXT_DOCUMENT_PREPARE_RENAME: renaming.prepared,
+}
+_OPTIONS = {
+    lsp.TEXT_DOCUMENT_COMPLETION: lsp.CompletionOptions(trigger_characters=[*"\"'/({[. "]),
+}
+
+
 class GraderServer(LanguageServer):
     """The server of one editor, with a session for each folder that is open in it."""
 
@@ -174,8 +187,7 @@ def make_server(rubric: str) -> GraderServer:
     """
     server = GraderServer(rubric)
     _follow_texts(server)
-    _answer_about_names(server)
-    _list_names(server)
+    _answer_about_places(server)
     _offer_changes(server)
     return server
 
@@ -223,75 +235,43 @@ def _follow_texts(server: GraderServer) -> None:
         ls.open_folders()
 
 
-def _answer_about_names(server: GraderServer) -> None:
-    """Let a server say what is at a place."""
+def _answer_about_places(server: GraderServer) -> None:
+    """Let a server answer what an editor asks about one place of a file."""
 
-    @server.feature(lsp.TEXT_DOCUMENT_HOVER)
-    async def hover(ls: GraderServer, params: lsp.HoverParams) -> lsp.Hover | None:
-        return await ls.answer(params.text_document.uri, params.position, describing.hover)
+    def register(method: str, make: Callable[[Look, places.TextPlace], Any]) -> None:
+        @server.feature(method, _OPTIONS.get(method))
+        async def answer(ls: GraderServer, params: Any) -> Any:
+            return await ls.answer(params.text_document.uri, params.position, make)
 
-    @server.feature(lsp.TEXT_DOCUMENT_DEFINITION)
-    async def definition(
-        ls: GraderServer, params: lsp.DefinitionParams
-    ) -> list[lsp.Location] | None:
-        return await ls.answer(params.text_document.uri, params.position, places.definitions)
-
-    @server.feature(lsp.TEXT_DOCUMENT_REFERENCES)
-    async def references(
-        ls: GraderServer, params: lsp.ReferenceParams
-    ) -> list[lsp.Location] | None:
-        return await ls.answer(params.text_document.uri, params.position, places.references)
+    for method, make in _ANSWERS.items():
+        register(method, make)
 
 
-def _list_names(server: GraderServer) -> None:
-    """Let a server list names: those that may be written at a place, and those of files."""
-
-    @server.feature(
-        lsp.TEXT_DOCUMENT_COMPLETION,
-        lsp.CompletionOptions(trigger_characters=['"', "'", "/", "(", "{", "[", ".", " "]),
-    )
-    async def complete(
-        ls: GraderServer, params: lsp.CompletionParams
-    ) -> list[lsp.CompletionItem] | None:
-        return await ls.answer(params.text_document.uri, params.position, completions.completions)
+def _offer_changes(server: GraderServer) -> None:
+    """Let a server list the names of a file and of all, correct problems, and rename."""
 
     @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
-    async def document_symbols(
-        ls: GraderServer, params: lsp.DocumentSymbolParams
-    ) -> list[lsp.DocumentSymbol] | None:
+    async def symbols_of(ls: GraderServer, params: lsp.DocumentSymbolParams) -> Any:
         start = lsp.Position(0, 0)
         return await ls.answer(params.text_document.uri, start, symbols.in_document)
 
     @server.feature(lsp.WORKSPACE_SYMBOL)
-    async def workspace_symbols(
-        ls: GraderServer, params: lsp.WorkspaceSymbolParams
-    ) -> list[lsp.SymbolInformation]:
+    async def all_symbols(ls: GraderServer, params: lsp.WorkspaceSymbolParams) -> Any:
         found: list[lsp.SymbolInformation] = []
         for session in [*ls.sessions.values()]:
-            make = partial(symbols.in_workspace, session, params.query)
-            found += await ls.in_thread(make)
+            find = partial(symbols.in_workspace, session, params.query)
+            found += await ls.in_thread(find)
         return found
 
+    options = lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix])
 
-def _offer_changes(server: GraderServer) -> None:
-    """Let a server correct problems and rename."""
-
-    @server.feature(
-        lsp.TEXT_DOCUMENT_CODE_ACTION,
-        lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix]),
-    )
-    async def code_actions(
-        ls: GraderServer, params: lsp.CodeActionParams
-    ) -> list[lsp.CodeAction] | None:
+    @server.feature(lsp.TEXT_DOCUMENT_CODE_ACTION, options)
+    async def code_actions(ls: GraderServer, params: lsp.CodeActionParams) -> Any:
         make = partial(fixes.actions, wanted=params.range)
         return await ls.answer(params.text_document.uri, params.range.start, make)
 
-    @server.feature(lsp.TEXT_DOCUMENT_PREPARE_RENAME)
-    async def prepare_rename(ls: GraderServer, params: lsp.PrepareRenameParams) -> lsp.Range | None:
-        return await ls.answer(params.text_document.uri, params.position, renaming.prepared)
-
     @server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))
-    async def rename(ls: GraderServer, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
+    async def rename(ls: GraderServer, params: lsp.RenameParams) -> Any:
         make = partial(renaming.renamed, new=params.new_name)
         return await ls.answer(params.text_document.uri, params.position, make)
 

@@ -1,0 +1,246 @@
+"""grader lsp answers each request of an editor, and says what `grader inspect` says."""
+
+import asyncio
+import shutil
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+
+import pytest
+from lsprotocol import types as lsp
+
+from tests.command_line import ROOT
+from tests.editor.client import Editor, editor
+
+_ROBOT = "diffdrive_robot/urdf/diffdrive.urdf.xacro"
+_SYSTEM = "diffdrive_robot/urdf/diffdrive.ros2_control.xacro"
+_CONTROLLERS = "diffdrive_robot/config/controllers.yaml"
+_LAUNCH = "diffdrive_robot/launch/diffdrive.launch.py"
+_LAB6 = "my_robot/urdf/my_robot.urdf"
+_WRONG_JOINT = f"{_CONTROLLERS}:12:23-38: REF002"
+
+
+@pytest.fixture
+def diffdrive(tmp_path: Path) -> Path:
+    return Path(shutil.copytree(ROOT / "rubrics/diffdrive", tmp_path / "ws"))
+
+
+@pytest.fixture
+def lab6(tmp_path: Path) -> Path:
+    return Path(shutil.copytree(ROOT / "rubrics/lab6", tmp_path / "ws"))
+
+
+def _edit(root: Path, act: Callable[[Editor], Coroutine[None, None, None]], *options: str) -> None:
+    async def run() -> None:
+        async with editor(root, *options) as one:
+            await act(one)
+
+    asyncio.run(run())
+
+
+def test_lists_problems_of_what_is_typed(diffdrive: Path) -> None:
+    async def act(one: Editor) -> None:
+        assert one.found() == []
+        await one.open(_CONTROLLERS)
+        text = one.text(_CONTROLLERS)
+        await one.type(_CONTROLLERS, text.replace("left_wheel_joint", "left_weel_joint", 1))
+        assert one.found() == [_WRONG_JOINT]
+        [found] = one.client.diagnostics[one.uri(_CONTROLLERS)]
+        assert found.severity == lsp.DiagnosticSeverity.Error
+        assert found.code_description is not None
+        assert found.code_description.href.endswith("problems.html#ref002")
+        assert found.related_information is not None
+        assert found.related_information[0].location.uri == one.uri(_ROBOT)
+        await one.type(_CONTROLLERS, text)
+        assert one.found() == []
+
+    _edit(diffdrive, act)
+
+
+def test_counts_columns_as_editors_do(lab6: Path) -> None:
+    """A character of two units of UTF-16 moves what is behind it by two."""
+
+    async def act(one: Editor) -> None:
+        await one.open(_LAB6)
+        smile = '"\N{SLIGHTLY SMILING FACE}" type="fixd"'
+        text = one.text(_LAB6).replace('"base_lidar_joint" type="fixed"', smile)
+        await one.type(_LAB6, text)
+        line = next(it for it in text.split("\n") if smile in it)
+        [found] = [it for it in one.client.diagnostics[one.uri(_LAB6)] if it.code == "URDF061"]
+        assert found.range.start.character == line.index("type") + 1
+
+    _edit(lab6, act)
+
+
+def test_a_closed_file_counts_as_on_the_disk(diffdrive: Path) -> None:
+    async def act(one: Editor) -> None:
+        await one.open(_CONTROLLERS)
+        text = one.text(_CONTROLLERS)
+        await one.type(_CONTROLLERS, text.replace("left_wheel_joint", "left_weel_joint", 1))
+        params = lsp.DidCloseTextDocumentParams(one.document(_CONTROLLERS))
+        one.client.text_document_did_close(params)
+        await one.looked()
+        assert one.found() == []
+
+    _edit(diffdrive, act)
+
+
+def test_what_is_saved_elsewhere_counts(diffdrive: Path) -> None:
+    async def act(one: Editor) -> None:
+        file = one.root / _CONTROLLERS
+        text = one.text(_CONTROLLERS)
+        file.write_text(text.replace("left_wheel_joint", "left_weel_joint", 1), encoding="utf-8")
+        event = lsp.FileEvent(one.uri(_CONTROLLERS), lsp.FileChangeType.Changed)
+        params = lsp.DidChangeWatchedFilesParams([event])
+        one.client.workspace_did_change_watched_files(params)
+        await one.looked()
+        assert one.found() == [_WRONG_JOINT]
+
+    _edit(diffdrive, act)
+
+
+def test_what_the_settings_ignore_is_not_shown(diffdrive: Path) -> None:
+    (diffdrive / "grader.toml").write_text('ignore = ["REF002"]\n', encoding="utf-8")
+
+    async def act(one: Editor) -> None:
+        await one.open(_CONTROLLERS)
+        text = one.text(_CONTROLLERS)
+        await one.type(_CONTROLLERS, text.replace("left_wheel_joint", "left_weel_joint", 1))
+        assert one.found() == []
+
+    _edit(diffdrive, act)
+
+
+def test_lists_criteria_of_a_rubric(lab6: Path) -> None:
+    async def act(one: Editor) -> None:
+        assert one.found() == []
+        await one.open(_LAB6)
+        text = one.text(_LAB6)
+        await one.type(_LAB6, text.replace('xyz="0.15 0 0.225"', 'xyz="0.25 0 0.225"'))
+        assert one.found() == [f"{_LAB6}:38:12-30: lidar-frame", f"{_LAB6}:38:12-30: lidar-on-top"]
+        first = one.client.diagnostics[one.uri(_LAB6)][0]
+        assert first.message.endswith("Check line 39: x of the joint origin of 'lidar'. (6 points)")
+
+    _edit(lab6, act, "--rubric", "lab6")
+
+
+def test_says_what_a_name_is(diffdrive: Path) -> None:
+    async def act(one: Editor) -> None:
+        at = one.position(_CONTROLLERS, "left_wheel_joint")
+        document = one.document(_CONTROLLERS)
+        hover = await one.client.text_document_hover_async(lsp.HoverParams(document, at))
+        assert hover is not None
+        assert isinstance(hover.contents, lsp.MarkupContent)
+        assert "continuous joint from `base_link` to `left_wheel`" in hover.contents.value
+        nothing = lsp.HoverParams(document, lsp.Position(0, 0))
+        assert await one.client.text_document_hover_async(nothing) is None
+
+    _edit(diffdrive, act)
+
+
+def test_finds_definitions_and_uses(diffdrive: Path) -> None:
+    async def act(one: Editor) -> None:
+        at, document = one.position(_CONTROLLERS, "left_wheel_joint"), one.document(_CONTROLLERS)
+        asked = lsp.DefinitionParams(document, at)
+        found = await one.client.text_document_definition_async(asked)
+        assert isinstance(found, list | tuple)
+        assert [it.uri for it in found if isinstance(it, lsp.Location)] == [one.uri(_ROBOT)]
+        every = lsp.ReferenceParams(lsp.ReferenceContext(True), document, at)
+        uses = await one.client.text_document_references_async(every)
+        assert uses is not None
+        assert {it.uri for it in uses} == {one.uri(_ROBOT), one.uri(_SYSTEM), one.uri(_CONTROLLERS)}
+
+    _edit(diffdrive, act)
+
+
+def test_completes_names(diffdrive: Path) -> None:
+    async def act(one: Editor) -> None:
+        at = one.position(_CONTROLLERS, "left_wheel_joint", inside=4)
+        asked = lsp.CompletionParams(one.document(_CONTROLLERS), at)
+        found = await one.client.text_document_completion_async(asked)
+        assert isinstance(found, list | tuple)
+        assert {"left_wheel_joint", "right_wheel_joint"} <= {item.label for item in found}
+
+    _edit(diffdrive, act)
+
+
+def test_lists_names(lab6: Path) -> None:
+    async def act(one: Editor) -> None:
+        asked = lsp.DocumentSymbolParams(one.document(_LAB6))
+        in_file = await one.client.text_document_document_symbol_async(asked)
+        assert in_file is not None
+        assert {"base_link", "lidar", "base_lidar_joint"} <= {item.name for item in in_file}
+        everywhere = await one.client.workspace_symbol_async(lsp.WorkspaceSymbolParams("LIDAR"))
+        assert everywhere is not None
+        assert {item.name for item in everywhere} >= {"lidar", "base_lidar_joint"}
+
+    _edit(lab6, act)
+
+
+def test_corrects_a_name(diffdrive: Path) -> None:
+    async def act(one: Editor) -> None:
+        await one.open(_CONTROLLERS)
+        text = one.text(_CONTROLLERS)
+        await one.type(_CONTROLLERS, text.replace("left_wheel_joint", "left_weel_joint", 1))
+        [found] = one.client.diagnostics[one.uri(_CONTROLLERS)]
+        context = lsp.CodeActionContext([found])
+        asked = lsp.CodeActionParams(one.document(_CONTROLLERS), found.range, context)
+        offered = await one.client.text_document_code_action_async(asked)
+        assert offered is not None
+        [action] = offered
+        assert isinstance(action, lsp.CodeAction)
+        assert action.title == "Change 'left_weel_joint' to 'left_wheel_joint'"
+        assert action.edit is not None
+        assert action.edit.changes is not None
+        [edit] = action.edit.changes[one.uri(_CONTROLLERS)]
+        assert (edit.range, edit.new_text) == (found.range, "left_wheel_joint")
+
+    _edit(diffdrive, act)
+
+
+def test_refuses_to_rename_what_is_made_of_parts(diffdrive: Path) -> None:
+    async def act(one: Editor) -> None:
+        at = one.position(_CONTROLLERS, "left_wheel_joint")
+        asked = lsp.RenameParams(one.document(_CONTROLLERS), at, "other_joint")
+        with pytest.raises(Exception, match="makes the name 'left_wheel_joint' of parts"):
+            await one.client.text_document_rename_async(asked)
+
+    _edit(diffdrive, act)
+
+
+def test_the_last_text_counts(diffdrive: Path) -> None:
+    """Of many changes in a row, what is said at the end is about the last one."""
+
+    async def act(one: Editor) -> None:
+        await one.open(_CONTROLLERS)
+        text = one.text(_CONTROLLERS)
+        for number in range(20):
+            one.type_on(_CONTROLLERS, text.replace("left_wheel_joint", f"left_{number}", 1))
+        await one.type(_CONTROLLERS, text.replace("left_wheel_joint", "left_weel_joint", 1))
+        while one.found() != [_WRONG_JOINT]:
+            await one.looked()
+
+    _edit(diffdrive, act)
+
+
+def test_a_broken_file_is_no_end(lab6: Path) -> None:
+    async def act(one: Editor) -> None:
+        await one.open(_LAB6)
+        text = one.text(_LAB6)
+        for broken in ("", "<robot", text[: len(text) // 2], "\x00\ufffe" * 50, text * 40):
+            await one.type(_LAB6, broken)
+        assert one.found()
+        await one.type(_LAB6, text)
+        assert one.found() == []
+
+    _edit(lab6, act)
+
+
+def test_an_empty_folder_has_no_problems(tmp_path: Path) -> None:
+    async def act(one: Editor) -> None:
+        (one.root / "new.urdf").write_text("<robot name='a'><link name='b'/>", encoding="utf-8")
+        await one.open("new.urdf")
+        assert [row.rpartition(" ")[2] for row in one.found()] == ["URDF002", "URDF015"]
+
+    root = tmp_path / "empty"
+    root.mkdir()
+    _edit(root, act)
