@@ -108,12 +108,20 @@ def wheel_value_facts(workspace: Workspace) -> Iterator[Fact]:
         return
     for source in sources:
         yield Compared("values")
-        found = [[*_faults_of(source, Configuration(each.robot))] for each in source.robots]
-        # A number may be of one of several robots.
-        if found and all(found):
-            is_open = workspace.has_other_robots
-            for fault in found[0]:
-                yield fault._replace(is_certain=fault.is_certain and not is_open)
+        is_open = workspace.has_other_robots
+        for fault in _faults_under_all(source):
+            yield fault._replace(is_certain=fault.is_certain and not is_open)
+
+
+def _faults_under_all(source: _Source) -> Sequence[Mismatch]:
+    """Return the faults under the first robot; none where the numbers are those of another one."""
+    first: Sequence[Mismatch] = ()
+    for robot in source.robots:
+        faults = [*_faults_of(source, Configuration(robot.robot))]
+        if not faults:
+            return ()
+        first = first or faults
+    return first
 
 
 def _controllers(workspace: Workspace) -> Iterator[_Source]:
