@@ -2,6 +2,8 @@
 
 import asyncio
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable, Coroutine
 from pathlib import Path
 
@@ -244,3 +246,18 @@ def test_an_empty_folder_has_no_problems(tmp_path: Path) -> None:
     root = tmp_path / "empty"
     root.mkdir()
     _edit(root, act)
+
+
+def test_without_the_extra_it_says_how_to_install_it() -> None:
+    code = (
+        "import sys; sys.modules['lsprotocol'] = None; sys.argv = ['grader', 'lsp'];"
+        "from grader.__main__ import main; main()"
+    )
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr == (
+        "grader: grader lsp needs the extra editor: pip install 'urdf-grader[editor]'\n"
+    )
