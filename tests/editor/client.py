@@ -3,7 +3,7 @@
 import asyncio
 import logging
 import sys
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
 
@@ -78,12 +78,9 @@ class Editor:
 
 
 @asynccontextmanager
-async def editor(
-    root: Path, *options: str, environment: Sequence[str] = ()
-) -> AsyncIterator[Editor]:
+async def editor(root: Path, *options: str, looks: bool = True) -> AsyncIterator[Editor]:
     """Start a server for a folder, and end it as editors do; it has to end with code 0."""
     logging.getLogger("pygls").setLevel(logging.CRITICAL)
-    del environment
     client = make_test_lsp_client()
     await client.start_io(*COMMAND, *options)
     folder = lsp.WorkspaceFolder(root.as_uri(), root.name)
@@ -94,7 +91,8 @@ async def editor(
     )
     await client.initialize_session(params)
     one = Editor(client, root)
-    await one.looked()
+    if looks:
+        await one.looked()
     yield one
     await client.shutdown_session()
     assert client._server is not None

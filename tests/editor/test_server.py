@@ -125,6 +125,15 @@ def test_lists_criteria_of_a_rubric(lab6: Path) -> None:
     _edit(lab6, act, "--rubric", "lab6")
 
 
+def test_says_that_there_is_no_such_rubric(lab6: Path) -> None:
+    async def run() -> None:
+        async with editor(lab6, "--rubric", "lab66", looks=False) as one:
+            await one.client.wait_for_notification("window/showMessage")
+            assert "did you mean 'lab6'?" in one.client.messages[0].message
+
+    asyncio.run(run())
+
+
 def test_says_what_a_name_is(diffdrive: Path) -> None:
     async def act(one: Editor) -> None:
         at = one.position(_CONTROLLERS, "left_wheel_joint")
@@ -197,6 +206,29 @@ def test_corrects_a_name(diffdrive: Path) -> None:
         assert (edit.range, edit.new_text) == (found.range, "left_wheel_joint")
 
     _edit(diffdrive, act)
+
+
+def test_offers_the_edits_of_hints(lab6: Path) -> None:
+    """A rubric whose hints show edits has them as corrections."""
+    rubric = (lab6 / "rubric.toml").read_text(encoding="utf-8")
+    (lab6 / "rubric.toml").write_text(rubric.replace('hints = "cause"', 'hints = "edit"'))
+
+    async def act(one: Editor) -> None:
+        await one.open(_LAB6)
+        text = one.text(_LAB6)
+        await one.type(_LAB6, text.replace('xyz="0.15 0 0.225"', 'xyz="0.25 0 0.225"'))
+        [found, _] = one.client.diagnostics[one.uri(_LAB6)]
+        asked = lsp.CodeActionParams(
+            one.document(_LAB6), found.range, lsp.CodeActionContext([found])
+        )
+        [action] = await one.client.text_document_code_action_async(asked) or ()
+        assert isinstance(action, lsp.CodeAction)
+        assert action.edit is not None
+        assert action.edit.changes is not None
+        [edit] = action.edit.changes[one.uri(_LAB6)]
+        assert edit.new_text == 'xyz="0.15 0 0.225"'
+
+    _edit(lab6, act, "--rubric", str(lab6 / "rubric.toml"))
 
 
 def test_refuses_to_rename_what_is_made_of_parts(diffdrive: Path) -> None:

@@ -1,16 +1,18 @@
 """The criteria of a rubric that the files of an editor do not meet."""
 
+from grader.app.editor.look import Graded, ProvenFix
 from grader.app.hints_and_fix import add_hints
+from grader.base.source import Edits
 from grader.base.text import counted_points
 from grader.files.tree import Tree
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric_files import load_named
 from grader.lab.submission.opening import submission_of
-from grader.report.findings import Finding, findings_in_report
+from grader.report.findings import findings_in_report
 
 
-def criteria_findings(name: str, tree: Tree, identity: str) -> list[Finding]:
-    """Return the criteria that lose points, with the points.
+def grade_files(name: str, tree: Tree, identity: str) -> Graded:
+    """Grade the files of an editor.
 
     Args:
         name: The id of the rubric, or its file.
@@ -25,11 +27,15 @@ def criteria_findings(name: str, tree: Tree, identity: str) -> list[Finding]:
     report = grade(rubric, submission)
     report, _ = add_hints(report, submission, None, lambda _: None, is_fixed=False)
     lost = {}
+    fixes: dict[Edits, ProvenFix] = {}
     for result in report.results:
         lost[result.criterion.id] = result.criterion.points - result.points
-    found = []
+        hint = result.hint
+        if hint is not None and hint.edits:
+            fixes[hint.edits] = ProvenFix(hint.message, hint.at, hint.edits)
+    findings = []
     for finding in findings_in_report(report):
         if finding.rule.id in lost:
             points = counted_points(lost[finding.rule.id])
-            found.append(finding._replace(message=f"{finding.message} ({points})"))
-    return found
+            findings.append(finding._replace(message=f"{finding.message} ({points})"))
+    return Graded(tuple(findings), tuple(fixes.values()))

@@ -16,7 +16,10 @@ def actions(look: Look, place: TextPlace, wanted: lsp.Range) -> list[lsp.CodeAct
     """Return the corrections of what is wrong in a range of a file."""
     ranges = place.ranges(look)
     found = []
-    for title, at, edits in [*_of_names(look, place.path), *_of_robots(look, place.path)]:
+    offered: list[tuple[str, Location, Edits]]
+    offered = [*_of_names(look, place.path), *_of_robots(look, place.path)]
+    offered += [fix for fix in look.graded.fixes if fix.at.path == place.path]
+    for title, at, edits in offered:
         if edits and _overlap(ranges.range(at), wanted):
             edit = ranges.workspace_edit(edits)
             found.append(lsp.CodeAction(title, lsp.CodeActionKind.QuickFix, edit=edit))

@@ -1,13 +1,15 @@
 """One look at a workspace: what is wrong in it, and the names that its files define and use."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 from grader.app.ignoring import Selection, without_ignored
 from grader.app.settings import Settings
 from grader.base.reuse import Memory
+from grader.base.source import Edits, Location
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree
 from grader.report.findings import Finding, findings_in_inspection
@@ -20,6 +22,21 @@ from grader.ros.workspace.opened import OpenedWorkspace
 from grader.ros.workspace.name_places import NamePlaces
 
 
+class ProvenFix(NamedTuple):
+    """Edits with which criteria pass, as far as the hints of the rubric show them."""
+
+    title: str
+    at: Location
+    edits: Edits
+
+
+class Graded(NamedTuple):
+    """The criteria that lose points, and the edits that the rubric's hints show."""
+
+    findings: tuple[Finding, ...] = ()
+    fixes: tuple[ProvenFix, ...] = ()
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Look:
     """What was read of the files at one time."""
@@ -28,6 +45,7 @@ class Look:
     opened: OpenedWorkspace
     findings: Sequence[Finding]
     settings: Settings
+    grade: Callable[[Tree], Graded]
 
     @cached_property
     def names(self) -> NamePlaces:
@@ -40,6 +58,13 @@ class Look:
         return self.names.mismatches.get((finding.message, at.path, at.line))
 
     @cached_property
+    def graded(self) -> Graded:
+        """The criteria that fail, and how to fix them; nothing without a rubric. Raises
+        GraderError.
+        """
+        return self.grade(self.tree)
+
+    @cached_property
     def robots(self) -> Mapping[str, Configuration]:
         """The robots that ROS 2 loads, with their joints at 0, by the paths of their files."""
         found = {}
@@ -50,9 +75,21 @@ class Look:
         return found
 
 
-def look_at(tree: Tree, root: Path, settings: Settings, memory: Memory) -> Look:
-    """Look at the files of a folder as `grader inspect` does; with what is kept of the look
-    before.
+def look_at(
+    tree: Tree,
+    root: Path,
+    settings: Settings,
+    memory: Memory,
+    grade: Callable[[Tree], Graded] = lambda _: Graded(),
+) -> Look:
+    """Look at the files of a folder as `grader inspect` does.
+
+    Args:
+        tree: The files.
+        root: The folder.
+        settings: What is ignored, and for which release the names are.
+        memory: What is kept of the look before.
+        grade: Grades the files when it is asked for.
     """
     opened = read_workspace(tree, tree.name, URDF_LIMIT, {}, memory)
     opened = opened.of_release(settings.distro, settings.file.name if settings.file else "")
@@ -67,4 +104,4 @@ def look_at(tree: Tree, root: Path, settings: Settings, memory: Memory) -> Look:
     selection = Selection(settings=settings, folder=root)
     shown = without_ignored(inspection, opened.whole_tree, [*tree.files], selection)
     memory.forget_unused()
-    return Look(tree, opened, findings_in_inspection(shown), settings)
+    return Look(tree, opened, findings_in_inspection(shown), settings, grade)

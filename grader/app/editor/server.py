@@ -52,9 +52,10 @@ class GraderServer(LanguageServer):
         super().__init__("grader", __version__, lsp.TextDocumentSyncKind.Incremental)
         self.rubric = rubric
         self.sessions: dict[Path, EditorSession] = {}
-        self._pool = ThreadPoolExecutor(max_workers=1)
+        self._pool = ThreadPoolExecutor(max_workers=2)
         self._refreshing: dict[Path, asyncio.Task[None]] = {}
         self._published: dict[Path, set[str]] = {}
+        self._complaint = ""
 
     def open_folders(self) -> None:
         """Start a session for each folder of the editor."""
@@ -114,7 +115,7 @@ class GraderServer(LanguageServer):
             look = await self.in_thread(session.look)
             found = await self.in_thread(partial(diagnostics_of, look, root))
             self._publish(root, found)
-            graded = await self.in_thread(partial(session.graded, look))
+            graded = await self.in_thread(lambda: look.graded.findings)
             if graded:
                 found = await self.in_thread(partial(diagnostics_of, look, root, graded))
                 self._publish(root, found)
@@ -125,10 +126,16 @@ class GraderServer(LanguageServer):
         except SupersededError:
             pass
         except GraderError as error:
-            self.window_log_message(lsp.LogMessageParams(lsp.MessageType.Warning, str(error)))
+            self._complain(str(error))
         except Exception as error:  # noqa: BLE001  a fault of a reader must not end the server
             typed = next(iter(session.files.typed), _MANIFEST)
             self._publish(root, {typed: [_fault(error)]})
+
+    def _complain(self, message: str) -> None:
+        """Show why the files are not looked at, or not graded, once."""
+        if message != self._complaint:
+            self._complaint = message
+            self.window_show_message(lsp.ShowMessageParams(lsp.MessageType.Warning, message))
 
     async def in_thread(self, work: Callable[[], _T]) -> _T:
         """Return what some work returns that is done beside the messages of the editor."""

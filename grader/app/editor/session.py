@@ -6,11 +6,11 @@ from pathlib import Path
 from threading import Lock
 
 from grader.app.editor.edited_files import EditedFiles
-from grader.app.editor.look import Look, look_at
+from grader.app.editor.look import Graded, Look, look_at
 from grader.app.settings import Settings, read_settings
 from grader.base.errors import GraderError
 from grader.base.reuse import Memory
-from grader.report.findings import Finding
+from grader.files.tree import Tree
 
 _MOST = 20_000  # results that are kept of a look
 
@@ -54,8 +54,8 @@ class EditorSession:
         with self._lock:
             if self._look is None or self._seen != self._version:
                 self._looking = self._version
-                tree = self.files.tree()
-                self._look = look_at(tree, self.files.root, self.settings, self._memory)
+                tree, root = self.files.tree(), self.files.root
+                self._look = look_at(tree, root, self.settings, self._memory, self._grade)
                 self._seen = self._looking
             return self._look
 
@@ -63,13 +63,10 @@ class EditorSession:
         if self._looking != self._version:
             raise SupersededError
 
-    def graded(self, look: Look) -> list[Finding]:
-        """Return the criteria of the rubric that fail, each at the line to change as far as the
-        rubric's hints tell; none without a rubric. Raises GraderError.
-        """
+    def _grade(self, tree: Tree) -> Graded:
         name = self._rubric or self.settings.rubric
         if not name:
-            return []
-        from grader.app.editor.criteria import criteria_findings  # late: most look without a rubric
+            return Graded()
+        from grader.app.editor.criteria import grade_files  # late: most look without a rubric
 
-        return criteria_findings(name, look.tree, self.files.root.name)
+        return grade_files(name, tree, self.files.root.name)
