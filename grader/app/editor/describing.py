@@ -27,6 +27,7 @@ def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
     used = counted(sum(not it.is_definition for it in same), "time")
     rows = [f"**{found.kind}** `{found.name}`: {where}; used {used}"]
     rows += _of_robots(look, found.kind, found.name)
+    rows += (f"value: `{value}`" for value in look.names.values(found)[:_MAX_NAMED])
     markup = lsp.MarkupContent(lsp.MarkupKind.Markdown, "\n\n".join(map(printable, rows)))
     return lsp.Hover(markup, place.ranges(look).range(found.at))
 
