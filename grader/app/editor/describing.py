@@ -20,23 +20,24 @@ def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
     if found is None:
         return None
     same = look.names.same(found)
-    defined = [it.at.file_and_line for it in same if it.is_definition]
+    defined = [it.location.file_and_line for it in same if it.role == "definition"]
     where = "defined nowhere in this workspace"
     if defined:
         where = f"defined at {enumerated([*dict.fromkeys(defined)], _MAX_NAMED)}"
-    used = counted(sum(not it.is_definition for it in same), "time")
+    uses = {it.location for it in same if it.role == "use"}
+    used = counted(len(uses), "time")
     rows = [f"**{found.kind}** `{found.name}`: {where}; used {used}"]
     rows += _of_robots(look, found.kind, found.name)
     rows += (f"value: `{value}`" for value in look.names.values(found)[:_MAX_NAMED])
     markup = lsp.MarkupContent(lsp.MarkupKind.Markdown, "\n\n".join(map(printable, rows)))
-    return lsp.Hover(markup, place.ranges(look).range(found.at))
+    return lsp.Hover(markup, place.ranges(look).range(found.location))
 
 
 def _of_robots(look: Look, kind: str, name: str) -> Iterator[str]:
     """Yield the pose of a link and what a joint does, in each robot that has it."""
     for path, robot in look.robots.items():
         model = robot.robot
-        if kind == "frame" and model.has_link(name):
+        if kind in ("link", "frame") and model.has_link(name):
             yield f"{_pose(robot, name)} ({path})"
         if kind == "joint" and model.has_joint(name):
             yield f"{_joint(robot, name)} ({path})"
@@ -64,4 +65,4 @@ def _joint(robot: Configuration, name: str) -> str:
 
 
 def _numbers(values: Sequence[float]) -> str:
-    return " ".join(f"{value:.4g}" for value in values)
+    return " ".join(f"{round(value, 6) + 0.0:.4g}" for value in values)  # no -0

@@ -17,9 +17,9 @@ from grader.report.inspection import InspectedRobot, Inspection
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.workspace.all_robots import read_workspace
+from grader.ros.workspace.name_places import NamePlaces
 from grader.ros.workspace.names import Mismatch
 from grader.ros.workspace.opened import OpenedWorkspace
-from grader.ros.workspace.name_places import NamePlaces
 
 
 class ProvenFix(NamedTuple):

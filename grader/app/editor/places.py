@@ -45,7 +45,7 @@ def _located(look: Look, place: TextPlace, *, are_defined: bool) -> list[lsp.Loc
     ranges = place.ranges(look)
     located: list[lsp.Location] = []
     for other in look.names.same(found) if found is not None else ():
-        at = ranges.place(other.at)
-        if (other.is_definition or not are_defined) and at not in located:
+        at = ranges.place(other.location)
+        if (other.role == "definition" or not are_defined) and at not in located:
             located.append(at)
     return located

@@ -11,7 +11,7 @@ from grader.app.editor.look import Look, look_at
 from grader.app.editor.places import TextPlace
 from grader.base.element_edits import edited
 from grader.base.reuse import Memory
-from grader.base.source import Edit
+from grader.base.source import Edit, Location
 from grader.base.text import counted
 from grader.files.tree import Tree, overlaid
 from grader.report.findings import Finding
@@ -29,9 +29,9 @@ def prepared(look: Look, place: TextPlace) -> lsp.Range | None:
     found = look.names.at(*place.triple)
     if found is None:
         return None
-    if found.written is None:
-        raise CannotRenameError(found.why_made)
-    return place.ranges(look).range(found.written)
+    if found.is_made:
+        raise CannotRenameError(_made(found.location, found.name))
+    return place.ranges(look).range(found.location)
 
 
 def renamed(look: Look, place: TextPlace, new: str) -> lsp.WorkspaceEdit | None:
@@ -43,28 +43,30 @@ def renamed(look: Look, place: TextPlace, new: str) -> lsp.WorkspaceEdit | None:
         return None
     if not _VALID.fullmatch(new):
         raise CannotRenameError(f"{new!r} is no name: use letters, digits and underscores")
-    owners = look.names.owners(found)
-    same = look.names.named(owners, found.kind, found.name)
-    for other in look.names.named(owners, found.kind, new):
-        if other.is_definition:
-            where = other.at.file_and_line
-            raise CannotRenameError(f"there is a {found.kind} {new!r} already, at {where}")
+    same = look.names.same(found)
+    for other in look.names.named_like(same, new):
+        where = other.location.file_and_line
+        raise CannotRenameError(f"there is a {other.kind} {new!r} already, at {where}")
     edits: dict[tuple[str, int, int], Edit] = {}
     for other in same:
-        if other.written is None:
-            raise CannotRenameError(other.why_made)
-        at = other.written
+        at = other.location
+        if other.is_made:
+            raise CannotRenameError(_made(at, found.name))
         edits[at.path, at.line, at.column] = Edit(at.path, at.line, at.column, found.name, new)
     after = look_at(_with(look, edits), place.root, look.settings, Memory(_MOST))
     _check_problems(look, after)
-    left = after.names.named(owners, found.kind, found.name)
+    left = after.names.named_like(same, found.name)
     if left:
-        where = left[0].at.file_and_line
+        where = left[0].location.file_and_line
         message = f"{where} would keep the old name, with {counted(len(left), 'place')} in all"
         raise CannotRenameError(message)
-    if len(after.names.named(owners, found.kind, new)) != len(same):
+    if len(after.names.named_like(same, new)) != len(same):
         raise CannotRenameError("not every place that means this name is known")
     return place.ranges(look).workspace_edit(edits[key] for key in sorted(edits))
+
+
+def _made(where: Location, name: str) -> str:
+    return f"{where.file_and_line} makes the name {name!r} of parts: change it there"
 
 
 def _with(look: Look, edits: Mapping[tuple[str, int, int], Edit]) -> Tree:

@@ -10,6 +10,7 @@ from grader.base.errors import GraderError
 
 _KINDS = {
     "frame": lsp.SymbolKind.Object,
+    "link": lsp.SymbolKind.Object,
     "joint": lsp.SymbolKind.Property,
     "controller": lsp.SymbolKind.Class,
     "node": lsp.SymbolKind.Class,
@@ -26,7 +27,7 @@ def in_document(look: Look, place: TextPlace) -> list[lsp.DocumentSymbol]:
     ranges = place.ranges(look)
     found = []
     for each in look.names.defined_in(place.path):
-        at = ranges.range(each.at)
+        at = ranges.range(each.location)
         kind = _KINDS.get(each.kind, lsp.SymbolKind.Constant)
         found.append(lsp.DocumentSymbol(each.name, kind, at, at, detail=each.kind))
     return sorted(found, key=lambda it: (it.range.start.line, it.range.start.character))
@@ -42,6 +43,6 @@ def in_workspace(session: EditorSession, query: str) -> list[lsp.SymbolInformati
     found = []
     for each in look.names.holding(query, _MOST):
         kind = _KINDS.get(each.kind, lsp.SymbolKind.Constant)
-        place = ranges.place(each.at)
+        place = ranges.place(each.location)
         found.append(lsp.SymbolInformation(place, each.name, kind, container_name=each.kind))
     return found

@@ -7,7 +7,7 @@ from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.known import known_packages, programs_of
 from grader.ros.package.package import Package
 from grader.ros.workspace.names import Definition
-from grader.ros.workspace.reading import names_in
+from grader.ros.workspace.reading import facts_once
 from grader.ros.workspace.workspace import Workspace
 
 OfferedKind = Literal[
@@ -112,9 +112,8 @@ def _of_kind(kind: str) -> Callable[[Workspace, str], Iterable[str]]:
 
 
 def _defined(workspace: Workspace, kind: str, owner: str) -> Iterable[str]:
-    for fact in names_in(workspace):
-        is_wanted = isinstance(fact, Definition) and fact.kind == kind
-        if is_wanted and (not owner or fact.owner == owner):
+    for fact in facts_once(workspace).facts:
+        if isinstance(fact, Definition) and fact.kind == kind and owner in ("", fact.owner):
             yield fact.name
 
 

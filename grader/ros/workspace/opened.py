@@ -1,12 +1,10 @@
 """Opened files: their packages, and their robots."""
 
 from collections.abc import Collection
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from grader.base.errors import NotDecided
 from grader.base.problems import Problem
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
@@ -20,7 +18,6 @@ if TYPE_CHECKING:
     from grader.ros.package.mesh_loading import Around, MeshLoader
     from grader.ros.workspace.all_names import WorkspaceNames
     from grader.ros.workspace.extent import Extent
-    from grader.ros.workspace.names import Fact
     from grader.ros.workspace.workspace import Workspace
 
 _NO_FILES = make_tree("", (), ())
@@ -117,12 +114,9 @@ class OpenedWorkspace:
     def names(self) -> "WorkspaceNames":
         """Return the names that its files define and use, each where it is written."""
         from grader.ros.workspace.all_names import read_names  # late: only editors ask for them
-        from grader.ros.workspace.reading import read_facts
+        from grader.ros.workspace.reading import facts_once
 
-        facts: list[Fact] = []
-        with suppress(NotDecided):  # what is found before there is too much of it
-            facts += read_facts(self.workspace)
-        return read_names(self.workspace, facts)
+        return read_names(self.workspace, facts_once(self.workspace).facts)
 
     def of_release(self, distro: Release | None, place: str) -> "OpenedWorkspace":
         """Return it for a release of ROS 2 that an option or a setting gives; without one, for

@@ -90,7 +90,7 @@ def read_agreement(workspace: Workspace) -> Agreement:
     """Return what does not agree in a workspace; what is found before the budget of the submission
     is spent, and that the rest is not compared.
     """
-    facts, error = _facts_of(workspace)
+    facts, error = facts_once(workspace)
     unused: tuple[Location, ...] = ()
     try:
         if error is not None:
@@ -105,19 +105,16 @@ def read_agreement(workspace: Workspace) -> Agreement:
 
 
 @lru_cache(maxsize=2)
-def _facts_of(workspace: Workspace) -> _Facts:
-    """Return what is read before the budget of the submission is spent."""
+def facts_once(workspace: Workspace) -> _Facts:
+    """Return what files define and use, as far as it is read before the budget of the submission is
+    spent.
+    """
     facts: list[Fact] = []
     try:
         facts += read_facts(workspace)
     except NotDecided as error:
         return _Facts(facts, error)
     return _Facts(facts)
-
-
-def names_in(workspace: Workspace) -> list[Definition | Use]:
-    """Return the names that files define and use, as far as they are read."""
-    return [fact for fact in _facts_of(workspace).facts if isinstance(fact, Definition | Use)]
 
 
 def wrong_names(
