@@ -28,7 +28,7 @@ def diffdrive(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def lab6(tmp_path: Path) -> Path:
-    return Path(shutil.copytree(ROOT / "rubrics/lab6", tmp_path / "ws"))
+    return Path(shutil.copytree(ROOT / "rubrics/lab6", tmp_path / "lab"))
 
 
 def _edit(root: Path, act: Callable[[Editor], Coroutine[None, None, None]], *options: str) -> None:
@@ -109,6 +109,27 @@ def test_what_the_settings_ignore_is_not_shown(diffdrive: Path) -> None:
         await one.type(_CONTROLLERS, text.replace("left_wheel_joint", "left_weel_joint", 1))
         assert one.found() == []
 
+    _edit(diffdrive, act)
+
+
+def test_says_that_the_settings_are_wrong(diffdrive: Path) -> None:
+    (diffdrive / "grader.toml").write_text('ignore = ["REF99"]\n', encoding="utf-8")
+
+    async def act(one: Editor) -> None:
+        assert "REF99" in one.client.messages[0].message
+
+    _edit(diffdrive, act)
+
+
+def test_files_outside_of_the_folder_are_left_alone(diffdrive: Path, lab6: Path) -> None:
+    async def act(one: Editor) -> None:
+        path = f"../other/{_LAB6}"
+        item = lsp.TextDocumentItem(one.uri(path), "text", 1, "<robot")
+        one.client.text_document_did_open(lsp.DidOpenTextDocumentParams(item))
+        await one.open(_CONTROLLERS)
+        assert one.found() == []
+
+    lab6.rename(diffdrive.parent / "other")
     _edit(diffdrive, act)
 
 

@@ -24,6 +24,7 @@ from grader.app.editor.session import EditorSession, SupersededError
 from grader.app.editor.text_ranges import TextRanges
 from grader.base.errors import GraderError
 from grader.base.text import counted
+from grader.files.limits import ROBOT_ENDINGS
 
 _PAUSE = 0.1  # seconds after a key before the files are looked at
 _MANIFEST = "package.xml"
@@ -72,20 +73,21 @@ class GraderServer(LanguageServer):
         return self.sessions[root]
 
     def session_of(self, uri: str) -> tuple[EditorSession, str] | None:
-        """Return the session that a file belongs to, with its path there. Of a file outside of all
-        folders it is that of its package, or of its folder.
+        """Return the session that a file belongs to, with its path there; None for a file outside
+        of the folders. In an editor without a folder it is that of its package, or of a robot's
+        folder.
         """
         name = to_fs_path(uri)
         if name is None:
             return None
         file = Path(os.path.realpath(name))
         roots = [root for root in self.sessions if file.is_relative_to(root)]
-        if roots:
-            root = max(roots, key=lambda it: len(it.parts))
-        else:
-            packages = (it for it in file.parents if (it / _MANIFEST).is_file())
-            root = next(packages, file.parent)
-        session = self.session_in(root)
+        around = max(roots, key=lambda it: len(it.parts), default=None)
+        if around is None and not self.workspace.folders:
+            around = _folder_of(file)
+        if around is None:
+            return None
+        session = self.session_in(around)
         path = session.files.path_of(file)
         return (session, path) if path is not None else None
 
@@ -115,6 +117,7 @@ class GraderServer(LanguageServer):
             look = await self.in_thread(session.look)
             found = await self.in_thread(partial(diagnostics_of, look, root))
             self._publish(root, found)
+            self._complain(session.complaint)
             graded = await self.in_thread(lambda: look.graded.findings)
             if graded:
                 found = await self.in_thread(partial(diagnostics_of, look, root, graded))
@@ -133,7 +136,7 @@ class GraderServer(LanguageServer):
 
     def _complain(self, message: str) -> None:
         """Show why the files are not looked at, or not graded, once."""
-        if message != self._complaint:
+        if message and message != self._complaint:
             self._complaint = message
             self.window_show_message(lsp.ShowMessageParams(lsp.MessageType.Warning, message))
 
@@ -173,6 +176,14 @@ class GraderServer(LanguageServer):
             return await self.in_thread(work)
         except (GraderError, SupersededError):
             return None
+
+
+def _folder_of(file: Path) -> Path | None:
+    """Return the folder to look at for a single file; None where it is no part of a robot."""
+    for folder in file.parents:
+        if (folder / _MANIFEST).is_file():
+            return folder
+    return file.parent if file.name.endswith(ROBOT_ENDINGS) else None
 
 
 def uri_of(root: Path, path: str) -> str:

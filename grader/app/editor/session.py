@@ -1,7 +1,7 @@
 """A workspace that is open in an editor: what was seen of it last, and what to look at next."""
 
 from collections.abc import Callable
-from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from threading import Lock
 
@@ -28,6 +28,7 @@ class EditorSession:
 
     def __init__(self, root: Path, rubric: str = "") -> None:
         self.files = EditedFiles(root)
+        self.complaint = ""  # why the settings are not used
         self._rubric = rubric
         self._version = 0  # of the files
         self._seen = -1  # the version at which the last look was made
@@ -42,11 +43,15 @@ class EditorSession:
         self._version += 1
         return self._version
 
-    @property
-    def settings(self) -> Settings:
-        """The settings of the workspace; none where they cannot be read. Raises nothing."""
-        with suppress(GraderError):
+    def _read_settings(self) -> Settings:
+        """Return the settings of the workspace, none where they cannot be read: `complaint` says
+        why.
+        """
+        self.complaint = ""
+        try:
             return read_settings(str(self.files.root))
+        except GraderError as error:
+            self.complaint = str(error)
         return Settings()
 
     def look(self) -> Look:
@@ -55,7 +60,9 @@ class EditorSession:
             if self._look is None or self._seen != self._version:
                 self._looking = self._version
                 tree, root = self.files.tree(), self.files.root
-                self._look = look_at(tree, root, self.settings, self._memory, self._grade)
+                settings = self._read_settings()
+                grade = partial(self._grade, settings)
+                self._look = look_at(tree, root, settings, self._memory, grade)
                 self._seen = self._looking
             return self._look
 
@@ -63,8 +70,8 @@ class EditorSession:
         if self._looking != self._version:
             raise SupersededError
 
-    def _grade(self, tree: Tree) -> Graded:
-        name = self._rubric or self.settings.rubric
+    def _grade(self, settings: Settings, tree: Tree) -> Graded:
+        name = self._rubric or settings.rubric
         if not name:
             return Graded()
         from grader.app.editor.criteria import grade_files  # late: most look without a rubric
