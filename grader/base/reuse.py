@@ -25,7 +25,7 @@ def reuse(read: Callable[[bytes, *_Names], _T]) -> Callable[[bytes, *_Names], _T
     return reader
 
 
-class Work(Protocol):
+class _Work(Protocol):
     """A budget to which work is charged."""
 
     @property
@@ -88,7 +88,7 @@ class Memory:
         self,
         key: Hashable,
         asked: _Asked,
-        work: Work,
+        work: _Work,
         make: Callable[[Answers[_Asked]], _T],
     ) -> _T:
         """Return a result that is kept under a key, if what is asked answers alike; else make it.

@@ -17,7 +17,7 @@ from pygls.uris import from_fs_path, to_fs_path
 
 from grader import __version__
 from grader.app.editor import completions, describing, fixes, places, renaming, symbols
-from grader.app.editor.diagnostics import diagnostics_of
+from grader.app.editor.diagnostics import SOURCE, diagnostics_of
 from grader.app.editor.edited_files import EditedFiles
 from grader.app.editor.look import Look
 from grader.app.editor.session import EditorSession, SupersededError
@@ -28,7 +28,6 @@ from grader.files.limits import ROBOT_ENDINGS
 
 _PAUSE = 0.1  # seconds after a key before the files are looked at
 _MANIFEST = "package.xml"
-_SOURCE = "grader"
 _T = TypeVar("_T")
 _Diagnostics = Mapping[str, list[lsp.Diagnostic]]
 
@@ -46,7 +45,7 @@ _OPTIONS = {
 }
 
 
-class GraderServer(LanguageServer):
+class _GraderServer(LanguageServer):
     """The server of one editor, with a session for each folder that is open in it."""
 
     def __init__(self, rubric: str) -> None:
@@ -147,7 +146,7 @@ class GraderServer(LanguageServer):
     def _publish(self, root: Path, found: _Diagnostics) -> None:
         """Show what is wrong in a folder; of files in which nothing is wrong any more, nothing."""
         for path in sorted({*found, *self._published.get(root, ())}):
-            uri = uri_of(root, path)
+            uri = from_fs_path(str(root / path)) or ""
             params = lsp.PublishDiagnosticsParams(uri, found.get(path, []))
             self.text_document_publish_diagnostics(params)
         self._published[root] = set(found)
@@ -186,35 +185,30 @@ def _folder_of(file: Path) -> Path | None:
     return file.parent if file.name.endswith(ROBOT_ENDINGS) else None
 
 
-def uri_of(root: Path, path: str) -> str:
-    """Return the address of a file of a folder."""
-    return from_fs_path(str(root / path)) or ""
-
-
 def _fault(error: Exception) -> lsp.Diagnostic:
     start = lsp.Position(0, 0)
     message = f"the grader itself failed ({type(error).__name__}); please report it"
     return lsp.Diagnostic(
-        lsp.Range(start, start), message, severity=lsp.DiagnosticSeverity.Error, source=_SOURCE
+        lsp.Range(start, start), message, severity=lsp.DiagnosticSeverity.Error, source=SOURCE
     )
 
 
-def make_server(rubric: str) -> GraderServer:
+def _make_server(rubric: str) -> _GraderServer:
     """Return the server of an editor, which grades with a rubric, an id or a file; empty for that
     of the settings, or none.
     """
-    server = GraderServer(rubric)
+    server = _GraderServer(rubric)
     _follow_texts(server)
     _answer_about_places(server)
     _offer_changes(server)
     return server
 
 
-def _follow_texts(server: GraderServer) -> None:
+def _follow_texts(server: _GraderServer) -> None:
     """Let a server follow what is typed and saved."""
 
     @server.feature(lsp.INITIALIZED)
-    def initialized(ls: GraderServer, _: lsp.InitializedParams) -> None:
+    def initialized(ls: _GraderServer, _: lsp.InitializedParams) -> None:
         ls.open_folders()
         watched = ls.client_capabilities.workspace
         files = watched.did_change_watched_files if watched is not None else None
@@ -225,56 +219,56 @@ def _follow_texts(server: GraderServer) -> None:
             ls.client_register_capability(lsp.RegistrationParams([registration]))
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)
-    def opened(ls: GraderServer, params: lsp.DidOpenTextDocumentParams) -> None:
+    def opened(ls: _GraderServer, params: lsp.DidOpenTextDocumentParams) -> None:
         text = params.text_document.text
         ls.change(params.text_document.uri, lambda files, path: files.type(path, text))
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_CHANGE)
-    def changed(ls: GraderServer, params: lsp.DidChangeTextDocumentParams) -> None:
+    def changed(ls: _GraderServer, params: lsp.DidChangeTextDocumentParams) -> None:
         uri = params.text_document.uri
         text = ls.workspace.get_text_document(uri).source
         ls.change(uri, lambda files, path: files.type(path, text))
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_CLOSE)
-    def closed(ls: GraderServer, params: lsp.DidCloseTextDocumentParams) -> None:
+    def closed(ls: _GraderServer, params: lsp.DidCloseTextDocumentParams) -> None:
         ls.change(params.text_document.uri, lambda files, path: files.close(path))
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_SAVE)
-    def saved(ls: GraderServer, params: lsp.DidSaveTextDocumentParams) -> None:
+    def saved(ls: _GraderServer, params: lsp.DidSaveTextDocumentParams) -> None:
         ls.change(params.text_document.uri, lambda files, _: files.read_again())
 
     @server.feature(lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES)
-    def written(ls: GraderServer, params: lsp.DidChangeWatchedFilesParams) -> None:
+    def written(ls: _GraderServer, params: lsp.DidChangeWatchedFilesParams) -> None:
         for uri in {change.uri for change in params.changes}:
             ls.change(uri, lambda files, _: files.read_again())
 
     @server.feature(lsp.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
-    def folders_changed(ls: GraderServer, _: lsp.DidChangeWorkspaceFoldersParams) -> None:
+    def folders_changed(ls: _GraderServer, _: lsp.DidChangeWorkspaceFoldersParams) -> None:
         ls.open_folders()
 
 
-def _answer_about_places(server: GraderServer) -> None:
+def _answer_about_places(server: _GraderServer) -> None:
     """Let a server answer what an editor asks about one place of a file."""
 
     def register(method: str, make: Callable[[Look, places.TextPlace], Any]) -> None:
         @server.feature(method, _OPTIONS.get(method))
-        async def answer(ls: GraderServer, params: Any) -> Any:
+        async def answer(ls: _GraderServer, params: Any) -> Any:
             return await ls.answer(params.text_document.uri, params.position, make)
 
     for method, make in _ANSWERS.items():
         register(method, make)
 
 
-def _offer_changes(server: GraderServer) -> None:
+def _offer_changes(server: _GraderServer) -> None:
     """Let a server list the names of a file and of all, correct problems, and rename."""
 
     @server.feature(lsp.TEXT_DOCUMENT_DOCUMENT_SYMBOL)
-    async def symbols_of(ls: GraderServer, params: lsp.DocumentSymbolParams) -> Any:
+    async def symbols_of(ls: _GraderServer, params: lsp.DocumentSymbolParams) -> Any:
         start = lsp.Position(0, 0)
         return await ls.answer(params.text_document.uri, start, symbols.in_document)
 
     @server.feature(lsp.WORKSPACE_SYMBOL)
-    async def all_symbols(ls: GraderServer, params: lsp.WorkspaceSymbolParams) -> Any:
+    async def all_symbols(ls: _GraderServer, params: lsp.WorkspaceSymbolParams) -> Any:
         found: list[lsp.SymbolInformation] = []
         for session in [*ls.sessions.values()]:
             find = partial(symbols.in_workspace, session, params.query)
@@ -284,12 +278,12 @@ def _offer_changes(server: GraderServer) -> None:
     options = lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix])
 
     @server.feature(lsp.TEXT_DOCUMENT_CODE_ACTION, options)
-    async def code_actions(ls: GraderServer, params: lsp.CodeActionParams) -> Any:
+    async def code_actions(ls: _GraderServer, params: lsp.CodeActionParams) -> Any:
         make = partial(fixes.actions, wanted=params.range)
         return await ls.answer(params.text_document.uri, params.range.start, make)
 
     @server.feature(lsp.TEXT_DOCUMENT_RENAME, lsp.RenameOptions(prepare_provider=True))
-    async def rename(ls: GraderServer, params: lsp.RenameParams) -> Any:
+    async def rename(ls: _GraderServer, params: lsp.RenameParams) -> Any:
         make = partial(renaming.renamed, new=params.new_name)
         return await ls.answer(params.text_document.uri, params.position, make)
 
@@ -298,4 +292,4 @@ def serve(rubric: str) -> None:
     """Answer an editor on standard input and output until it says that it ends."""
     logging.disable()  # what is refused is an answer, and no traceback on standard error
     gc.enable()  # unlike other commands, this one may run for hours
-    make_server(rubric).start_io()
+    _make_server(rubric).start_io()

@@ -10,7 +10,7 @@ from grader.ros.workspace.names import Definition
 from grader.ros.workspace.reading import facts_once
 from grader.ros.workspace.workspace import Workspace
 
-OfferedKind = Literal[
+_OfferedKind = Literal[
     "link",
     "joint",
     "frame",
@@ -27,10 +27,10 @@ OfferedKind = Literal[
     "action",
     "file",
 ]
-OFFERED: tuple[OfferedKind, ...] = get_args(OfferedKind)
+OFFERED: tuple[_OfferedKind, ...] = get_args(_OfferedKind)
 
 
-def offered_names(workspace: Workspace, kind: OfferedKind, owner: str = "") -> list[str]:
+def offered_names(workspace: Workspace, kind: _OfferedKind, owner: str = "") -> list[str]:
     """Return the names of a kind in alphabetical order, each once.
 
     Args:
@@ -117,7 +117,7 @@ def _defined(workspace: Workspace, kind: str, owner: str) -> Iterable[str]:
             yield fact.name
 
 
-_FINDERS: Mapping[OfferedKind, Callable[[Workspace, str], Iterable[str]]] = {
+_FINDERS: Mapping[_OfferedKind, Callable[[Workspace, str], Iterable[str]]] = {
     "link": _links,
     "joint": _joints,
     "frame": _frames,
