@@ -1,0 +1,49 @@
+-- In ~/.config/nvim/plugin/grader.lua: starts `grader lsp` for the files of robots, in Neovim 0.7 and newer.
+local filetypes = { "xml", "yaml", "python", "cpp", "cmake" }
+local markers = { "grader.toml", ".git" } -- of the folder that is inspected
+
+vim.api.nvim_create_autocmd({ "BufRead", "BufNewFile" }, {
+  pattern = { "*.urdf", "*.xacro", "*.srdf", "*.sdf", "*.world", "*.launch" },
+  command = "set filetype=xml",
+})
+
+if vim.lsp.config then -- Neovim 0.11
+  vim.lsp.config("grader", {
+    cmd = { "grader", "lsp" },
+    filetypes = filetypes,
+    root_markers = { markers },
+  })
+  vim.lsp.enable("grader")
+  return
+end
+
+local clients = {} -- by their folders
+
+-- Returns the nearest folder above a file that has one of the markers, else the current folder.
+local function find_root(file)
+  local folder = vim.fn.fnamemodify(file, ":p:h")
+  while folder ~= "/" do
+    for _, marker in ipairs(markers) do
+      if vim.fn.getftype(folder .. "/" .. marker) ~= "" then
+        return folder
+      end
+    end
+    folder = vim.fn.fnamemodify(folder, ":h")
+  end
+  return vim.fn.getcwd()
+end
+
+local function attach(event)
+  local root = find_root(event.match ~= "" and vim.api.nvim_buf_get_name(event.buf) or ".")
+  if not clients[root] or vim.lsp.client_is_stopped(clients[root]) then
+    clients[root] = vim.lsp.start_client({
+      name = "grader",
+      cmd = { "grader", "lsp" },
+      root_dir = root,
+      workspace_folders = { { uri = vim.uri_from_fname(root), name = root } },
+    })
+  end
+  vim.lsp.buf_attach_client(event.buf, clients[root])
+end
+
+vim.api.nvim_create_autocmd("FileType", { pattern = filetypes, callback = attach })

@@ -1,0 +1,109 @@
+"""The extension for VS Code: its manifest agrees with its code and with the grader, and its package holds what it needs."""
+
+import json
+import os
+import re
+import zipfile
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree as ET
+
+import pytest
+
+from grader import __version__
+from grader.app.cli.lsp import lsp
+from tests.command_line import ROOT, run
+
+EXTENSION = ROOT / "editors/vscode"
+MANIFEST: dict[str, Any] = json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))
+LOCK: dict[str, Any] = json.loads((EXTENSION / "package-lock.json").read_text(encoding="utf-8"))
+CODE = (EXTENSION / "src/extension.ts").read_text(encoding="utf-8")
+PACKED = os.environ.get("VSIX")
+
+
+def endings() -> set[str]:
+    """Return the endings of the files whose text the server gets."""
+    [found] = re.findall(r'ENDINGS = "([\w,]+)"', CODE)
+    return {f".{ending}" for ending in found.split(",")}
+
+
+def test_versions() -> None:
+    """The extension has the version of the grader; packages are pinned, and types are those of the oldest VS Code."""
+    assert MANIFEST["version"] == __version__ == LOCK["version"] == LOCK["packages"][""]["version"]
+    pinned = {**MANIFEST["dependencies"], **MANIFEST["devDependencies"]}
+    assert all(re.fullmatch(r"\d+\.\d+\.\d+", version) for version in pinned.values())
+    assert {name: LOCK["packages"][f"node_modules/{name}"]["version"] for name in pinned} == pinned
+    assert MANIFEST["engines"]["vscode"] == f"^{pinned['@types/vscode']}"
+    assert not any("resolved" in package for package in LOCK["packages"].values())
+
+
+def test_the_code_stays_small() -> None:
+    """It starts a server, and has no logic of its own."""
+    lines = sum(len(path.read_text().splitlines()) for path in (EXTENSION / "src").iterdir())
+    assert lines <= 150
+
+
+def test_commands_and_settings() -> None:
+    """Each command of the manifest is registered, and each setting is read; there are no others."""
+    contributed = MANIFEST["contributes"]
+    commands = {command["command"] for command in contributed["commands"]}
+    assert commands == set(re.findall(r'registerCommand\("([\w.]+)"', CODE))
+    assert {entry["command"] for entry in contributed["menus"]["editor/title"]} <= commands
+    read = {f"grader.{name}" for name in re.findall(r'settingOf\("(\w+)"\)', CODE)}
+    assert set(contributed["configuration"]["properties"]) == read
+    assert contributed["configuration"]["properties"]["grader.command"]["scope"] != "resource"
+    assert MANIFEST["capabilities"]["untrustedWorkspaces"]["supported"] is False
+
+
+def test_languages() -> None:
+    """The server gets the text of each file that has a language by the manifest, and of those that it reads besides."""
+    languages = {
+        each["id"]: set(each["extensions"]) for each in MANIFEST["contributes"]["languages"]
+    }
+    assert languages["xml"] == {".urdf", ".xacro", ".srdf", ".sdf", ".world", ".launch"}
+    assert set.union(*languages.values()) <= endings()
+    assert {".xml", ".yaml", ".yml", ".py", ".cpp", ".hpp", ".h"} <= endings()
+    assert '"**/CMakeLists.txt"' in CODE
+    started = {event.removeprefix("onLanguage:") for event in MANIFEST["activationEvents"]}
+    assert started == {"xml", "workspaceContains:**/package.xml"}
+
+
+def test_commands_of_the_grader() -> None:
+    """The extension runs what there is, with options that there are, and installs what `grader lsp` asks for."""
+    for command, option in (("lsp", "--rubric"), ("view", "--rubric"), ("view", "--no-browser")):
+        assert f'"{command}"' in CODE and f'"{option}"' in CODE
+        assert option in run((command, "--help")).stdout.decode()
+    [installation] = re.findall(r'INSTALLATION = "(.*)"', CODE)
+    assert installation in " ".join((lsp.__doc__ or "").split())
+    assert installation in (EXTENSION / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.exhaustive
+@pytest.mark.skipif(PACKED is None, reason="VSIX is not the packed extension")
+def test_the_package() -> None:
+    """It has the compiled code, all packages that this needs with their licences, the licence, and no sources."""
+    with zipfile.ZipFile(Path(PACKED or "")) as archive:
+        files = {name: archive.read(name) for name in archive.namelist()}
+    assert json.loads(files["extension/package.json"]) == MANIFEST
+    assert f"extension/{Path(MANIFEST['main']).as_posix()}" in files
+    assert files["extension/LICENSE.txt"] == (ROOT / "LICENSE").read_bytes()
+    needed = {name for name, package in LOCK["packages"].items() if name and not package.get("dev")}
+    assert len(needed) >= 5
+    for name in needed:
+        assert (
+            json.loads(files[f"extension/{name}/package.json"])["version"]
+            == LOCK["packages"][name]["version"]
+        )
+        beside = [file for file in files if file.startswith(f"extension/{name}/")]
+        assert any(re.search("(?i)/licen[cs]e", file) for file in beside), name
+    assert not any(
+        re.search(r"/src/|\.ts$|\.map$|package-lock|tsconfig", file)
+        for file in files
+        if "/node_modules/" not in file
+    )
+    tree = ET.fromstring(files["extension.vsixmanifest"])
+    [identity] = [element for element in tree.iter() if element.tag.endswith("}Identity")]
+    assert (identity.get("Version"), identity.get("Publisher")) == (
+        __version__,
+        MANIFEST["publisher"],
+    )
