@@ -56,9 +56,9 @@ local function correct_and_rename()
   end)
 
   vim.cmd("write | edit " .. ROBOT)
-  vim.fn.search("caster_joint")
+  vim.fn.search([[parent link="\zsbase_footprint]])
   change("the new name", function()
-    vim.lsp.buf.rename("ball_joint")
+    vim.lsp.buf.rename("ground_link")
   end)
   vim.cmd("wall")
 end

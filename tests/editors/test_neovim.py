@@ -15,7 +15,7 @@ from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment, run
 CONFIGURATION = ROOT / "docs/editors/grader.lua"
 HERE = Path(__file__).parent
 SAMPLE = ROOT / "submissions/diffdrive/joint-misspelt/diffdrive_robot"
-CONTROLLERS, ROBOT = "config/controllers.yaml", "urdf/diffdrive.urdf.xacro"
+OLD, NEW = "base_footprint", "ground_link"
 
 pytestmark = [
     pytest.mark.exhaustive,
@@ -58,20 +58,21 @@ def run_neovim(script: Path, folder: Path, beside: Path) -> dict[str, Any]:
     return results
 
 
-def test_a_joint_is_corrected_and_another_renamed(workspace: Path, tmp_path: Path) -> None:
-    """The problem is at its line, one correction removes it, and nothing is wrong after the renaming."""
+def test_a_joint_is_corrected_and_a_link_renamed(workspace: Path, tmp_path: Path) -> None:
+    """The problem is at its line, one correction removes it, and nothing is wrong after the renaming in two files."""
     results = run_neovim(HERE / "neovim.lua", workspace, tmp_path)
     assert "failure" not in results, results["failure"]
     [problem] = results["problems"]
     assert problem.startswith("13: ") and "'wheel_left_joint'" in problem
     assert results["actions"][0] == "Change 'wheel_left_joint' to 'left_wheel_joint'"
     assert "\n".join(results["screen"]) + "\n" == (HERE / "screen.txt").read_text(encoding="utf-8")
-    expected = {
-        CONTROLLERS: ("wheel_left_joint", "left_wheel_joint"),
-        ROBOT: ("caster_joint", "ball_joint"),
-    }
-    for path, (old, new) in expected.items():
-        before = (SAMPLE / path).read_text(encoding="utf-8")
-        after = (workspace / SAMPLE.name / path).read_text(encoding="utf-8")
-        assert after == before.replace(old, new) != before
+    changed = []
+    for path in SAMPLE.rglob("*.*"):
+        before = path.read_text(encoding="utf-8")
+        after = workspace / SAMPLE.name / path.relative_to(SAMPLE)
+        correct = before.replace("wheel_left_joint", "left_wheel_joint")
+        assert after.read_text(encoding="utf-8") == correct.replace(OLD, NEW)
+        if OLD in before:
+            changed.append(path.name)
+    assert sorted(changed) == ["controllers.yaml", "diffdrive.urdf.xacro"]
     assert run(("inspect", workspace, "--format", "concise")).stdout == b""
