@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import subprocess
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -12,13 +13,16 @@ import pytest
 
 from grader import __version__
 from grader.app.cli.lsp import lsp
-from tests.command_line import ROOT, run
+from tests.command_line import HANG_TIMEOUT, ROOT, run
 
 EXTENSION = ROOT / "editors/vscode"
 MANIFEST: dict[str, Any] = json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))
 LOCK: dict[str, Any] = json.loads((EXTENSION / "package-lock.json").read_text(encoding="utf-8"))
 CODE = (EXTENSION / "src/extension.ts").read_text(encoding="utf-8")
 PACKED = os.environ.get("VSIX")
+NEEDS_PACKAGE = pytest.mark.skipif(PACKED is None, reason="VSIX is not the packed extension")
+INSTALLATION = "pip install 'urdf-grader[editor]'"
+BROWSER = "workbench.action.browser.open"
 
 
 def endings() -> set[str]:
@@ -73,13 +77,13 @@ def test_commands_of_the_grader() -> None:
     for command, option in (("lsp", "--rubric"), ("view", "--rubric"), ("view", "--no-browser")):
         assert f'"{command}"' in CODE and f'"{option}"' in CODE
         assert option in run((command, "--help")).stdout.decode()
-    [installation] = re.findall(r'INSTALLATION = "(.*)"', CODE)
-    assert installation in " ".join((lsp.__doc__ or "").split())
-    assert installation in (EXTENSION / "README.md").read_text(encoding="utf-8")
+    assert f'INSTALLATION = "{INSTALLATION}"' in CODE
+    assert INSTALLATION in " ".join((lsp.__doc__ or "").split())
+    assert INSTALLATION in (EXTENSION / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.exhaustive
-@pytest.mark.skipif(PACKED is None, reason="VSIX is not the packed extension")
+@NEEDS_PACKAGE
 def test_the_package() -> None:
     """It has the compiled code, all packages that this needs with their licences, the licence, and no sources."""
     with zipfile.ZipFile(Path(PACKED or "")) as archive:
@@ -107,3 +111,86 @@ def test_the_package() -> None:
         __version__,
         MANIFEST["publisher"],
     )
+
+
+@pytest.fixture(scope="module")
+def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return the code of the package."""
+    target = tmp_path_factory.mktemp("extension")
+    with zipfile.ZipFile(PACKED or "") as archive:
+        return Path(archive.extract(f"extension/{Path(MANIFEST['main']).as_posix()}", target))
+
+
+def activate(compiled: Path, situation: dict[str, Any]) -> dict[str, Any]:
+    """Return what the extension does, in Node with a stub of VS Code."""
+    done = subprocess.run(
+        ["node", Path(__file__).with_name("extension.js"), compiled, json.dumps(situation)],
+        capture_output=True, check=True, timeout=HANG_TIMEOUT,
+    )  # fmt: skip
+    results: dict[str, Any] = json.loads(done.stdout)
+    return results
+
+
+def make_program(path: Path, says: str) -> Path:
+    """Make a program that prints something and waits to be ended."""
+    path.parent.mkdir(parents=True)
+    path.write_text(f"#!/bin/sh\necho {says}\nexec sleep 60\n")
+    path.chmod(0o755)
+    return path
+
+
+@pytest.mark.exhaustive
+@NEEDS_PACKAGE
+def test_which_grader_starts(compiled: Path, tmp_path: Path) -> None:
+    """That of the setting, else of .venv, else beside the interpreter of the Python extension, else of the path."""
+    python = make_program(tmp_path / "other/bin/grader", "").with_name("python")
+    folder = {"folder": str(tmp_path)}
+    chosen = {**folder, "interpreter": str(python)}
+    assert activate(compiled, folder)["server"] == ["grader", "lsp"]
+    assert activate(compiled, {})["server"] == ["grader", "lsp"]
+    assert activate(compiled, chosen)["server"] == [str(python.with_name("grader")), "lsp"]
+    own = make_program(tmp_path / ".venv/bin/grader", "")
+    assert activate(compiled, chosen)["server"] == [str(own), "lsp"]
+    for setting, program in (("env/grader", str(tmp_path / "env/grader")), ("grade2", "grade2")):
+        settings = {"command": setting, "rubric": "lab6"}
+        done = activate(compiled, {**chosen, "settings": settings})
+        assert done["server"] == [program, "lsp", "--rubric", "lab6"]
+        assert done["messages"] == []
+
+
+@pytest.mark.exhaustive
+@NEEDS_PACKAGE
+def test_a_server_that_does_not_start(compiled: Path) -> None:
+    """A message says how to install it; the command is typed in a terminal, and not run."""
+    done = activate(compiled, {"fails": True})
+    [message] = done["messages"]
+    assert message.startswith("'grader lsp' does not start.") and message.endswith(INSTALLATION)
+    assert done["typed"] == [[INSTALLATION, False]]
+
+
+@pytest.mark.exhaustive
+@NEEDS_PACKAGE
+@pytest.mark.parametrize("commands", [[], [BROWSER]])
+def test_the_robot_is_shown(compiled: Path, tmp_path: Path, commands: list[str]) -> None:
+    """The page of the file in the editor is opened beside it, or else in the browser; of another file that of the folder."""
+    program = tmp_path / ".venv/bin/grader"
+    make_program(program, '"http://$1/$2/$3"')
+    situation = {"folder": str(tmp_path), "run": "grader.view", "commands": commands}
+    for file, shown in (("/a/b.xacro", "/a/b.xacro"), ("/a/b.py", tmp_path), (None, tmp_path)):
+        done = activate(compiled, {**situation, "file": file})
+        address = f"http://view/{shown}/--no-browser"
+        beside = [[BROWSER, {"url": address, "openToSide": True}]]
+        assert (done["beside"], done["opened"]) == ((beside, []) if commands else ([], [address]))
+
+
+@pytest.mark.exhaustive
+@NEEDS_PACKAGE
+def test_a_robot_that_cannot_be_shown(compiled: Path, tmp_path: Path) -> None:
+    """Without a file, a message asks for one; what the grader says is shown."""
+    [message] = activate(compiled, {"run": "grader.view"})["messages"]
+    assert message == "Open a URDF or a folder first."
+    program = make_program(tmp_path / "failing/grader", "")
+    program.write_text("#!/bin/sh\necho 'grader: no robot' >&2\nexit 2\n")
+    settings = {"command": str(program)}
+    situation = {"folder": str(tmp_path), "run": "grader.view", "settings": settings}
+    assert activate(compiled, situation)["messages"] == ["grader: no robot"]

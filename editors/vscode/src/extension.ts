@@ -70,12 +70,12 @@ class Client extends LanguageClient {
 
 /** Returns the grader of the settings, of the workspace's environment, or of the path. */
 async function findCommand(): Promise<string> {
-  const root = folder() ?? "";
+  const root = folder();
   const setting = settingOf("command");
   if (setting) {
-    return /[\\/]/.test(setting) ? resolve(root, setting) : setting;
+    return /[\\/]/.test(setting) ? resolve(root ?? "", setting) : setting;
   }
-  const candidates = [join(root, ".venv", PROGRAM)];
+  const candidates = root ? [join(root, ".venv", PROGRAM)] : [];
   const interpreter = await chosenInterpreter();
   if (interpreter) {
     candidates.push(join(dirname(interpreter), basename(PROGRAM)));
