@@ -1,4 +1,8 @@
 -- In ~/.config/nvim/plugin/grader.lua: starts `grader lsp` for the files of robots, in Neovim 0.7 and newer.
+if vim.fn.executable("grader") == 0 then
+  return
+end
+
 local filetypes = { "xml", "yaml", "python", "cpp", "cmake" }
 local markers = { "grader.toml", ".git" } -- of the folder that is inspected
 
@@ -19,31 +23,32 @@ end
 
 local clients = {} -- by their folders
 
--- Returns the nearest folder above a file that has one of the markers, else the current folder.
+-- Returns the nearest folder above a file that has one of the markers; nil without one.
 local function find_root(file)
-  local folder = vim.fn.fnamemodify(file, ":p:h")
-  while folder ~= "/" do
+  local below, folder = nil, vim.fn.fnamemodify(file, ":p:h")
+  while folder ~= below do
     for _, marker in ipairs(markers) do
       if vim.fn.getftype(folder .. "/" .. marker) ~= "" then
         return folder
       end
     end
-    folder = vim.fn.fnamemodify(folder, ":h")
+    below, folder = folder, vim.fn.fnamemodify(folder, ":h")
   end
-  return vim.fn.getcwd()
 end
 
 local function attach(event)
-  local root = find_root(event.match ~= "" and vim.api.nvim_buf_get_name(event.buf) or ".")
-  if not clients[root] or vim.lsp.client_is_stopped(clients[root]) then
-    clients[root] = vim.lsp.start_client({
+  local root = find_root(vim.api.nvim_buf_get_name(event.buf))
+  local client = clients[root or ""]
+  if not client or vim.lsp.client_is_stopped(client) then
+    client = vim.lsp.start_client({
       name = "grader",
       cmd = { "grader", "lsp" },
       root_dir = root,
-      workspace_folders = { { uri = vim.uri_from_fname(root), name = root } },
+      workspace_folders = root and { { uri = vim.uri_from_fname(root), name = root } },
     })
+    clients[root or ""] = client
   end
-  vim.lsp.buf_attach_client(event.buf, clients[root])
+  vim.lsp.buf_attach_client(event.buf, client)
 end
 
 vim.api.nvim_create_autocmd("FileType", { pattern = filetypes, callback = attach })

@@ -23,11 +23,13 @@ pytestmark = [
 ]
 
 
-@pytest.fixture
-def workspace(tmp_path: Path) -> Path:
-    """Return a workspace with a lab in which a joint is misspelt."""
+@pytest.fixture(params=["grader.toml", ".git/HEAD", "notes"])
+def workspace(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    """Return a workspace with a lab in which a joint is misspelt; the last is inspected as a package."""
     shutil.copytree(SAMPLE, tmp_path / "ws" / SAMPLE.name)
-    (tmp_path / "ws/grader.toml").touch()
+    marker = tmp_path / "ws" / request.param
+    marker.parent.mkdir(exist_ok=True)
+    marker.touch()
     return tmp_path / "ws"
 
 
