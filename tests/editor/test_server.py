@@ -229,6 +229,27 @@ def test_corrects_a_name(diffdrive: Path) -> None:
     _edit(diffdrive, act)
 
 
+def test_corrects_where_the_name_is_written(diffdrive: Path) -> None:
+    """The problem is at the call, and the name some lines below it."""
+
+    async def act(one: Editor) -> None:
+        await one.open(_LAUNCH)
+        spawned = "joint_state_broadcaster"
+        text = one.text(_LAUNCH).replace(spawned, "joint_state_brodcaster")
+        await one.type(_LAUNCH, text)
+        rows = text.split("\n")
+        row = next(number for number, line in enumerate(rows) if "joint_state_brodcaster" in line)
+        [found] = one.client.diagnostics[one.uri(_LAUNCH)]
+        assert found.range.start.line <= row
+        context = lsp.CodeActionContext([])
+        at = lsp.Range(lsp.Position(row, 0), lsp.Position(row, 0))
+        asked = lsp.CodeActionParams(one.document(_LAUNCH), at, context)
+        offered = await one.client.text_document_code_action_async(asked)
+        assert offered
+
+    _edit(diffdrive, act)
+
+
 def test_offers_the_edits_of_hints(lab6: Path) -> None:
     """A rubric whose hints show edits has them as corrections."""
     rubric = (lab6 / "rubric.toml").read_text(encoding="utf-8")

@@ -20,7 +20,10 @@ def actions(look: Look, place: TextPlace, wanted: lsp.Range) -> list[lsp.CodeAct
     offered = [*_of_names(look, place.path), *_of_robots(look, place.path)]
     offered += [fix for fix in look.graded.fixes if fix.at.path == place.path]
     for title, at, edits in offered:
-        if edits and _overlap(ranges.range(at), wanted):
+        # Where it is wrong, and where it is written.
+        places = [at, *(Location(it.path, it.line, it.column) for it in edits)]
+        own = [ranges.range(it) for it in places if it.path == place.path]
+        if edits and any(_overlap(it, wanted) for it in own):
             edit = ranges.workspace_edit(edits)
             found.append(lsp.CodeAction(title, lsp.CodeActionKind.QuickFix, edit=edit))
     return found
