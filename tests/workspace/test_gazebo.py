@@ -109,6 +109,10 @@ ament_package()
 _LASER = (
     "{topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan, gz_type_name: gz.msgs.LaserScan"
 )
+_INFO = (
+    "- {topic_name: eye/image/camera_info, ros_type_name: sensor_msgs/msg/CameraInfo, "
+    "gz_type_name: gz.msgs.CameraInfo, direction: GZ_TO_ROS}\n"
+)
 _AT_BRIDGE, _AT_ROBOT = "scout/bridge.yaml:2", "scout/scout.urdf:10"
 
 
@@ -119,7 +123,7 @@ def problems(*edits: tuple[str, str, str]) -> list[str]:
         assert old in texts[f"scout/{name}"]
         texts[f"scout/{name}"] = texts[f"scout/{name}"].replace(old, new)
     found = sure(agreement_of(texts))
-    assert {it.family for it in found} <= {"topics", "programs", "files"}
+    assert {it.family for it in found} <= {"topics", "programs", "files", "parameters"}
     return [it.message for it in found]
 
 
@@ -225,6 +229,54 @@ def problems(*edits: tuple[str, str, str]) -> list[str]:
                 ),
             ],
             "the bridge has no topics: neither arguments, nor the parameter config_file",
+        ),
+        (
+            [("bridge.yaml", "direction: ROS_TO_GZ", "direction: ROS_TO_G")],
+            "the bridge leaves out the row: it has no direction 'ROS_TO_G'; did you mean ROS_TO_GZ?",
+        ),
+        (
+            [("bridge.yaml", "gz_type_name: gz.msgs.IMU, ", "")],
+            "the bridge leaves out the row: it has no gz_type_name",
+        ),
+        (
+            [("bridge.yaml", "sensor_msgs/msg/Imu", "sensor_msgs/Imu")],
+            "the bridge has no type 'sensor_msgs/Imu'; did you mean sensor_msgs/msg/Imu?",
+        ),
+        (
+            [("bridge.yaml", "sensor_msgs/msg/Imu", "sensor_msgs/msg/IMU")],
+            "the bridge has no type 'sensor_msgs/msg/IMU'; did you mean sensor_msgs/msg/Imu?",
+        ),
+        (
+            [
+                (
+                    "scout.launch.py",
+                    'executable="parameter_bridge",',
+                    'executable="parameter_bridge", arguments=["clock", "a@b/msg/C[gz.msgs.D"],',
+                )
+            ],
+            "the bridge ends with an error at the argument 'clock': write TOPIC@ROS_TYPE[GZ_TYPE",
+        ),
+        (
+            [("scout.urdf", "<topic>imu</topic>", "")],
+            "nothing publishes 'imu' in Gazebo: the sensor 'imu' has no <topic> (scout/scout.urdf:5)",
+        ),
+        (
+            [
+                (
+                    "scout.urdf",
+                    "</gazebo>\n  <gazebo>",
+                    '<sensor name="eye" type="camera"><topic>eye/image</topic></sensor></gazebo>\n  <gazebo>',
+                ),
+                ("bridge.yaml", "- {topic_name: odom", f"{_INFO}- {{topic_name: odom"),
+            ],
+            (
+                "no sensor publishes 'eye/image/camera_info' in Gazebo; did you mean 'eye/camera_info'"
+                " (scout/scout.urdf:7)?"
+            ),
+        ),
+        (
+            [("scout.launch.py", '"-topic", "robot_description"', '"-name", "scout"')],
+            "create ends with an error: it needs -file, -param, -string or -topic",
         ),
         (
             [("drive.py", "LaserScan", "PointCloud2")],
@@ -416,3 +468,53 @@ def test_a_world_in_which_no_robot_is_created_needs_no_systems_for_it() -> None:
     assert (
         problems(world, ("scout.launch.py", 'executable="create"', 'executable="gzserver"')) == []
     )
+
+
+def test_options_that_create_does_not_have_are_named() -> None:
+    """It ignores them, so each is a warning; negative numbers are no options, and a dash is an underscore."""
+    given = '"-world", "arena", "-topic", "robot_description"'
+    options = '"-x", "-1.0", "-allow-renaming", "-entity", "scout", "-nam", "a", "--ros-args", "-r", "a:=b"'
+    launch = _LAUNCH.replace(given, f"{given}, {options}")
+    assert launch != _LAUNCH
+    found = agreement_of({**_FILES, "scout/scout.launch.py": launch})
+    assert [it.message for it in found.mismatches] == [
+        "create has no option -entity, and ignores it; did you mean -name?",
+        "create has no option -nam, and ignores it; did you mean -name?",
+    ]
+    assert not any(it.is_certain for it in found.mismatches)
+    unknown = _LAUNCH.replace(given, f"{given}, unknown(), '-entity'")
+    assert agreement_of({**_FILES, "scout/scout.launch.py": unknown}).mismatches == ()
+
+
+_FRAMES = "<frame_id>odom</frame_id><child_frame_id>base_link</child_frame_id>"
+_TRANSFORMS = (
+    "- {topic_name: FROM, ros_type_name: tf2_msgs/msg/TFMessage, gz_type_name: gz.msgs.Pose_V, "
+    "direction: GZ_TO_ROS}\n"
+)
+_EKF = 'Node(package="robot_localization", executable="ekf_node"),\n        Node(package="scout"'
+
+
+def test_a_bridge_publishes_transforms_of_gazebo() -> None:
+    """A filter beside a system of Gazebo whose transforms a bridge takes to /tf is a second owner."""
+
+    def found(topic: str, frames: str = _FRAMES, remaps: str = "") -> list[str]:
+        robot = _ROBOT.replace("<tf_topic/>", f"<tf_topic>/{topic}</tf_topic>{frames}")
+        launch = _LAUNCH.replace('Node(package="scout"', _EKF)
+        launch = launch.replace(
+            'executable="parameter_bridge",', f'executable="parameter_bridge",{remaps}'
+        )
+        texts = {
+            **_FILES,
+            "scout/scout.urdf": robot,
+            "scout/scout.launch.py": launch,
+            "scout/bridge.yaml": _BRIDGE + _TRANSFORMS.replace("FROM", topic),
+        }
+        every = agreement_of(texts).mismatches
+        return [it.message for it in every if it.family == "transforms"]
+
+    message = (
+        "ekf_node publishes the transform from 'odom' to 'base_link', and so does the system "
+        "DiffDrive of Gazebo (scout/scout.urdf:9)"
+    )
+    assert found("tf") == found("odom/tf", remaps='remappings=[("/odom/tf", "/tf")],') == [message]
+    assert found("odom/tf") == found("tf", "") == found("tf", _FRAMES, 'namespace="a",') == []

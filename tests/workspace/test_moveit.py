@@ -137,6 +137,78 @@ def test_a_state_beyond_a_limit_is_wrong() -> None:
     assert found == ["<group_state>: 'shoulder' is at 2.7; its limits are -1 and 1"]
 
 
+def test_a_group_without_parts_may_be_wrong() -> None:
+    """MoveIt leaves it out; one whose parts xacro makes is another file's."""
+    srdf = {"config/arm.srdf": _SRDF.replace("</robot>", '<group name="tool"/></robot>')}
+    assert found_in(srdf) == []
+    assert found_in(srdf, is_certain=False) == [
+        "the group 'tool' has no joint, link, chain or group: MoveIt leaves it out"
+    ]
+    made = {
+        "config/arm.srdf": srdf["config/arm.srdf"].replace(
+            "/></robot>", "><link name='hand'/></group></robot>"
+        )
+    }
+    assert found_in(made, is_certain=False) == []
+
+
+def test_the_only_description_has_the_name_of_the_only_robot() -> None:
+    """MoveIt writes an error and goes on, so it is a warning."""
+    other = {"config/arm.srdf": _SRDF.replace('name="arm"', 'name="limb"', 1)}
+    assert found_in(other, is_certain=False) == [
+        "the SRDF is of the robot 'limb', but the robot is named 'arm'"
+    ]
+    both = {**other, "config/own.srdf": _SRDF}
+    assert found_in(both, is_certain=False) == []
+
+
+_HAND = """\
+    hand_controller: {type: joint_trajectory_controller/JointTrajectoryController}
+    joint_state_broadcaster"""
+_SPAWN = """\
+from launch import LaunchDescription
+from launch_ros.actions import Node
+
+
+def generate_launch_description():
+    return LaunchDescription([
+        Node(package='controller_manager', executable='ros2_control_node'),
+        Node(package='controller_manager', executable='spawner', arguments=[NAMES]),
+    ])
+"""
+
+
+_LAUNCHES = ("demo", "move_group", "moveit_rviz", "rsp", "spawn_controllers")
+_NOTHING = _SPAWN.partition("        Node")[0] + "    ])\n"
+
+
+def test_the_controllers_of_moveit_are_started() -> None:
+    """MoveIt waits for the action of one that no spawner starts; that none is started is said of all."""
+    names = _MOVEIT.replace("[arm_controller]", "[arm_controller, hand_controller]")
+    hand = "  hand_controller: {type: FollowJointTrajectory, joints: [shoulder]}\n"
+    own = _CONTROLLERS.replace("    joint_state_broadcaster", _HAND)
+    section = "hand_controller:\n  ros__parameters: {joints: [shoulder], command_interfaces: [position]}\n"
+    files = {
+        "config/moveit_controllers.yaml": names + hand,
+        "config/ros2_controllers.yaml": own + section,
+        **{f"launch/{name}.launch.py": _NOTHING for name in _LAUNCHES},
+    }
+    found = {}
+    for started in ("'arm_controller'", "'arm_controller', 'hand_controller'", "input()"):
+        launch = _SPAWN.replace("NAMES", started)
+        found[started] = [
+            it for it in found_in({**files, "launch/own.launch.py": launch}) if "spawner" in it
+        ]
+    message = (
+        "controller_names: no spawner starts 'hand_controller', so MoveIt waits for its action"
+    )
+    assert found == {
+        "'arm_controller'": [message],
+        "'arm_controller', 'hand_controller'": [],
+        "input()": [],
+    }
+
+
 def test_a_description_of_another_robot_is_not_compared() -> None:
     """Its name says so, if there is one of the robot as well; on its own, it may be the name that is wrong."""
     joints = '<joint name="shoulder" value="2"/><joint name="neck" value="2"/>'

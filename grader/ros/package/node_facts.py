@@ -33,6 +33,13 @@ class Qos(NamedTuple):
     durability: str | None = None
 
 
+class ImageEncoding(NamedTuple):
+    """An encoding of images, as bgr8, and where code makes or asks for it."""
+
+    name: str
+    location: Location
+
+
 class Endpoint(NamedTuple):
     """A publisher, subscription, service or client, also of an action. `type` is a full name:
     std_msgs.msg.Float32.
@@ -44,6 +51,8 @@ class Endpoint(NamedTuple):
     location: Location
     qos: Qos = Qos()
     parts: tuple[NamePart, ...] = ()  # of a name that is no plain text; none if it is not known
+    # Of the images that it sends, or to which its callback converts them; none if one is unknown.
+    encodings: tuple[ImageEncoding, ...] = ()
 
     @property
     def is_computed(self) -> bool:
@@ -113,6 +122,14 @@ class FieldUse(NamedTuple):
     literal: tuple[Value, ...] = ()
 
 
+class SynchronisedType(NamedTuple):
+    """A type of messages whose times a synchroniser compares, and the class of that."""
+
+    type: str
+    by: str
+    location: Location
+
+
 _CodeRule = Literal[
     "undefined name",
     "callback is called",
@@ -177,6 +194,7 @@ class PackageNodes(NamedTuple):
     imports: tuple[TypeImport, ...] = ()
     field_uses: tuple[FieldUse, ...] = ()
     faults: tuple[CodeFault, ...] = ()
+    synchronised: tuple[SynchronisedType, ...] = ()
     has_more_faults: bool = False  # perhaps, in modules that are not searched
     # What a program publishes for which no node is known.
     loose_frames: tuple[NodeFrame, ...] = ()

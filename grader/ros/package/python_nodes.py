@@ -22,6 +22,7 @@ from grader.ros.package.entry_points import (
     read_module,
     unreadable_module,
 )
+from grader.ros.package.message_content import SUBSCRIBER, ContentReader
 from grader.ros.package.message_uses import CodePart, field_uses, given_argument, type_imports
 from grader.ros.package.node_facts import (
     CodeFault,
@@ -29,11 +30,13 @@ from grader.ros.package.node_facts import (
     Endpoint,
     EndpointKind,
     FieldUse,
+    ImageEncoding,
     NodeFacts,
     NodeParameter,
     NodeProgram,
     PackageNodes,
     Qos,
+    SynchronisedType,
     Timer,
     TypeImport,
 )
@@ -60,6 +63,7 @@ _MAX_CODE = 512 * 1024  # characters of the modules of a package in which faults
 _OF_CALL = 4  # parts of a call that leads to a node
 _BYTES_A_PART = 2  # of a program in which slips are searched, charged as one part
 _MAX_FIRST_LINE = 100  # bytes
+_DEPTH_OF_FILTERS = 10  # by message_filters of Jazzy
 _NODES = frozenset(
     f"rclpy.{name}"
     for name in (
@@ -180,6 +184,7 @@ def read_nodes(package: Package) -> PackageNodes:
     is_loose = any(module.has_loose_declarations for module in modules.values())
     imports = [found for module in modules.values() for found in module.type_imports()]
     uses = [use for module in modules.values() for use in module.field_uses()]
+    synchronised = [it for module in modules.values() for it in module.synchronised_types()]
     faults, is_searched = _faults_of([module.text() for module in modules.values()])
     return PackageNodes(
         nodes=tuple(nodes),
@@ -189,6 +194,7 @@ def read_nodes(package: Package) -> PackageNodes:
         imports=tuple(imports),
         field_uses=tuple(uses),
         faults=tuple(faults),
+        synchronised=tuple(synchronised),
         has_more_faults=not is_searched,
     )
 
@@ -416,7 +422,27 @@ class _Module:
             self.doubts.append(
                 Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
             )
-        return [self._node(at, facts) for at, facts in self._facts.items()]
+        encodings = self._content.encodings() if self._uses("cv_bridge") else {}
+        return [self._node(at, facts, encodings) for at, facts in self._facts.items()]
+
+    def synchronised_types(self) -> Iterator[SynchronisedType]:
+        """Yield the types of the messages that synchronisers compare."""
+        if self._uses("message_filters"):
+            yield from self._content.synchronised_types()
+
+    def _uses(self, module: str) -> bool:
+        """Return whether the code imports another module, or something of it."""
+        return any(name.partition(".")[0] == module for name in self._constants.imported)
+
+    @cached_property
+    def _content(self) -> ContentReader:
+        return ContentReader(
+            self._parts, self._code.source, self._constants.value_of, self._bindings_around
+        )
+
+    def _bindings_around(self, part: CodePart) -> Bindings:
+        """Return what the names in a function, and the attributes of its class, are bound to."""
+        return self._bindings_in(part.of).within(self._bindings_of(part.node))
 
     def text(self) -> ModuleText:
         """Return the module as it is searched for faults."""
@@ -435,7 +461,12 @@ class _Module:
         """Yield the fields that the module uses of messages, services and actions."""
         return field_uses(self._code, self._parts, self._constants.value_of)
 
-    def _node(self, at: Location, facts: "Sequence[_Fact]") -> NodeFacts:
+    def _node(
+        self,
+        at: Location,
+        facts: "Sequence[_Fact]",
+        encodings: Mapping[Location, tuple[ImageEncoding, ...]],
+    ) -> NodeFacts:
         names: set[str | None] = set()
         endpoints, parameters, timers, doubts = [], [], [], []
         for fact in facts:
@@ -443,7 +474,8 @@ class _Module:
                 case _Name():
                     names.add(fact.name)
                 case Endpoint():
-                    endpoints.append(fact)
+                    known = encodings.get(fact.location, ())
+                    endpoints.append(fact._replace(encodings=known))
                 case NodeParameter():
                     parameters.append(fact)
                 case Timer():
@@ -502,8 +534,7 @@ class _Module:
         if isinstance(value, str) or given is None:
             yield endpoint._replace(name=_text(value))
             return
-        known = self._bindings_in(part.of).within(self._bindings_of(part.node))
-        names = EndpointNames(known, partial(self._value_in, part.scope))
+        names = EndpointNames(self._bindings_around(part), partial(self._value_in, part.scope))
         for parts in names.read(given):
             kinds = {it.kind for it in parts}
             if kinds == {"text"}:
@@ -561,10 +592,23 @@ class _Module:
                     at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
                     if at is None:
                         continue
-                    if name in _ACTIONS:
+                    if self._called(part, call) == SUBSCRIBER:
+                        self._facts[at] += self._filtered(part, call)
+                    elif name in _ACTIONS:
                         self._facts[at] += self._action(part, call, _ACTIONS[name])
                     elif name not in _HARMLESS:
                         self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
+
+    def _filtered(self, part: CodePart, call: ast.Call) -> Iterator[Endpoint]:
+        """Yield the subscription of a filter: Subscriber(node, type, topic, qos_profile=...)."""
+        made = self._argument(part, call, 1, "msg_type")
+        qos = self._constants.value_of(
+            given_argument(call, len(call.args), "qos_profile"), part.scope
+        )
+        type_name = made.name if isinstance(made, QualifiedName) else None
+        quality = _qos(qos if qos is not None else _DEPTH_OF_FILTERS)
+        endpoint = Endpoint("subscription", type_name, None, self._at(call), quality)
+        yield from self._endpoints(part, call, 2, "topic", endpoint)
 
     def _action(self, part: CodePart, call: ast.Call, kind: EndpointKind) -> Iterator[Endpoint]:
         made = self._argument(part, call, 1, "action_type")
@@ -640,7 +684,8 @@ def _text(value: Value) -> str | None:
 
 def _default(value: Value) -> Value:
     """Return the default of a parameter; a type in its place, as Parameter.Type.DOUBLE, is none."""
-    if isinstance(value, QualifiedName) and value.name.startswith("rclpy."):
+    is_rclpy = isinstance(value, QualifiedName) and value.name.startswith("rclpy.")
+    if is_rclpy and ".Parameter.Type." in value.name:
         return None
     items = value if isinstance(value, list | tuple) else [value]
     is_known = all(isinstance(it, SCALARS) or it is None for it in items)
@@ -674,7 +719,7 @@ def _qos(value: Value) -> Qos:
             )
             return Qos(*_PROFILES.get(profile, ()))
         case Call(name="rclpy.qos.QoSProfile", kwargs=given):
-            depth = given.get("depth")
+            depth = given.get("depth") if "history" not in given else None
             reliability: str | None = "reliable"
             if "reliability" in given:
                 reliability = _policy(given["reliability"])

@@ -12,11 +12,19 @@ from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode
 from grader.ros.known.known import known
-from grader.ros.workspace.gazebo import BRIDGE, GazeboTopic, gazebo_topics, roots
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.workspace.gazebo import (
+    BRIDGE,
+    GazeboTopic,
+    gazebo_topics,
+    roots,
+    sensor_topics,
+)
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections, cost_of_guess
 from grader.ros.workspace.workspace import Workspace
 
 _TO_ROS, _TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
+_TOPIC_KEYS = ("topic_name", "ros_topic_name", "gz_topic_name", "ign_topic_name")
 _DIRECTIONS = {"[": _TO_ROS, "]": _TO_GAZEBO, "@": _BOTH}
 _ARGUMENT = re.compile(r"(?P<topic>[^@\s]+)@(?P<ros>[\w/]+)(?P<direction>[@\[\]])(?P<gz>[\w.]+)")
 _OLDER_FORM = re.compile("^ignition[.]msgs(?=[.])")
@@ -66,22 +74,40 @@ def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
             if row is not None:
                 yield row
     for _, node in workspace.nodes:
-        for word in node.arguments or () if node.package == BRIDGE else ():
-            match = _ARGUMENT.fullmatch(word or "")
-            if match is not None:
-                topic, at = match["topic"].strip("/"), node.location
-                yield _BridgeRow(
-                    ros=topic,
-                    gz=topic,
-                    ros_type=_newer_ros_type(match["ros"]),
-                    gz_type=_newer_gz_type(match["gz"]),
-                    direction=_DIRECTIONS[match["direction"]],
-                    location=at,
-                    ros_type_location=at,
-                    gz_type_location=at,
-                    direction_location=at,
-                    is_used=True,
-                )
+        if node.package == BRIDGE:
+            yield from _rows_in_arguments(node)
+
+
+def rows_of_bridge(workspace: Workspace, node: StartedNode) -> Iterator[_BridgeRow]:
+    """Yield the rows that a bridge is given."""
+    yield from _rows_in_arguments(node)
+    for given in node.parameters or ():
+        file = given.values.get("config_file")
+        path = workspace.source_of(file.value) if file and isinstance(file.value, str) else None
+        tree = workspace.yaml_files.get(path or "")
+        for item in tree.items if isinstance(tree, YamlNode) else ():
+            row = _row_in_yaml(item, is_used=True)
+            if row is not None:
+                yield row
+
+
+def _rows_in_arguments(node: StartedNode) -> Iterator[_BridgeRow]:
+    for word in node.arguments or ():
+        match = _ARGUMENT.fullmatch(word or "")
+        if match is not None:
+            topic, at = match["topic"].strip("/"), node.location
+            yield _BridgeRow(
+                ros=topic,
+                gz=topic,
+                ros_type=_newer_ros_type(match["ros"]),
+                gz_type=_newer_gz_type(match["gz"]),
+                direction=_DIRECTIONS[match["direction"]],
+                location=at,
+                ros_type_location=at,
+                gz_type_location=at,
+                direction_location=at,
+                is_used=True,
+            )
 
 
 def _newer_ros_type(written: str) -> str:
@@ -123,9 +149,16 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
         fault = workspace.yaml_files.get(path)
         if isinstance(fault, YamlFault):
             yield Mismatch("topics", f"this is not YAML: {fault}", fault.location)
+    yield from _unread_rows(workspace)
     rows = list(bridge_rows(workspace))
     if not rows:
         return
+    yield from _compared_rows(workspace, rows)
+    yield from _clocks(workspace, rows)
+
+
+def _compared_rows(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Fact]:
+    """Yield what is wrong with rows, by the topics that Gazebo has."""
     topics = list(gazebo_topics(workspace))
     named, bridged = _named_topics(workspace), {row.gz for row in rows}
     for _, node in workspace.nodes:
@@ -140,13 +173,90 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
     for row in rows:
         yield Compared("topics")
         same = by_name.get(row.gz, [])
+        if row.direction not in known()["bridge_directions"]:
+            yield _no_direction(row)
+            continue
+        yield from _no_type(row)
         yield from _conversions(row, {f"gz.msgs.{topic.type}" for topic in same})
         if row.gz in named:
             yield from _contradictions(row, same)
         elif not are_expanded and not _COMPUTED.search(row.gz):
             workspace.charge(len(unused) + cost_of_guess(len(unused)))
             yield from _not_there(row, unused, is_known=is_known)
-    yield from _clocks(workspace, rows)
+            if is_known:
+                yield from _without_topic(workspace, row, topics)
+
+
+def _without_topic(
+    workspace: Workspace, row: _BridgeRow, topics: list[GazeboTopic]
+) -> Iterator[Mismatch]:
+    """Yield that the only sensor with the messages of a row has no <topic>, so that Gazebo makes
+    another name.
+    """
+    if any(f"gz.msgs.{topic.type}" == row.gz_type for topic in topics) or not row.is_published:
+        return
+    for root, place in roots(workspace):
+        for sensor in root.iter("sensor"):
+            types = known()["gazebo_sensors"].get(sensor.get("type", ""), {})
+            is_named = next(sensor.iterchildren("topic"), None) is not None
+            if f"gz.msgs.{types.get('topic')}" == row.gz_type and not is_named:
+                at = place(sensor)
+                message = (
+                    f"nothing publishes {quoted(row.gz)} in Gazebo: the sensor "
+                    f"{quoted(sensor.get('name', ''))} has no <topic> ({at.file_and_line})"
+                )
+                yield Mismatch("topics", message, row.location, at, row.is_used)
+                return
+
+
+def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the rows that a bridge leaves out, and the arguments with which it ends."""
+    for path in sorted(bridge_files(workspace)):
+        tree = workspace.yaml_files.get(path)
+        for row in tree.items if isinstance(tree, YamlNode) else ():
+            names_topic = [key for key in _TOPIC_KEYS if row.get(key) is not None]
+            for key in known()["bridge_keys"] if names_topic else ():
+                if row.get(key) is None and row.get(key.replace("gz", "ign")) is None:
+                    message = f"the bridge leaves out the row: it has no {key}"
+                    yield Mismatch("topics", message, row.location)
+    for _, node in workspace.nodes:
+        is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"
+        for word in node.arguments or () if is_bridge else ():
+            if word is None or word == "--ros-args":
+                break
+            if "@" not in word[1:]:
+                message = (
+                    f"the bridge ends with an error at the argument {quoted(word)}: write "
+                    "TOPIC@ROS_TYPE[GZ_TYPE"
+                )
+                yield Mismatch("topics", message, node.location, is_certain=node.when is True)
+                break
+
+
+def _no_direction(row: _BridgeRow) -> Mismatch:
+    """Return that a row has a direction that no bridge has."""
+    meant = closest(row.direction, known()["bridge_directions"])
+    guess = f"; did you mean {meant}?" if meant is not None else ""
+    message = f"the bridge leaves out the row: it has no direction {quoted(row.direction)}{guess}"
+    at = row.direction_location
+    either = corrections(row.direction, at, meant)
+    return Mismatch("topics", message, at, None, row.is_used, either)
+
+
+def _no_type(row: _BridgeRow) -> Iterator[Mismatch]:
+    """Yield that no bridge has a type like the one of a row in ROS, and which one it may mean."""
+    types = [kind.replace(".", "/") for kind in known()["bridge_types"]]
+    written = row.ros_type.replace(".", "/")
+    meant = closest(written, types, is_clear=True) if written not in types else None
+    package, _, name = written.partition("/")
+    if f"{package}/msg/{name}" in types:
+        meant = f"{package}/msg/{name}"
+    if meant is None or "/srv/" in written:
+        return
+    at = row.ros_type_location
+    message = f"the bridge has no type {quoted(written)}; did you mean {meant}?"
+    either = corrections(written, at, meant)
+    yield Mismatch("topics", message, at, None, row.is_used, either)
 
 
 def bridge_files(workspace: Workspace) -> set[str]:
@@ -295,7 +405,15 @@ def _named_topics(workspace: Workspace) -> set[str]:
     for root, _ in roots(workspace):
         for element in root.iter("*"):
             text = (element.text or "").strip().strip("/")
-            if str(element.tag).endswith("topic") and text:
+            if not str(element.tag).endswith("topic") or not text:
+                continue
+            sensor = element.getparent()
+            if sensor is not None and sensor.tag == "sensor" and element.tag == "topic":
+                published = dict(sensor_topics(sensor, element))
+                topics |= published.keys()
+            else:
+                published = {}
+            if not published:
                 topics |= {text, f"{text}_image"}  # the latter of cameras that draw boxes
                 for name in _DERIVED:
                     topics.add(posixpath.join(posixpath.dirname(text), name))

@@ -38,6 +38,11 @@ class Controller(NamedTuple):
     location: Location
     has_file: bool  # of its own for its parameters
 
+    @property
+    def is_broadcaster(self) -> bool:
+        """Return whether it publishes, and moves nothing."""
+        return (self.type.text or "").endswith("Broadcaster")
+
 
 def controller_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers that YAML files define, their types, sections and interfaces, and those

@@ -74,7 +74,7 @@ def _values_given(
     package = workspace.package_of(node)
     if package is None:
         return {}
-    given = workspace.read_given(package, node, own_node.name or "")
+    given = workspace.read_given(package, node, workspace.name_of(node) or own_node.name or "")
     if given.unknown:
         return {}
     return {**values, **{name: it.value for name, it in given.values.items()}}

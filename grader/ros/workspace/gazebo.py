@@ -2,12 +2,14 @@
 ask of the simulation.
 """
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from itertools import pairwise
 from typing import NamedTuple
 
+from grader.base.names import closest
 from grader.base.source import Location
-from grader.base.text import quoted
+from grader.base.text import enumerated, quoted
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.names import Fact, Mismatch, corrections
@@ -15,6 +17,8 @@ from grader.ros.workspace.workspace import Workspace
 from grader.ros.xml.parsing import Element, XmlFile
 
 BRIDGE, _SIMULATION = "ros_gz_bridge", "ros_gz_sim"
+_OPTION = re.compile(r"--?[A-Za-z]")
+_WITHOUT_VALUE = "allow_renaming"  # an option of create
 
 
 class GazeboTopic(NamedTuple):
@@ -33,28 +37,39 @@ def gazebo_topics(workspace: Workspace) -> Iterator[GazeboTopic]:
     known.
     """
     for root, place in roots(workspace):
-        for element in root.iter("sensor", "plugin"):
-            for tag, kind, is_input in _topic_elements(element):
-                for child in element.iterchildren(tag):
-                    name = (child.text or "").strip().strip("/")
-                    if name:
-                        yield GazeboTopic(name, kind, is_input, place(child))
+        for sensor in root.iter("sensor"):
+            for child in sensor.iterchildren("topic"):
+                for name, kind in sensor_topics(sensor, child):
+                    yield GazeboTopic(name, kind, is_input=False, location=place(child))
+        for plugin in root.iter("plugin"):
+            system = known()["gazebo_systems"].get(system_of(plugin), {})
+            for direction in ("in", "out"):
+                for tag, kind in system.get(direction, {}).items():
+                    for child in plugin.iterchildren(tag):
+                        name = _plain_topic(child)
+                        if name:
+                            yield GazeboTopic(name, kind, direction == "in", place(child))
 
 
-def _topic_elements(element: Element) -> Iterator[tuple[str, str, bool]]:
-    """Yield the elements that name the topics of a sensor or a system, with the types of these, and
-    whether it reads them.
+def _plain_topic(element: Element) -> str:
+    return (element.text or "").strip().strip("/")
+
+
+def sensor_topics(sensor: Element, element: Element) -> Iterator[tuple[str, str]]:
+    """Yield the topics that a sensor of a known type makes of the one in its <topic>, with the
+    types of their messages.
     """
-    if element.tag == "sensor":
-        kind = known()["gazebo_sensors"].get(element.get("type", ""))
-        if kind is not None:
-            yield "topic", kind, False
+    types, name = known()["gazebo_sensors"].get(sensor.get("type", "")), _plain_topic(element)
+    if types is None or not name:
         return
-    system = known()["gazebo_systems"].get(system_of(element), {})
-    for tag, kind in system.get("in", {}).items():
-        yield tag, kind, True
-    for tag, kind in system.get("out", {}).items():
-        yield tag, kind, False
+    if "topic" in types:
+        yield name, types["topic"]
+    for last, kind in types.get("below", {}).items():
+        yield f"{name}/{last}", kind
+    if next(sensor.iter("camera_info_topic"), None) is None:
+        above = name.rpartition("/")[0]
+        for last, kind in types.get("beside", {}).items():
+            yield f"{above}/{last}".removeprefix("/"), kind
 
 
 def system_of(plugin: Element) -> str:
@@ -82,6 +97,7 @@ def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
     for _, node in workspace.nodes:
         if _is_creator(node):
             yield from _created(workspace, node, worlds)
+            yield from _options_of_creator(node)
     yield from _bridges(workspace)
 
 
@@ -140,6 +156,36 @@ def _created(
         at = file.location(next(file.root.iterchildren("world")))
         either = corrections(options["world"], node.location, world)
         yield Mismatch("topics", message, node.location, at, corrections=either)
+
+
+def _options_of_creator(node: StartedNode) -> Iterator[Mismatch]:
+    """Yield the options that the program does not have, and that it gets no model."""
+    words = node.arguments
+    if words is None or None in words:
+        return
+    given: list[str] = []
+    is_value = False
+    for word in words:
+        if word is None or word == "--ros-args":
+            break
+        if is_value or not _OPTION.match(word):
+            is_value = False
+            continue
+        name, equals, _ = word.lstrip("-").replace("-", "_").partition("=")  # as gflags does
+        given.append(name)
+        is_value = not equals and name in known()["create_options"] and name != _WITHOUT_VALUE
+    for name in given:
+        if name in known()["create_options"]:
+            continue
+        similar = closest(name, known()["create_options"], is_clear=True)
+        meant = known()["older_create_options"].get(name) or similar
+        guess = f"; did you mean -{meant}?" if meant else ""
+        message = f"create has no option -{name}, and ignores it{guess}"
+        yield Mismatch("words", message, node.location, is_certain=False)
+    if node.parameters == () and not set(given).intersection(known()["create_sources"]):
+        sources = enumerated([f"-{name}" for name in known()["create_sources"]], word="or")
+        message = f"create ends with an error: it needs {sources}"
+        yield Mismatch("parameters", message, node.location, is_certain=node.when is True)
 
 
 def _created_from(workspace: Workspace, node: StartedNode, topic: str) -> Iterator[Mismatch]:

@@ -4,11 +4,13 @@ name.
 
 from collections.abc import Iterator
 
+from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.known import known
 from grader.ros.workspace.controllers import defined_controllers
 from grader.ros.workspace.names import Fact, Mismatch, Use, corrections
+from grader.ros.workspace.spawners import started_controllers
 from grader.ros.workspace.workspace import Workspace
 
 _MANAGER = "moveit_simple_controller_manager"
@@ -40,7 +42,8 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
     """
     names = manager.get("controller_names")
     # Without definitions, the robot's driver has the controllers.
-    are_defined = bool(defined_controllers(workspace))
+    defined = {controller.name for controller in defined_controllers(workspace)}
+    are_defined = bool(defined)
     for node in names.items if names is not None else ():
         name = node.text or ""
         section = manager.get(name)
@@ -50,11 +53,23 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
             # Another robot may have a driver with its controllers.
             is_optional = workspace.has_other_robots
             yield Use("controller", name, node.location, "controller_names", optional=is_optional)
+        if name in defined:
+            yield from _not_started(workspace, name, node)
         joints = section.get("joints")
         for joint in joints.items if joints is not None else ():
             yield Use("joint", joint.text or "", joint.location, f"{name}.joints")
         yield from _other_joints(workspace, name, joints)
         yield from _other_action(name, section)
+
+
+def _not_started(workspace: Workspace, name: str, node: YamlNode) -> Iterator[Mismatch]:
+    """Yield that no spawner starts a controller that MoveIt waits for, while one starts others."""
+    started = started_controllers(workspace)
+    movers = [it.name for it in defined_controllers(workspace) if not it.is_broadcaster]
+    if started is None or name in started or started.isdisjoint(movers):
+        return
+    message = f"controller_names: no spawner starts {quoted(name)}, so MoveIt waits for its action"
+    yield Mismatch("controllers", message, node.location)
 
 
 def _other_action(name: str, section: YamlNode) -> Iterator[Mismatch]:

@@ -34,6 +34,9 @@ _WRONG_TRANSFORM = _error("REF019", "Frames that are no tree")
 _OTHER_TRANSFORM = _warning("REF020", "Transform that two programs publish")
 _NO_COMPANION = _warning("REF021", "Node that does not fit the others")
 _ONE_MACHINE = _warning("REF022", "What only one machine has")
+_OTHER_MOVEIT = _warning("REF023", "Description for MoveIt that does not fit the robot")
+_NO_WORD = _warning("REF024", "Word that a program ignores")
+_NO_MESSAGE = _warning("REF025", "Messages that their reader cannot use")
 UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
 
 _KINDS: Mapping[AnyFamily, Kind] = {
@@ -52,6 +55,9 @@ _KINDS: Mapping[AnyFamily, Kind] = {
     "transforms": _WRONG_TRANSFORM,
     "wiring": _NO_COMPANION,
     "machine": _ONE_MACHINE,
+    "moveit": _OTHER_MOVEIT,
+    "words": _NO_WORD,
+    "messages": _NO_MESSAGE,
 }
 # Of what is not certain; of other families it is a similar name.
 _UNCERTAIN: Mapping[AnyFamily, Kind] = {
@@ -60,6 +66,9 @@ _UNCERTAIN: Mapping[AnyFamily, Kind] = {
     "transforms": _OTHER_TRANSFORM,
     "wiring": _NO_COMPANION,
     "machine": _ONE_MACHINE,
+    "moveit": _OTHER_MOVEIT,
+    "words": _NO_WORD,
+    "messages": _NO_MESSAGE,
 }
 NAME_CATALOGUE = kinds_in(globals().values())
 

@@ -26,7 +26,8 @@ Family = Literal[
     "transforms",
 ]
 FAMILIES: tuple[Family, ...] = get_args(Family)
-AnyFamily = Family | Literal["wiring", "machine"]  # of these two, nothing is certain
+# Of these, nothing is certain.
+AnyFamily = Family | Literal["wiring", "machine", "moveit", "words", "messages"]
 _Kind = Literal[
     "frame",
     "link",

@@ -291,7 +291,7 @@ def _given(
     if workspace.name_of(node) is None and any(it.path for it in node.parameters or ()):
         yield Undecided("parameters", f"the name of {node.executable} is computed")
         return
-    given = workspace.read_given(package, node, own_node.name or "")
+    given = workspace.read_given(package, node, workspace.name_of(node) or own_node.name or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
     # What a file gives to every node need not be declared by this one.

@@ -13,6 +13,7 @@ from grader.base.transforms import Transform, minus, turn_between
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
+from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import (
     STATIC_PUBLISHER,
     frames_named,
@@ -20,12 +21,15 @@ from grader.ros.package.static_transforms import (
     static_pose,
 )
 from grader.ros.python.values import Unknown
+from grader.ros.workspace.bridges import rows_of_bridge
 from grader.ros.workspace.controllers import defined_controllers, spawned_controllers
+from grader.ros.workspace.gazebo import BRIDGE, roots, system_of
 from grader.ros.workspace.names import Compared, Fact, Mismatch
 from grader.ros.workspace.workspace import Workspace
 
 _SAME_PLACE, _SAME_ANGLE = 1e-3, 0.1  # metres, degrees
 _ROBOT_PUBLISHER = "robot_state_publisher"
+_TF = "/tf"
 
 
 class _Edge(NamedTuple):
@@ -47,27 +51,12 @@ def transform_facts(workspace: Workspace) -> Iterator[Fact]:
         edges: list[_Edge] = []
         has_robot = False
         for node in launch.nodes:
-            if not _is_certain(node):
-                continue
-            if (node.package, node.executable) == STATIC_PUBLISHER:
-                if has_zero_rotation(node):
-                    message = (
-                        "the quaternion of a static_transform_publisher is 0 0 0 0, which is no "
-                        "rotation: tf2 ignores the transform; without one it is 0 0 0 1"
-                    )
-                    yield Mismatch("transforms", message, node.location)
-                    continue
-                parent, child = frames_named(node)
-                if parent and child:
-                    by = STATIC_PUBLISHER[1]
-                    pose = static_pose(node)
-                    edges.append(_Edge(parent, child, by, node.location, is_static=True, pose=pose))
-            elif node.executable == _ROBOT_PUBLISHER:
-                has_robot = has_robot or not node.frame_prefix
-            else:
-                given = workspace.parameters_given(package, node)
-                name = f"{node.package}/{node.executable}"
-                edges += _broadcast(name, node.executable, given, node.location)
+            has_robot = has_robot or (_is_certain(node) and _publishes_robot(node))
+            for each in _published_by(workspace, package, node):
+                if isinstance(each, Mismatch):
+                    yield each
+                else:
+                    edges.append(each)
         edges += _broadcast_by_controllers(workspace, number)
         if edges:
             yield Compared("transforms")
@@ -75,6 +64,38 @@ def transform_facts(workspace: Workspace) -> Iterator[Fact]:
         if has_robot:
             yield from _children_of_robot(edges, joints)
         yield from _cycles([*edges, *(joints.values() if has_robot else ())])
+
+
+def _publishes_robot(node: StartedNode) -> bool:
+    return node.executable == _ROBOT_PUBLISHER and not node.frame_prefix
+
+
+def _published_by(
+    workspace: Workspace, package: Package, node: StartedNode
+) -> Iterator[_Edge | Mismatch]:
+    """Yield the transforms that a node publishes but for those of the robot, and that one is no
+    transform.
+    """
+    if (node.package, node.executable) == (BRIDGE, "parameter_bridge"):
+        yield from _broadcast_by_gazebo(workspace, node)
+    elif not _is_certain(node):
+        return
+    elif (node.package, node.executable) == STATIC_PUBLISHER:
+        if has_zero_rotation(node):
+            message = (
+                "the quaternion of a static_transform_publisher is 0 0 0 0, which is no "
+                "rotation: tf2 ignores the transform; without one it is 0 0 0 1"
+            )
+            yield Mismatch("transforms", message, node.location)
+            return
+        parent, child = frames_named(node)
+        if parent and child:
+            by, pose = STATIC_PUBLISHER[1], static_pose(node)
+            yield _Edge(parent, child, by, node.location, is_static=True, pose=pose)
+    elif node.executable != _ROBOT_PUBLISHER:
+        given = workspace.parameters_given(package, node)
+        name = f"{node.package}/{node.executable}"
+        yield from _broadcast(name, node.executable, given, node.location)
 
 
 def _is_certain(node: StartedNode) -> bool:
@@ -112,9 +133,35 @@ def _broadcast_by_controllers(workspace: Workspace, launch: int) -> Iterator[_Ed
             yield from _broadcast(kind, controller.name, gifts[0], controller.location)
 
 
+def _broadcast_by_gazebo(workspace: Workspace, bridge: StartedNode) -> Iterator[_Edge]:
+    """Yield the transforms of systems of Gazebo that a bridge publishes on /tf, where these name
+    their frames.
+    """
+    if bridge.when is not True or bridge.namespace not in ("", "/"):
+        return
+    topics = {
+        row.gz
+        for row in rows_of_bridge(workspace, bridge)
+        if row.is_published and bridge.topic(f"/{row.ros}") == _TF
+    }
+    for root, place in roots(workspace) if topics else ():
+        for plugin in root.iter("plugin"):
+            frames = known()["gazebo_transforms"].get(system_of(plugin))
+            topic = (plugin.findtext("tf_topic") or "").strip().strip("/")
+            if frames is None or topic not in topics:
+                continue
+            parent = (plugin.findtext(frames["parent"]) or "").strip()
+            child = (plugin.findtext(frames["child"]) or "").strip()
+            if parent and child:
+                by = f"the system {system_of(plugin)} of Gazebo"
+                yield _Edge(parent, child, by, place(plugin))
+
+
 def _broadcast(kind: str, by: str, given: NodeParameters, at: Location) -> Iterator[_Edge]:
     """Yield the transforms that a program or a controller publishes with its parameters."""
-    for row in known()["broadcasts"].get(kind, ()):
+    for row in known()["broadcasts"]:
+        if kind not in row["by"]:
+            continue
         parts = [row["on"], row["parent"], row["child"], *row.get("if_equal", ())]
         values = [_value(given, part) for part in parts]
         if given.unknown or None in values:
@@ -136,7 +183,7 @@ def _owned_twice(edges: Sequence[_Edge]) -> Iterator[Mismatch]:
     first: dict[str, _Edge] = {}
     for edge in edges:
         before = first.setdefault(edge.child, edge)
-        if before is edge or (before.is_static and edge.is_static):
+        if before.location == edge.location or (before.is_static and edge.is_static):
             continue
         if before.parent == edge.parent:
             message = (

@@ -138,17 +138,15 @@ def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Ite
     """Yield the controllers that publish, or those that move joints, where no spawner starts one of
     them.
     """
-    spawned = _spawned(workspace)
-    if spawned is None or not workspace.has_controller_manager:
+    spawned = started_controllers(workspace)
+    if spawned is None:
         return
-    if spawned - {controller.name for controller in controllers}:
-        return  # a name may be misspelt
     given_files = {*workspace.parameter_files, *workspace.controller_files}
     publishing, moving = [], []
     for controller in controllers:
         if controller.location.path not in given_files:
             continue
-        if (controller.type.text or "").endswith("Broadcaster"):
+        if controller.is_broadcaster:
             publishing.append(controller)
         else:
             moving.append(controller)
@@ -156,6 +154,18 @@ def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Ite
         if kind and spawned.isdisjoint(controller.name for controller in kind):
             text = f"no spawner starts {_names_of(kind, 'or')}"
             yield Mismatch("controllers", text, kind[0].location)
+
+
+def started_controllers(workspace: Workspace) -> set[str | None] | None:
+    """Return the controllers that spawners start; None where something else may start some, or the
+    name of one may be misspelt.
+    """
+    spawned = _spawned(workspace)
+    if spawned is None or not workspace.has_controller_manager:
+        return None
+    if spawned - {controller.name for controller in defined_controllers(workspace)}:
+        return None
+    return spawned
 
 
 def _spawned(workspace: Workspace) -> set[str | None] | None:

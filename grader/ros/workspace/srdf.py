@@ -34,6 +34,8 @@ def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
         if not described and not is_only:
             continue  # it describes another robot
         yield from _names(file)
+        yield from _other_robot(robot, file)
+        yield from _empty_groups(file)
         yield from _states(robot, file)
         yield from _neighbours(robot, file)
 
@@ -58,6 +60,30 @@ def _names(file: XmlFile) -> Iterator[Fact]:
                 yield Use("group", element.get(key, ""), at, f"{said} {key}")
         if element.tag == "group" and element.getparent() is not root and name:
             yield Use("group", name, at, said)
+
+
+def _other_robot(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
+    """Yield that the description has another name than the only robot, of which MoveIt writes an
+    error and goes on.
+    """
+    name = file.root.get("name", "")
+    if name == robot.name:
+        return
+    message = (
+        f"the SRDF is of the robot {quoted(name)}, but the robot is named {quoted(robot.name)}"
+    )
+    yield Mismatch("moveit", message, file.location(file.root, "name"), is_certain=False)
+
+
+def _empty_groups(file: XmlFile) -> Iterator[Mismatch]:
+    """Yield groups in which nothing is, which MoveIt leaves out."""
+    for group in file.root.iterchildren("group"):
+        if next(group.iterchildren("*"), None) is None:
+            message = (
+                f"the group {quoted(group.get('name', ''))} has no joint, link, chain or group: "
+                "MoveIt leaves it out"
+            )
+            yield Mismatch("moveit", message, file.location(group), is_certain=False)
 
 
 def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:

@@ -1,0 +1,123 @@
+"""Messages that arrive, and that their reader cannot use: without a header where a synchroniser
+compares times, or images with an encoding that cannot be converted; and queues of no length.
+"""
+
+import re
+from collections.abc import Iterator, Mapping
+
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.interfaces.known_interfaces import known_interfaces
+from grader.ros.known.known import known
+from grader.ros.package.node_facts import Endpoint, ImageEncoding
+from grader.ros.workspace.endpoints import opened_by
+from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.workspace import Workspace
+
+_HEADER = "header"
+# An encoding without colours: the type of a channel, and how many there are.
+_PLAIN_ENCODING = re.compile(r"(?:8U|8S|16U|16S|32S|32F|64F)(?:C(\d{1,2}))?")
+_ENDS = ("publisher", "subscription")
+
+
+def received_message_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield messages that their reader cannot use."""
+    for package in workspace.packages:
+        yield from _without_header(workspace, package.name)
+        yield from _without_queue(workspace, package.name)
+    yield from _other_encodings(workspace)
+
+
+def _warning(message: str, at: Location, related: Location | None = None) -> Mismatch:
+    return Mismatch("messages", message, at, related, is_certain=False)
+
+
+def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
+    """Yield the messages that a synchroniser drops, or stops at, since they have no header."""
+    for each in workspace.nodes_by_package[package].synchronised:
+        if _has_header(workspace, each.type) is not False:
+            continue
+        if each.by == "TimeSynchronizer":
+            effect = "stops at messages"
+        else:
+            effect = "drops messages without allow_headerless"
+        message = f"{each.type} has no header with a time: {each.by} {effect}"
+        yield _warning(message, each.location)
+
+
+def _has_header(workspace: Workspace, name: str) -> bool | None:
+    """Return whether messages of a type have a header; None where this is not known."""
+    package, _, own_name = name.partition(".")
+    own = workspace.interfaces.get(package)
+    if own is not None:
+        found = own.types.get(own_name)
+        interface = found.interface if found is not None and own.is_complete else None
+    else:
+        interface = (known_interfaces(package, workspace.releases) or {}).get(own_name)
+    if interface is None or not interface.sections:
+        return None
+    return _HEADER in interface.sections[0].fields
+
+
+def _without_queue(workspace: Workspace, package: str) -> Iterator[Mismatch]:
+    """Yield publishers and subscriptions whose queue has no length."""
+    for node in workspace.nodes_by_package[package].nodes:
+        for endpoint in node.endpoints:
+            if endpoint.kind in _ENDS and endpoint.qos.depth == 0:
+                message = (
+                    f"the {endpoint.kind} keeps 0 messages, which ROS 2 reads as the default of "
+                    "the middleware, mostly 1: write how many"
+                )
+                yield _warning(message, endpoint.location)
+
+
+def _other_encodings(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the callbacks that convert images to an encoding to which they cannot be converted."""
+    sent: dict[tuple[int, str], list[Endpoint]] = {}
+    received: dict[tuple[int, str], list[Endpoint]] = {}
+    for launch, node in workspace.launched:
+        for name, endpoint in opened_by(workspace, node) if node.when is True else ():
+            if name is not None and "*" not in name and endpoint.kind in _ENDS:
+                table = sent if endpoint.kind == "publisher" else received
+                table.setdefault((launch, name), []).append(endpoint)
+    for key, subscriptions in received.items():
+        publishers = sent.get(key, [])
+        if not publishers or not all(publisher.encodings for publisher in publishers):
+            continue
+        made = [encoding for publisher in publishers for encoding in publisher.encodings]
+        asked = [encoding for each in subscriptions for encoding in each.encodings]
+        workspace.charge(len(made) * len(asked))
+        for encoding in asked:
+            yield Compared("messages")
+            if all(_is_lost(each.name, encoding.name) for each in made):
+                yield _cannot_convert(key[1], made[0], encoding)
+
+
+def _cannot_convert(topic: str, made: ImageEncoding, asked: ImageEncoding) -> Mismatch:
+    at = made.location
+    message = (
+        f"the images of {topic} have the encoding {quoted(made.name)} ({at.file_and_line}), which "
+        f"cv_bridge does not convert to {quoted(asked.name)}"
+    )
+    return _warning(message, asked.location, at)
+
+
+def _is_lost(made: str, asked: str) -> bool:
+    """Return whether cv_bridge certainly raises an error for a conversion: of depths to colours,
+    or to another number of channels.
+    """
+    colours: Mapping[str, int] = known()["colour_encodings"]
+    before, after = _channels(made, colours), _channels(asked, colours)
+    if made == asked or before is None or after is None:
+        return False
+    if made in colours and asked in colours:
+        return False
+    return asked in colours or before != after
+
+
+def _channels(encoding: str, colours: Mapping[str, int]) -> int | None:
+    """Return how many channels an encoding has; None for one that is not known."""
+    if encoding in colours:
+        return colours[encoding]
+    plain = _PLAIN_ENCODING.fullmatch(encoding)
+    return int(plain[1] or 1) if plain is not None else None
