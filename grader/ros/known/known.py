@@ -43,6 +43,7 @@ class _Known(TypedDict):
     controller_packages: Mapping[Any, str]
     controller_topics: Mapping[Any, dict[Literal["subscription", "publisher"], dict[str, str]]]
     controller_actions: dict[str, list[str]]
+    gains: Mapping[Any, dict[str, Any]]  # by the type of a controller
     parameter_types: Mapping[Any, dict[str, list[str]]]  # by the type of a controller
     moveit_actions: dict[str, str]
     frame_elements: list[str]

@@ -37,6 +37,7 @@ _ONE_MACHINE = _warning("REF022", "What only one machine has")
 _OTHER_MOVEIT = _warning("REF023", "Description for MoveIt that does not fit the robot")
 _NO_WORD = _warning("REF024", "Word that a program ignores")
 _NO_MESSAGE = _warning("REF025", "Messages that their reader cannot use")
+_NO_EFFECT = _warning("REF026", "Controller that moves nothing")
 UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
 
 _KINDS: Mapping[AnyFamily, Kind] = {
@@ -58,6 +59,7 @@ _KINDS: Mapping[AnyFamily, Kind] = {
     "moveit": _OTHER_MOVEIT,
     "words": _NO_WORD,
     "messages": _NO_MESSAGE,
+    "effects": _NO_EFFECT,
 }
 # Of what is not certain; of other families it is a similar name.
 _UNCERTAIN: Mapping[AnyFamily, Kind] = {
@@ -69,6 +71,7 @@ _UNCERTAIN: Mapping[AnyFamily, Kind] = {
     "moveit": _OTHER_MOVEIT,
     "words": _NO_WORD,
     "messages": _NO_MESSAGE,
+    "effects": _NO_EFFECT,
 }
 NAME_CATALOGUE = kinds_in(globals().values())
 

@@ -27,7 +27,7 @@ Family = Literal[
 ]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 # Of these, nothing is certain.
-AnyFamily = Family | Literal["wiring", "machine", "moveit", "words", "messages"]
+AnyFamily = Family | Literal["wiring", "machine", "moveit", "words", "messages", "effects"]
 _Kind = Literal[
     "frame",
     "link",

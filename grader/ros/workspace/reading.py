@@ -17,6 +17,7 @@ from grader.ros.workspace.dependencies import dependency_facts
 from grader.ros.workspace.files import file_facts
 from grader.ros.workspace.footprint_values import footprint_facts
 from grader.ros.workspace.frames import frame_facts
+from grader.ros.workspace.gains import gain_facts
 from grader.ros.workspace.gazebo import gazebo_facts
 from grader.ros.workspace.interfaces import interface_facts
 from grader.ros.workspace.limit_values import limit_facts
@@ -75,6 +76,7 @@ _READERS = (
     machine_facts,
     topic_wiring_facts,
     received_message_facts,
+    gain_facts,
 )
 
 

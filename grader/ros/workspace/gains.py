@@ -1,0 +1,66 @@
+"""Gains of controllers: one that computes commands with gains moves nothing if none is given."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.known.known import known
+from grader.ros.launch.node_parameters import NodeParameters
+from grader.ros.python.values import Unknown
+from grader.ros.workspace.controllers import defined_controllers
+from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.workspace import Workspace
+
+
+class _Lack(NamedTuple):
+    """A joint without gains, the interface of its commands, and where this is asked for."""
+
+    joint: str
+    interface: str
+    location: Location
+
+
+def gain_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers that are given no gains for a joint, and need them."""
+    for controller in defined_controllers(workspace):
+        row = known()["gains"].get(controller.type.text)
+        gifts = workspace.parameter_owners.get(controller.name, [])
+        if row is None or not gifts or any(given.unknown for given in gifts):
+            continue
+        yield Compared("effects")
+        lacks = [lack for given in gifts if (lack := _find_lack(row, given)) is not None]
+        if len(lacks) == len(gifts):
+            yield _moves_nothing(controller.name, lacks[0])
+
+
+def _find_lack(row: Mapping[str, Any], given: NodeParameters) -> _Lack | None:
+    """Return the first joint without gains; None where there is none, or this is not known."""
+    interfaces = _texts(given, row["interfaces"])
+    if len(interfaces) != 1 or interfaces[0] not in row["of"]:
+        return None
+    [interface] = interfaces
+    if row["without"].get(interface) in given.values:
+        return None
+    for joint in _texts(given, row["joints"]):
+        gains = [given.values.get(f"gains.{joint}.{name}") for name in row["names"]]
+        if all(gain is None or gain.value in (0, 0.0) for gain in gains):
+            return _Lack(joint, interface, given.values[row["interfaces"]].location)
+    return None
+
+
+def _texts(given: NodeParameters, name: str) -> list[str]:
+    """Return the texts in a list; none where it is not known."""
+    parameter = given.values.get(name)
+    value = parameter.value if parameter is not None else None
+    if isinstance(value, Unknown) or not isinstance(value, list):
+        return []
+    return [text for text in value if isinstance(text, str)]
+
+
+def _moves_nothing(controller: str, lack: _Lack) -> Mismatch:
+    message = (
+        f"{controller} commands the {lack.interface} of {quoted(lack.joint)} without gains, so it "
+        f"moves nothing: give it gains.{lack.joint}.p"
+    )
+    return Mismatch("effects", message, lack.location, is_certain=False)
