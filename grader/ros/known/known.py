@@ -17,6 +17,7 @@ _OF_WORKSPACES = (
     "transforms",
     "wheels",
     "wiring",
+    "program_ends",
 )
 
 
@@ -66,6 +67,8 @@ class _Known(TypedDict):
     joint_state_controller: str
     transport_types: dict[str, str]
     colour_encodings: dict[str, int]
+    program_ends: list[dict[str, Any]]
+    display_types: dict[str, str]
     program_topics: dict[str, list[dict[str, Any]]]
     containers: list[str]
     environment: list[str]

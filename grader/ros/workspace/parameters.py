@@ -291,7 +291,7 @@ def _given(
     if workspace.name_of(node) is None and any(it.path for it in node.parameters or ()):
         yield Undecided("parameters", f"the name of {node.executable} is computed")
         return
-    given = workspace.read_given(package, node, workspace.name_of(node) or own_node.name or "")
+    given = workspace.read_given(package, node, own_node.name or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
     # What a file gives to every node need not be declared by this one.
@@ -301,7 +301,8 @@ def _given(
             said = f"the node {workspace.name_of(node) or node.executable!r}"
             yield Use("parameter", name, value.named_at or value.location, said, owner)
     yield from _types_given(own_node, given.values)
-    if not given.unknown and node.arguments == ():
+    has_own_name = node.node_name in ("", own_node.name)
+    if not given.unknown and node.arguments == () and has_own_name:
         yield from _not_given(workspace, node, own_node, given.values)
 
 

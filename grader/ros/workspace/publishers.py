@@ -28,7 +28,7 @@ def may_be_published(workspace: Workspace, topic: str, kind: str | None) -> bool
         return True
     if is_own_type(workspace, kind):
         own = [node for _, node in workspace.nodes if workspace.package_of(node) is not None]
-        return any(_may_publish(workspace, node, topic) for node in own)
+        return any(may_be_published_by(workspace, node, topic) for node in own)
     name = topic.strip("/")
     first, last = name.partition("/")[0], topic.rpartition("/")[2]
     if last in known()["topics_of_others"] or first in workspace.controllers:
@@ -39,10 +39,11 @@ def may_be_published(workspace: Workspace, topic: str, kind: str | None) -> bool
     for robot in workspace.robots:
         if any(name in (it.text or "") for it in robot.root.iter("remapping", "ros_topic")):
             return True
-    return any(_may_publish(workspace, node, topic) for _, node in workspace.nodes)
+    return any(may_be_published_by(workspace, node, topic) for _, node in workspace.nodes)
 
 
-def _may_publish(workspace: Workspace, node: StartedNode, topic: str) -> bool:
+def may_be_published_by(workspace: Workspace, node: StartedNode, topic: str) -> bool:
+    """Return whether a node may publish a topic that it is not known to publish."""
     package = workspace.package_of(node)
     if package is None:
         if node.package == BRIDGE:

@@ -20,6 +20,7 @@ from grader.ros.workspace.frames import frame_facts
 from grader.ros.workspace.gains import gain_facts
 from grader.ros.workspace.gazebo import gazebo_facts
 from grader.ros.workspace.interfaces import interface_facts
+from grader.ros.workspace.known_ends import known_end_facts
 from grader.ros.workspace.limit_values import limit_facts
 from grader.ros.workspace.moveit import moveit_facts
 from grader.ros.workspace.names import (
@@ -77,6 +78,7 @@ _READERS = (
     topic_wiring_facts,
     received_message_facts,
     gain_facts,
+    known_end_facts,
 )
 
 
