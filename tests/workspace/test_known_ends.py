@@ -175,3 +175,24 @@ def test_what_fits_is_not_reported(edits: list[Edit]) -> None:
     """What is right, and what is not known."""
     found = [it.partition(" ")[0] for it in problems_of(*edits)]
     assert {"REF021", "REF024", "REF026"}.isdisjoint(found), problems_of(*edits)
+
+
+def test_a_file_without_controllers_is_named() -> None:
+    """The controller manager gets no type of what spawners start; with one it is the other file's mistake."""
+    empty: list[Edit] = [
+        (CONTROLLERS, "    joint_state_broadcaster:\n", ""),
+        (CONTROLLERS, "      type: joint_state_broadcaster/JointStateBroadcaster\n", ""),
+        (CONTROLLERS, "    wheels:\n      type: diff_drive_controller/DiffDriveController\n", ""),
+    ]
+    found = [it for it in problems_of(*empty) if "REF003" in it]
+    assert found == [
+        (
+            "REF003 launch/rover.launch.py:17 no parameter file of the controller manager has the type of "
+            "'joint_state_broadcaster' and 'wheels'"
+        )
+    ]
+    assert [it for it in problems_of(*empty[:2]) if "no parameter file" in it] == []
+    unread: Edit = (LAUNCH, "parameters=[controllers]", "parameters=[controllers, input()]")
+    assert [it for it in problems_of(*empty, unread) if "REF003" in it] == []
+    broken: Edit = ("config/other.yaml", "", "a: [\n")
+    assert [it for it in problems_of(*empty, broken) if "REF003" in it] == []

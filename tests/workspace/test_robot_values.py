@@ -57,7 +57,7 @@ Visualization Manager:
     - Class: rviz_default_plugins/TF
       Enabled: true
       Name: TF
-    - Class: rviz_default_plugins/Pose
+    - Class: rviz_default_plugins/TwistStamped
       Enabled: true
       Name: Where
       Topic: {Value: /drive, Reliability Policy: POLICY}
@@ -325,6 +325,21 @@ WRONG: list[tuple[str, list[Edit]]] = [
     ),
     (
         (
+            "REF021 launch/rover.launch.py:15 use_sim_time is true, but nothing publishes /clock: the "
+            "time of the node stays 0"
+        ),
+        [
+            (
+                LAUNCH,
+                "robot_description': robot",
+                "robot_description': robot, 'use_sim_time': True",  # as in a simulation
+            ),
+            (LAUNCH, MORE, "# a simulation in Gazebo has a clock"),
+            (PILOT, "self.send)", "self.send)\n        self.get_clock()"),
+        ],
+    ),
+    (
+        (
             "REF021 launch/rover.launch.py:22 controller_server uses the time of the machine, but the "
             "simulation has its own clock (rover/launch/rover.launch.py:24): give the nodes "
             "use_sim_time"
@@ -541,6 +556,51 @@ CORRECT: list[tuple[str, list[Edit]]] = [
 def test_what_agrees_is_not_reported(edits: list[Edit]) -> None:
     """Another way to say the same, and what depends on something that is not known, is no problem."""
     assert problems_of(*edits) == []
+
+
+_SIMULATED: Edit = (
+    LAUNCH,
+    "robot_description': robot",
+    "robot_description': robot, 'use_sim_time': True",
+)
+_INCLUDED = "IncludeLaunchDescription(PathJoinSubstitution([FindPackageShare('{}'), 'launch', 'a.launch.py'])),"
+_IMPORTED: Edit = (
+    LAUNCH,
+    "from launch import LaunchDescription\n",
+    (
+        "from launch import LaunchDescription\n"
+        "from launch.actions import ExecuteProcess, IncludeLaunchDescription\n"
+    ),
+)
+
+
+@pytest.mark.parametrize(
+    ("more", "has_clock"),
+    [
+        ("Node(package='webots_ros2_driver', executable='driver'),", True),
+        ("Node(package='lidar_driver', executable='driver'),", False),
+        ("ExecuteProcess(cmd=['fly', 'around']),", True),
+        ("ExecuteProcess(cmd=['sleep', '1']),", False),
+        (_INCLUDED.format("some_robot"), True),
+        (_INCLUDED.format("slam_toolbox").replace("a.launch.py", "online_async_launch.py"), False),
+        (
+            "Node(package='ros_gz_bridge', executable='parameter_bridge', arguments=[input()]),",
+            True,
+        ),
+    ],
+)
+def test_a_clock_may_come_from_what_is_not_read(more: str, *, has_clock: bool) -> None:
+    """A simulator, a command, or a launch file of another package may publish the time."""
+    found = problems_of(*_with(more, _SIMULATED, _IMPORTED))
+    assert any("/clock" in it for it in found) != has_clock, found
+
+
+def test_a_page_or_a_program_may_publish_the_clock() -> None:
+    """A page may tell people to start a simulation, and a program that is not started may be one."""
+    page = ("README.md", "", "Start the simulation first.\n")
+    program = ("rover/time.py", "", "from rosgraph_msgs.msg import Clock\n")
+    for more in (page, program):
+        assert not any("/clock" in it for it in problems_of(_SIMULATED, more))
 
 
 def test_a_frame_of_a_message_exists() -> None:

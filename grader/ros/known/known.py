@@ -74,6 +74,7 @@ class _Known(TypedDict):
     environment: list[str]
     time_packages: list[str]
     clock_words: list[str]
+    launches_without_clock: list[str]
     wheel_values: Mapping[Any, dict[str, Any]]  # by the type of a controller or a plugin
 
 

@@ -296,6 +296,7 @@ def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNod
         declared=tuple(dict.fromkeys(findings.declared)),
         values=tuple(findings.values),
         passed=tuple(dict.fromkeys(findings.passed)),
+        commands=tuple(dict.fromkeys(findings.commands)),
         forgotten=forgotten,
     )
 

@@ -287,6 +287,7 @@ class Launch(NamedTuple):
     ] = ()  # the launch arguments that it and the files that it includes declare
     values: tuple[tuple[str, str], ...] = ()  # of these, as far as they are known
     passed: tuple[PassedArguments, ...] = ()
+    commands: tuple[str, ...] = ()  # those that are executed besides nodes
     forgotten: tuple[
         StartedNode, ...
     ] = ()  # created in the file, but not part of its LaunchDescription
@@ -338,6 +339,7 @@ class Findings:
     declared: list[str] = field(default_factory=list)
     values: list[tuple[str, str]] = field(default_factory=list)
     passed: list[PassedArguments] = field(default_factory=list)
+    commands: list[str] = field(default_factory=list)
     sets_parameters: bool = False
     is_silent: bool = False  # while what may never be executed is visited
 

@@ -209,7 +209,9 @@ def start_process(findings: Findings, call: Call, context: Context, when: bool |
     node = _node_of_command(words, call)
     if node is not None:
         start_node(findings, node, context, when)
-    elif _STARTS.search(" ".join(words)):
+        return
+    findings.commands.append(" ".join(words))
+    if _STARTS.search(" ".join(words)):
         findings.add_unknown("the nodes that a command starts are not evaluated", call.at)
 
 

@@ -2,14 +2,17 @@
 which nodes have one name.
 """
 
+import re
 from collections.abc import Iterator, Sequence
 
 from grader.base.source import Location
 from grader.base.text import quoted
-from grader.ros.known.known import known
+from grader.ros.build.places import PREFIX, share_parts
+from grader.ros.known.known import ending_commands, known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.bridges import bridge_rows
 from grader.ros.workspace.controllers import defined_controllers, spawned_controllers
+from grader.ros.workspace.gazebo import BRIDGE
 from grader.ros.workspace.names import Compared, Fact, Mismatch
 from grader.ros.workspace.workspace import MANAGER, Workspace
 
@@ -17,7 +20,9 @@ _ROBOT_PUBLISHER, _CONTROL_NODE = "robot_state_publisher", "ros2_control_node"
 _JOINT_STATE, _CLOCK = "sensor_msgs.msg.JointState", "rosgraph_msgs.msg.Clock"
 _JOINT_STATE_WORDS = ("joint_state", "JointState")
 _TIME = "use_sim_time"
-_SOURCES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h", ".md", ".sh", ".yaml")
+_CODE, _PAGES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h"), (".md", ".sh")
+_SOURCES = (*_CODE, *_PAGES, ".yaml")
+_WORD = re.compile(r"[a-z0-9]+")
 
 
 def companion_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -159,13 +164,54 @@ def _sim_time(workspace: Workspace) -> Iterator[Location]:
 def _no_clock(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield that nodes wait for the time of a simulation that nothing publishes."""
     at = next(_sim_time(workspace), None)
-    if at is None or _is_mentioned(workspace, known()["clock_words"]):
+    if at is None or _may_have_clock(workspace):
         return
-    for _, node in workspace.nodes:
-        if workspace.package_of(node) is not None and not _is_understood(workspace, node, _CLOCK):
-            return
     message = "use_sim_time is true, but nothing publishes /clock: the time of the node stays 0"
     yield _warning(message, at)
+
+
+def _may_have_clock(workspace: Workspace) -> bool:
+    """Return whether something may publish /clock: a node, a launch file or a command that is not
+    read, or what a page tells people to start.
+    """
+    if any(row.is_published and row.ros_type == _CLOCK for row in bridge_rows(workspace)):
+        return True
+    for _, launch in workspace.roots:
+        if not all(command.startswith(tuple(ending_commands())) for command in launch.commands):
+            return True
+        for passed in launch.passed:
+            package = share_parts(f"{PREFIX}/{passed.path}")[0]
+            is_own = workspace.source_of(passed.path) is not None
+            if not is_own and package not in known()["launches_without_clock"]:
+                return True
+    for _, node in workspace.nodes:
+        if workspace.package_of(node) is None:
+            is_open = _says_clock(f"{node.package} {node.executable}")
+            is_open = is_open and node.package not in known()["without_frames"]
+        else:
+            is_open = not _is_understood(workspace, node, _CLOCK)
+        if is_open or (node.package == BRIDGE and None in (node.arguments or (None,))):
+            return True
+    return _is_told(workspace)
+
+
+def _says_clock(text: str) -> bool:
+    """Return whether a name or a page has a word of simulations or of players."""
+    return not set(_WORD.findall(text.lower())).isdisjoint(known()["clock_words"])
+
+
+def _is_told(workspace: Workspace) -> bool:
+    """Return whether a page or a script of the workspace says how to start a simulation, or a
+    program that is not started uses the type of the time.
+    """
+    for package in workspace.packages:
+        for source in workspace.sources_of(package, _PAGES):
+            if _says_clock(source.text):
+                return True
+        for source in workspace.sources_of(package, _CODE):
+            if _CLOCK.partition(".")[0] in source.text:
+                return True
+    return False
 
 
 def _wall_time(workspace: Workspace) -> Iterator[Mismatch]:

@@ -24,6 +24,7 @@ def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers that spawners load, and what keeps controllers from being loaded."""
     controllers = list(defined_controllers(workspace))
     if not controllers:
+        yield from _no_controllers(workspace)
         return
     if any(isinstance(tree, YamlFault) for tree in workspace.yaml_files.values()):
         yield Open("controller", reason="a parameter file cannot be read")
@@ -100,13 +101,34 @@ def _without_type(
     """Yield the controllers whose types are in files, but in none that the controller manager or
     their spawner gets.
     """
+    manager, lacks_type = _controllers_without_type(workspace, package, launch)
+    if manager is None:
+        return
+    files = [workspace.source_of(each.path) for each in manager.parameters or () if each.path]
+    lacking = [controller for controller in controllers if controller.name in lacks_type]
+    lacking = [controller for controller in lacking if controller.location.path not in files]
+    if lacking:
+        at = lacking[0].location
+        text = (
+            "the controller manager is not given the parameters with the type of "
+            f"{_names_of(lacking)} ({at.file_and_line})"
+        )
+        yield Mismatch("controllers", text, manager.location, at)
+
+
+def _controllers_without_type(
+    workspace: Workspace, package: Package, launch: Launch
+) -> tuple[StartedNode | None, set[str | None]]:
+    """Return the controller manager of a launch file, and the controllers that spawners start and
+    whose type neither of them is given; None where this is not known.
+    """
     managers = [node for node in launch.nodes if _is_manager(node) and node.when]
     if len(managers) != 1:
-        return
+        return None, set()
     [manager] = managers
     given = workspace.parameters_given(package, manager)
     if given.unknown:
-        return
+        return None, set()
     lacks_type: dict[str | None, bool] = {}  # by the names of the controllers that are started
     for spawner in launch.nodes:
         # In later releases, spawners hand on their own parameters.
@@ -117,16 +139,20 @@ def _without_type(
             own = workspace.read_parameters(package, controller, "")
             has_type = "type" in own.values or f"{controller.node_name}.type" in given.values
             lacks_type[controller.node_name] = not own.unknown and not has_type
-    files = [workspace.source_of(each.path) for each in manager.parameters or () if each.path]
-    lacking = [controller for controller in controllers if lacks_type.get(controller.name)]
-    lacking = [controller for controller in lacking if controller.location.path not in files]
-    if lacking:
-        at = lacking[0].location
-        text = (
-            "the controller manager is not given the parameters with the type of "
-            f"{_names_of(lacking)} ({at.file_and_line})"
-        )
-        yield Mismatch("controllers", text, manager.location, at)
+    return manager, {name for name, lacks in lacks_type.items() if lacks}
+
+
+def _no_controllers(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the controllers that spawners start while no file has any, as an empty one."""
+    if any(isinstance(tree, YamlFault) for tree in workspace.yaml_files.values()):
+        return
+    for package, launch in workspace.roots:
+        manager, lacking = _controllers_without_type(workspace, package, launch)
+        if manager is not None and lacking:
+            quoted_names = [quoted(name) for name in sorted(filter(None, lacking))]
+            names = enumerated(quoted_names, _MAX_CONTROLLERS)
+            message = f"no parameter file of the controller manager has the type of {names}"
+            yield Mismatch("controllers", message, manager.location)
 
 
 def _names_of(controllers: Sequence[Controller], word: str = "and") -> str:
