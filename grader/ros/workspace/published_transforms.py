@@ -51,7 +51,8 @@ def transform_facts(workspace: Workspace) -> Iterator[Fact]:
         edges: list[_Edge] = []
         has_robot = False
         for node in launch.nodes:
-            has_robot = has_robot or (_is_certain(node) and _publishes_robot(node))
+            is_of_robot = node.executable == _ROBOT_PUBLISHER and not node.frame_prefix
+            has_robot = has_robot or (is_of_robot and _is_certain(node))
             for each in _published_by(workspace, package, node):
                 if isinstance(each, Mismatch):
                     yield each
@@ -64,10 +65,6 @@ def transform_facts(workspace: Workspace) -> Iterator[Fact]:
         if has_robot:
             yield from _children_of_robot(edges, joints)
         yield from _cycles([*edges, *(joints.values() if has_robot else ())])
-
-
-def _publishes_robot(node: StartedNode) -> bool:
-    return node.executable == _ROBOT_PUBLISHER and not node.frame_prefix
 
 
 def _published_by(
