@@ -13,7 +13,7 @@ from grader.ros.workspace.names import Compared, Fact, Mismatch
 from grader.ros.workspace.workspace import Workspace
 
 
-class _Lack(NamedTuple):
+class _LackingGains(NamedTuple):
     """A joint without gains, the interface of its commands, and where this is asked for."""
 
     joint: str
@@ -34,7 +34,7 @@ def gain_facts(workspace: Workspace) -> Iterator[Fact]:
             yield _moves_nothing(controller.name, lacks[0])
 
 
-def _find_lack(row: Mapping[str, Any], given: NodeParameters) -> _Lack | None:
+def _find_lack(row: Mapping[str, Any], given: NodeParameters) -> _LackingGains | None:
     """Return the first joint without gains; None where there is none, or this is not known."""
     interfaces = _texts(given, row["interfaces"])
     if len(interfaces) != 1 or interfaces[0] not in row["of"]:
@@ -45,7 +45,7 @@ def _find_lack(row: Mapping[str, Any], given: NodeParameters) -> _Lack | None:
     for joint in _texts(given, row["joints"]):
         gains = [given.values.get(f"gains.{joint}.{name}") for name in row["names"]]
         if all(gain is None or gain.value in (0, 0.0) for gain in gains):
-            return _Lack(joint, interface, given.values[row["interfaces"]].location)
+            return _LackingGains(joint, interface, given.values[row["interfaces"]].location)
     return None
 
 
@@ -58,7 +58,7 @@ def _texts(given: NodeParameters, name: str) -> list[str]:
     return [text for text in value if isinstance(text, str)]
 
 
-def _moves_nothing(controller: str, lack: _Lack) -> Mismatch:
+def _moves_nothing(controller: str, lack: _LackingGains) -> Mismatch:
     message = (
         f"{controller} commands the {lack.interface} of {quoted(lack.joint)} without gains, so it "
         f"moves nothing: give it gains.{lack.joint}.p"

@@ -46,7 +46,7 @@ def known_end_facts(workspace: Workspace) -> Iterator[Fact]:
             published.setdefault(each.topic, []).append(each)
             everything.setdefault(each.topic, []).append(each)
         for node in launch.nodes:
-            for row in rows_of_program(node) if node.when is True else ():
+            for row in _rows_of_program(node) if node.when is True else ():
                 yield from _other_types(node, row, published)
                 yield from _inputs(workspace, package, node, row, published)
                 yield from _remappings(node, row)
@@ -57,7 +57,7 @@ def _warning(message: str, at: Location, related: Location | None = None) -> Mis
     return Mismatch("wiring", message, at, related, is_certain=False)
 
 
-def rows_of_program(node: StartedNode) -> Iterator[Mapping[str, Any]]:
+def _rows_of_program(node: StartedNode) -> Iterator[Mapping[str, Any]]:
     """Yield what is known of the topics of a program."""
     for row in known()["program_ends"]:
         if f"{node.package}/{node.executable}" in row["by"]:
@@ -76,7 +76,7 @@ def _published(workspace: Workspace, number: int, launch: Launch) -> Iterator[_P
             topic = node.topic(f"/{row.ros}") if row.is_published else None
             if topic is not None:
                 yield _Published(topic, row.ros_type, row.location)
-        for known_row in rows_of_program(node):
+        for known_row in _rows_of_program(node):
             for name, kind in known_row.get("publisher", {}).items():
                 topic = node.topic(name)
                 if topic is not None:
