@@ -199,9 +199,7 @@ def test_the_controllers_of_moveit_are_started() -> None:
         found[started] = [
             it for it in found_in({**files, "launch/own.launch.py": launch}) if "spawner" in it
         ]
-    message = (
-        "controller_names: no spawner starts 'hand_controller', so MoveIt waits for its action"
-    )
+    message = "controller_names: no spawner starts 'hand_controller': MoveIt waits for its action"
     assert found == {
         "'arm_controller'": [message],
         "'arm_controller', 'hand_controller'": [],

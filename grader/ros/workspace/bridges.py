@@ -85,7 +85,9 @@ def rows_of_bridge(workspace: Workspace, node: StartedNode) -> Iterator[_BridgeR
         file = given.values.get("config_file")
         path = workspace.source_of(file.value) if file and isinstance(file.value, str) else None
         tree = workspace.yaml_files.get(path or "")
-        for item in tree.items if isinstance(tree, YamlNode) else ():
+        items = tree.items if isinstance(tree, YamlNode) else ()
+        workspace.charge(1 + len(items))
+        for item in items:
             row = _row_in_yaml(item, is_used=True)
             if row is not None:
                 yield row
@@ -169,6 +171,7 @@ def _compared_rows(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Fac
     for topic in topics:
         by_name.setdefault(topic.name, []).append(topic)
     is_known = not _is_open(workspace)
+    nameless = _nameless_sensors(workspace, topics) if is_known else {}
     are_expanded = any(_EXPANDED in text for text in workspace.searched_launch_texts())
     for row in rows:
         yield Compared("topics")
@@ -176,6 +179,7 @@ def _compared_rows(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Fac
         if row.direction not in known()["bridge_directions"]:
             yield _no_direction(row)
             continue
+        workspace.charge(cost_of_guess(len(known()["bridge_types"])))
         yield from _no_type(row)
         yield from _conversions(row, {f"gz.msgs.{topic.type}" for topic in same})
         if row.gz in named:
@@ -183,31 +187,45 @@ def _compared_rows(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Fac
         elif not are_expanded and not _COMPUTED.search(row.gz):
             workspace.charge(len(unused) + cost_of_guess(len(unused)))
             yield from _not_there(row, unused, is_known=is_known)
-            if is_known:
-                yield from _without_topic(workspace, row, topics)
+            yield from _without_topic(row, nameless)
 
 
-def _without_topic(
-    workspace: Workspace, row: _BridgeRow, topics: list[GazeboTopic]
-) -> Iterator[Mismatch]:
-    """Yield that the only sensor with the messages of a row has no <topic>, so that Gazebo makes
-    another name.
-    """
-    if any(f"gz.msgs.{topic.type}" == row.gz_type for topic in topics) or not row.is_published:
-        return
+class _NamelessSensor(NamedTuple):
+    """A sensor for whose topic Gazebo makes a name."""
+
+    name: str
+    gz_type: str
+    location: Location
+
+
+def _nameless_sensors(
+    workspace: Workspace, topics: list[GazeboTopic]
+) -> dict[str, _NamelessSensor]:
+    """Return sensors without a <topic> by the types of their messages, which no topic has."""
+    named = {f"gz.msgs.{topic.type}" for topic in topics}
+    nameless: dict[str, _NamelessSensor] = {}
     for root, place in roots(workspace):
         for sensor in root.iter("sensor"):
             types = known()["gazebo_sensors"].get(sensor.get("type", ""), {})
-            is_named = next(sensor.iterchildren("topic"), None) is not None
-            if f"gz.msgs.{types.get('topic')}" == row.gz_type and not is_named:
-                at = place(sensor)
-                message = (
-                    f"nothing publishes {quoted(row.gz)} in Gazebo: the sensor "
-                    f"{quoted(sensor.get('name', ''))} has no <topic> ({at.file_and_line})"
-                )
-                # A model that is not submitted may publish it.
-                yield Mismatch("wiring", message, row.location, at, is_certain=False)
-                return
+            gz_type = f"gz.msgs.{types.get('topic')}"
+            if gz_type not in named and next(sensor.iterchildren("topic"), None) is None:
+                found = _NamelessSensor(sensor.get("name", ""), gz_type, place(sensor))
+                nameless.setdefault(gz_type, found)
+    return nameless
+
+
+def _without_topic(row: _BridgeRow, nameless: dict[str, _NamelessSensor]) -> Iterator[Mismatch]:
+    """Yield that the only sensor with the messages of a row has no <topic>."""
+    sensor = nameless.get(row.gz_type)
+    if sensor is None or not row.is_published:
+        return
+    at = sensor.location
+    message = (
+        f"nothing publishes {quoted(row.gz)} in Gazebo: the sensor {quoted(sensor.name)} has no "
+        f"<topic> ({at.file_and_line})"
+    )
+    # A model that is not submitted may publish it.
+    yield Mismatch("wiring", message, row.location, at, is_certain=False)
 
 
 def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:

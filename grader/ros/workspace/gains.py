@@ -28,6 +28,7 @@ def gain_facts(workspace: Workspace) -> Iterator[Fact]:
         gifts = workspace.parameter_owners.get(controller.name, [])
         if row is None or not gifts or any(given.unknown for given in gifts):
             continue
+        workspace.charge(len(gifts))
         yield Compared("effects")
         lacks = [lack for given in gifts if (lack := _find_lack(row, given)) is not None]
         if len(lacks) == len(gifts):

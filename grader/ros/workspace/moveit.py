@@ -44,6 +44,7 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
     # Without definitions, the robot's driver has the controllers.
     defined = {controller.name for controller in defined_controllers(workspace)}
     are_defined = bool(defined)
+    left_out = _not_spawned(workspace)
     for node in names.items if names is not None else ():
         name = node.text or ""
         section = manager.get(name)
@@ -53,8 +54,11 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
             # Another robot may have a driver with its controllers.
             is_optional = workspace.has_other_robots
             yield Use("controller", name, node.location, "controller_names", optional=is_optional)
-        if name in defined:
-            yield from _not_started(workspace, name, node)
+        if name in left_out:
+            message = (
+                f"controller_names: no spawner starts {quoted(name)}: MoveIt waits for its action"
+            )
+            yield Mismatch("controllers", message, node.location)
         joints = section.get("joints")
         for joint in joints.items if joints is not None else ():
             yield Use("joint", joint.text or "", joint.location, f"{name}.joints")
@@ -62,14 +66,13 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
         yield from _other_action(name, section)
 
 
-def _not_started(workspace: Workspace, name: str, node: YamlNode) -> Iterator[Mismatch]:
-    """Yield that no spawner starts a controller that MoveIt waits for, while one starts others."""
+def _not_spawned(workspace: Workspace) -> frozenset[str]:
+    """Return the controllers that no spawner starts, while one starts others that move joints."""
     started = started_controllers(workspace)
-    movers = [it.name for it in defined_controllers(workspace) if not it.is_broadcaster]
-    if started is None or name in started or started.isdisjoint(movers):
-        return
-    message = f"controller_names: no spawner starts {quoted(name)}, so MoveIt waits for its action"
-    yield Mismatch("controllers", message, node.location)
+    movers = {it.name for it in defined_controllers(workspace) if not it.is_broadcaster}
+    if started is None or started.isdisjoint(movers):
+        return frozenset()
+    return frozenset(movers - started)
 
 
 def _other_action(name: str, section: YamlNode) -> Iterator[Mismatch]:

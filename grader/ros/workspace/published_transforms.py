@@ -30,6 +30,7 @@ from grader.ros.workspace.workspace import Workspace
 _SAME_PLACE, _SAME_ANGLE = 1e-3, 0.1  # metres, degrees
 _ROBOT_PUBLISHER = "robot_state_publisher"
 _TF = "/tf"
+_OF_ROBOT = 100  # parts of searching the plugins of a robot or a world
 
 
 class _Edge(NamedTuple):
@@ -142,7 +143,9 @@ def _broadcast_by_gazebo(workspace: Workspace, bridge: StartedNode) -> Iterator[
         if row.is_published and bridge.topic(f"/{row.ros}") == _TF
     }
     for root, place in roots(workspace) if topics else ():
-        for plugin in root.iter("plugin"):
+        plugins = [*root.iter("plugin")]
+        workspace.charge(_OF_ROBOT + len(plugins))
+        for plugin in plugins:
             frames = known()["gazebo_transforms"].get(system_of(plugin))
             topic = (plugin.findtext("tf_topic") or "").strip().strip("/")
             if frames is None or topic not in topics:
