@@ -272,7 +272,7 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
     (
         "parameters",
         (
-            "robot_state_publisher stops without the parameter robot_description, which it does not get; did you"
+            "'robot_state_publisher' stops without the parameter robot_description, which it does not get; did you"
             " mean it by 'robot_descripton'?"
         ),
         [(_ROBOT_LAUNCH, '"robot_description"', '"robot_descripton"')],
@@ -360,7 +360,7 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
             "the parameter 'wheel_separation' is given an integer; 'wheel_controller' declares a"
             " double, and stops"
         ),
-        [(_CONTROLLERS, "    base_frame_id", "    wheel_separation: 1\n    base_frame_id")],
+        [(_CONTROLLERS, "wheel_separation: 0.4", "wheel_separation: 1")],
     ),
     (
         "parameters",

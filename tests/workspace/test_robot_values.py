@@ -113,6 +113,19 @@ WRONG: list[tuple[str, list[Edit]]] = [
         [(CONTROLLERS, "wheel_radius: 0.05", "wheel_radius: 0.1")],
     ),
     (
+        (
+            "REF028 config/joint_limits.yaml:4 'move_group' does not use lift.max_velocity: "
+            "lift.has_velocity_limits is false (rover/config/joint_limits.yaml:3)"
+        ),
+        [
+            (
+                LIMITS,
+                "has_velocity_limits: true\n    max_velocity: 1.5",
+                "has_velocity_limits: false\n    max_velocity: 9.0",
+            )
+        ],
+    ),
+    (
         "REF017 config/controllers.yaml:13 wheel_radius is -0.05: a length is not negative",
         [(CONTROLLERS, "wheel_radius: 0.05", "wheel_radius: -0.05")],
     ),
@@ -475,16 +488,6 @@ CORRECT: list[tuple[str, list[Edit]]] = [
         ],
     ),
     ("a plugin that agrees", _gazebo("0.3")),
-    (
-        "a limit that is not switched on",
-        [
-            (
-                LIMITS,
-                "has_velocity_limits: true\n    max_velocity: 1.5",
-                "has_velocity_limits: false\n    max_velocity: 9.0",
-            )
-        ],
-    ),
     (
         "a lower update rate than the default",
         [

@@ -12,7 +12,6 @@ _OF_WORKSPACES = (
     "programs",
     "nav2",
     "controllers",
-    "controller_parameters",
     "gazebo",
     "transforms",
     "wheels",
@@ -36,7 +35,6 @@ class _Known(TypedDict):
     node_names: dict[str, str]
     compared: list[str]
     programs: dict[str, list[str]]
-    required_parameters: dict[str, list[str]]
     children: dict[str, list[str]]
     launch_arguments: dict[str, list[str]]
     plugins: list[str]
@@ -45,7 +43,6 @@ class _Known(TypedDict):
     controller_topics: Mapping[Any, dict[Literal["subscription", "publisher"], dict[str, str]]]
     controller_actions: dict[str, list[str]]
     gains: Mapping[Any, dict[str, Any]]  # by the type of a controller
-    parameter_types: Mapping[Any, dict[str, list[str]]]  # by the type of a controller
     moveit_actions: dict[str, str]
     frame_elements: list[str]
     joint_elements: list[str]

@@ -8,7 +8,13 @@ from collections.abc import Mapping
 from functools import partial
 
 from grader.base.problems import Kind, Problem, kinds_in
-from grader.ros.workspace.names import Agreement, AnyFamily
+from grader.ros.workspace.names import (
+    NO_EFFECT,
+    OF_OTHER_RELEASE,
+    UNKNOWN_PARAMETER,
+    Agreement,
+    AnyFamily,
+)
 
 _error = partial(Kind, severity="error", effect="other")
 _warning = partial(Kind, severity="warning", effect="other")
@@ -37,7 +43,9 @@ _ONE_MACHINE = _warning("REF022", "What only one machine has")
 _OTHER_MOVEIT = _warning("REF023", "Description for MoveIt that does not fit the robot")
 _NO_WORD = _warning("REF024", "Word that a program ignores")
 _NO_MESSAGE = _warning("REF025", "Messages that their reader cannot use")
-_NO_EFFECT = _warning("REF026", "Controller that moves nothing")
+_MOVES_NOTHING = _warning("REF026", "Controller that moves nothing")
+_NO_SUCH_PARAMETER = _warning("REF027", "Parameter that a well-known node does not have")
+_NO_EFFECT = _warning("REF028", "Parameter that has no effect")
 UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
 
 _KINDS: Mapping[AnyFamily, Kind] = {
@@ -59,7 +67,7 @@ _KINDS: Mapping[AnyFamily, Kind] = {
     "moveit": _OTHER_MOVEIT,
     "words": _NO_WORD,
     "messages": _NO_MESSAGE,
-    "effects": _NO_EFFECT,
+    "effects": _MOVES_NOTHING,
 }
 # Of what is not certain; of other families it is a similar name.
 _UNCERTAIN: Mapping[AnyFamily, Kind] = {
@@ -71,7 +79,13 @@ _UNCERTAIN: Mapping[AnyFamily, Kind] = {
     "moveit": _OTHER_MOVEIT,
     "words": _NO_WORD,
     "messages": _NO_MESSAGE,
-    "effects": _NO_EFFECT,
+    "effects": _MOVES_NOTHING,
+}
+# Of what is not certain, by its rule.
+_BY_RULE = {
+    UNKNOWN_PARAMETER: _NO_SUCH_PARAMETER,
+    NO_EFFECT: _NO_EFFECT,
+    OF_OTHER_RELEASE: OTHER_RELEASE,
 }
 NAME_CATALOGUE = kinds_in(globals().values())
 
@@ -80,7 +94,7 @@ def name_problems(agreement: Agreement) -> tuple[Problem, ...]:
     """Return what does not agree as problems, in the order of files and lines."""
     problems = []
     for wrong in agreement.mismatches:
-        uncertain = _UNCERTAIN.get(wrong.family, _SIMILAR)
+        uncertain = _BY_RULE.get(wrong.rule) or _UNCERTAIN.get(wrong.family, _SIMILAR)
         kind = _KINDS[wrong.family] if wrong.is_certain else uncertain
         problems.append(Problem(kind, wrong.message, wrong.location, wrong.family))
     for at in agreement.unused:

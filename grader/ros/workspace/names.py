@@ -53,6 +53,8 @@ FAMILY_OF: Mapping[_Kind, AnyFamily] = {
 }
 
 
+# Rules of mismatches of parameters that are not certain.
+UNKNOWN_PARAMETER, NO_EFFECT, OF_OTHER_RELEASE = "unknown", "without effect", "other release"
 _MAX_NEAR, _MAX_SIMILAR = 1000, 300  # known names that are compared in either way
 
 
@@ -121,7 +123,7 @@ class Mismatch(NamedTuple):
         Correction, ...
     ] = ()  # with each of which it agrees: first of the use, then of the definition
     is_of_type: bool = False  # whether a value or a topic has another type
-    rule: str = ""  # of the family code: what is wrong
+    rule: str = ""  # of the families code and parameters: what is wrong
 
 
 class Compared(NamedTuple):

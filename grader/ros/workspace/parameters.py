@@ -6,9 +6,8 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from itertools import chain
-from typing import Any
 
-from grader.base.names import closest, near
+from grader.base.names import near
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, first_alias
 from grader.ros.config.yaml_values import (
@@ -19,16 +18,15 @@ from grader.ros.config.yaml_values import (
     values_in,
 )
 from grader.ros.known.known import known
+from grader.ros.known.parameter_rows import row_for
 from grader.ros.known.releases import RELEASES, Release, releases_with
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.package.mesh_content import LFS_POINTER
 from grader.ros.package.node_facts import NodeFacts
 from grader.ros.package.package import Package
 from grader.ros.workspace.bridges import bridge_files
-from grader.ros.workspace.controllers import defined_controllers
 from grader.ros.workspace.names import (
     Compared,
-    Correction,
     Definition,
     Fact,
     Mismatch,
@@ -38,28 +36,13 @@ from grader.ros.workspace.names import (
     corrections,
     cost_of_guess,
 )
-from grader.ros.workspace.workspace import MANAGER, Workspace
+from grader.ros.workspace.parameter_rules import type_in_words
+from grader.ros.workspace.workspace import Workspace
 
-_TYPES = {
-    bool: "a boolean",
-    int: "an integer",
-    float: "a double",
-    str: "a string",
-}  # as ROS 2 calls them
-# The same, as generate_parameter_library calls them.
-_GENERATED_TYPES = {
-    "bool": "a boolean",
-    "int": "an integer",
-    "double": "a double",
-    "string": "a string",
-    "bool_array": "a list of booleans",
-    "int_array": "a list of integers",
-    "double_array": "a list of doubles",
-    "string_array": "a list of strings",
-}
 _OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
 _INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
+_ROBOT = "robot_description"
 _WILDCARD = re.compile(r"[*?\[]")
 _SEPARATORS = re.compile(r"[:/]+")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
@@ -88,11 +71,10 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         if own_node is not None:
             yield from _declared(workspace, package, node, own_node)
     yield from _without_time(workspace)
-    yield from _types_of_controllers(workspace)
     for path in workspace.parameter_files:
         yield from _filters(workspace.yaml_files.get(path))
     for package, node in workspace.nodes:
-        yield from _required(workspace, package, node)
+        yield from _robot_as_text(workspace, package, node)
     yield from _plugins(workspace)
 
 
@@ -336,7 +318,7 @@ def _types_given(node: NodeFacts, values: Mapping[str, ParameterValue]) -> Itera
             yield from _other_type(
                 name,
                 values[name],
-                _type_of(parameter.default),
+                type_in_words(parameter.default),
                 parameter.location,
                 is_certain=not node.doubts,
             )
@@ -347,57 +329,7 @@ def _without_time(workspace: Workspace) -> Iterator[Mismatch]:
     for given in chain.from_iterable(workspace.parameter_owners.values()):
         value = given.values.get("use_sim_time")
         if value is not None:
-            yield from _other_type("use_sim_time", value, _TYPES[bool], at=None)
-
-
-def _types_of_controllers(workspace: Workspace) -> Iterator[Mismatch]:
-    """Yield the values of other types than controllers and the controller manager declare."""
-    kinds = {it.name: it.type.text or "" for it in defined_controllers(workspace)}
-    for owner, gifts in workspace.parameter_owners.items():
-        if owner == MANAGER:
-            tables = [known()["parameter_types"][MANAGER]]
-        elif owner in kinds:
-            every = known()["parameter_types"]
-            tables = [every["every controller"], every.get(kinds[owner], {})]
-        else:
-            continue
-        # A string in place of a list of joints is a mistake of controllers.
-        joints = known()["controllers"].get(kinds.get(owner), {})
-        for values in [given.values for given in gifts]:
-            for name, value in values.items():
-                declared = _declared_type(name, tables, values)
-                if name not in joints or not isinstance(value.value, str):
-                    yield from _other_type(name, value, declared, at=None, reader=repr(owner))
-
-
-def _declared_type(
-    name: str,
-    tables: Iterable[Mapping[str, Sequence[str]]],
-    values: Mapping[str, ParameterValue],
-) -> str:
-    """Return the type that a controller declares for a parameter, in words; empty where it is not
-    known.
-    """
-    parts = name.split(".")
-    for table in tables:
-        for kind, patterns in table.items():
-            if any(_is_declared(parts, pattern.split("."), values) for pattern in patterns):
-                return _GENERATED_TYPES[kind]
-    return ""
-
-
-def _is_declared(
-    parts: Sequence[str], pattern: Sequence[str], values: Mapping[str, ParameterValue]
-) -> bool:
-    """Return whether a name is a declared one, in which * is an entry of a list that is given."""
-    if len(parts) != len(pattern):
-        return False
-    for part, wanted in zip(parts, pattern, strict=True):
-        lists = [it.value for it in values.values() if isinstance(it.value, list)]
-        is_listed = wanted == "*" and any(part in it for it in lists)
-        if part != wanted and not is_listed:
-            return False
-    return True
+            yield from _other_type("use_sim_time", value, type_in_words(True), at=None)
 
 
 def _other_type(
@@ -410,7 +342,7 @@ def _other_type(
     reader: str = "its node",
 ) -> Iterator[Mismatch]:
     """Yield that a parameter is given a value of another type than the node declares."""
-    actual = _type_of(given.value)
+    actual = type_in_words(given.value)
     if not declared or not actual or declared == actual:
         return
     there = f" ({at.file_and_line})" if at is not None else ""
@@ -418,16 +350,6 @@ def _other_type(
         f"the parameter {name!r} is given {actual}; {reader} declares {declared}{there}, and stops"
     )
     yield Mismatch("parameters", message, given.location, at, is_certain, is_of_type=True)
-
-
-def _type_of(value: Any) -> str:
-    """Return the type that ROS 2 gives a value, in words; empty where it is not known."""
-    if isinstance(value, list | tuple):
-        kinds = {_type_of(it) for it in value}
-        if len(kinds) == 1 and kinds != {""}:
-            return f"a list of {kinds.pop().partition(' ')[2]}s"
-        return ""
-    return _TYPES.get(type(value), "")
 
 
 def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
@@ -445,28 +367,12 @@ def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
                 yield Mismatch("parameters", message, value.node.location)
 
 
-def _required(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
-    """Yield the parameters that a program of another package needs, and does not get as it needs
-    them.
-    """
-    needed = known()["required_parameters"].get(f"{node.package}/{node.executable}", ())
-    if not needed or node.arguments != ():
+def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
+    """Yield that a program that needs the text of a robot gets a path in its place."""
+    row = row_for(f"{node.package}/{node.executable}", _ROBOT)
+    if row is None or not row.is_required or node.arguments != ():
         return
-    given = workspace.parameters_given(package, node)
-    for name in needed:
-        if name in given.values or given.unknown:
-            continue
-        guess = closest(name, given.values)
-        either: tuple[Correction, ...] = ()
-        there = ""
-        if guess is not None:
-            either = corrections(guess, given.values[guess].location, name)
-            there = f"; did you mean it by {guess!r}?"
-        message = (
-            f"{node.executable} stops without the parameter {name}, which it does not get{there}"
-        )
-        yield Mismatch("parameters", message, node.location, corrections=either)
-    robot = given.values.get("robot_description")
+    robot = workspace.parameters_given(package, node).values.get(_ROBOT)
     if robot is not None and isinstance(robot.value, str):
         text = robot.value.strip()
         if text and not text.startswith("<"):

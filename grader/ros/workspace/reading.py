@@ -21,6 +21,7 @@ from grader.ros.workspace.gains import gain_facts
 from grader.ros.workspace.gazebo import gazebo_facts
 from grader.ros.workspace.interfaces import interface_facts
 from grader.ros.workspace.known_ends import known_end_facts
+from grader.ros.workspace.known_parameters import known_parameter_facts
 from grader.ros.workspace.limit_values import limit_facts
 from grader.ros.workspace.moveit import moveit_facts
 from grader.ros.workspace.names import (
@@ -56,6 +57,7 @@ _READERS = (
     controller_facts,
     spawner_facts,
     parameter_facts,
+    known_parameter_facts,
     argument_facts,
     program_facts,
     topic_facts,

@@ -1,0 +1,220 @@
+"""The parameters of well-known nodes, controllers and plugins, by release: the rows of the folder
+`parameters`, of which the file of one package is read when it is needed.
+
+docs/known-parameters.md describes the form of a row.
+"""
+
+import re
+import tomllib
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from grader.ros.known.releases import RELEASES, Release
+
+_FOLDER = Path(__file__).with_name("parameters")
+_NAMES = "nodes"  # the file with the usual names of nodes
+_FIRST, _LAST = RELEASES.index("humble"), RELEASES.index("kilted")
+COVERED: tuple[Release, ...] = RELEASES[_FIRST : _LAST + 1]
+_PLACE = re.compile(r"<([^<>]+)>")
+_NUMBER, _REST = "#", "**"
+
+
+class ParameterRow(NamedTuple):
+    """A parameter of a node, in some releases.
+
+    Parts of a name in angle brackets stand for others: `<joints>` for an entry of the list
+    `joints`, `<#>` for a number, `<**>` for any rest, and any other word for any name.
+    """
+
+    name: str
+    type: str = ""  # as generate_parameter_library calls it; empty for any
+    default: Any = None  # None where there is none, or it is computed
+    is_required: bool = False
+    only_with: str = ""  # the parameter without which nothing reads this one
+    unless: Mapping[str, Any] = {}  # the values of others without which it has no effect
+    above: float | None = None
+    below: float | None = None
+    lower: float | None = None
+    upper: float | None = None
+    one_of: tuple[Any, ...] = ()
+    entries: tuple[str, ...] = ()  # what a list may have
+    size: int | None = None  # of a list
+    libraries: tuple[str, ...] = ()  # of plugins that the package has in these releases
+    loads_libraries: bool = False  # whether the node loads them itself, and stops at a second time
+    since: Release = COVERED[0]
+    until: Release = COVERED[-1]
+    is_class: bool = False  # whether the value is a class, whose rows are beside this one
+
+    def is_in(self, release: Release) -> bool:
+        """Return whether a release has it."""
+        number = RELEASES.index(release)
+        return RELEASES.index(self.since) <= number <= RELEASES.index(self.until)
+
+    @property
+    def pattern(self) -> re.Pattern[str]:
+        """The names that it stands for; its groups are the parts in angle brackets."""
+        return _pattern_of(self.name)
+
+    @property
+    def places(self) -> Sequence[str]:
+        """The parts in angle brackets."""
+        return _PLACE.findall(self.name)
+
+    @property
+    def releases(self) -> str:
+        """The releases that have it, in words; empty for all."""
+        if self.since == COVERED[0] and self.until == COVERED[-1]:
+            return ""
+        if self.since == COVERED[0]:
+            return f"until {self.until.title()}"
+        if self.until == COVERED[-1]:
+            return f"since {self.since.title()}"
+        return f"{self.since.title()} to {self.until.title()}"
+
+
+class NodeRows(NamedTuple):
+    """What a node, a controller or a plugin reads: its parameters, with where that is written."""
+
+    node: str
+    source: str
+    rows: tuple[ParameterRow, ...]
+    is_open: bool = False  # whether it reads more than the rows say
+    takes_any_type: bool = False
+    since: Release = COVERED[0]
+    until: Release = COVERED[-1]
+
+    def is_in(self, release: Release) -> bool:
+        """Return whether a release has the node."""
+        number = RELEASES.index(release)
+        return RELEASES.index(self.since) <= number <= RELEASES.index(self.until)
+
+    def in_release(self, release: Release) -> tuple[ParameterRow, ...]:
+        """Return the rows of a release."""
+        return tuple(row for row in self.rows if row.is_in(release))
+
+
+def rows_of(node: str, release: Release | None = None) -> tuple[ParameterRow, ...]:
+    """Return the parameters of a node in a release, or in any; none for a node that is not known.
+
+    Args:
+        node: `package/program`, the type of a controller or the class of a plugin.
+        release: The release; None for the rows of all.
+    """
+    known = node_rows(node)
+    if known is None:
+        return ()
+    return known.rows if release is None else known.in_release(release)
+
+
+def row_for(node: str, parameter: str, release: Release | None = None) -> ParameterRow | None:
+    """Return the row of a parameter of a node in a release, or of the newest one that has it; None
+    without one.
+    """
+    rows = rows_of(node, release)
+    for row in rows[::-1]:
+        if row.pattern.fullmatch(parameter) is not None:
+            return row
+    return None
+
+
+def known_nodes() -> tuple[str, ...]:
+    """Return all nodes, controllers and plugins that have rows."""
+    nodes: list[str] = []
+    for path in sorted(_FOLDER.glob("*.toml")):
+        if path.stem != _NAMES:
+            nodes += (node for node in _read(path.stem) if "/" in node or "::" in node)
+    return tuple(nodes)
+
+
+def node_called(name: str) -> str | None:
+    """Return the node that usually has a name, such as `amcl`; a name of a class is its own."""
+    usual = usual_names().get(name)
+    return usual or (name if node_rows(name) is not None else None)
+
+
+def usual_names() -> Mapping[str, str]:
+    """Return the nodes by the names that they usually have."""
+    return _read(_NAMES)
+
+
+@cache
+def node_rows(node: str) -> NodeRows | None:
+    """Return the rows of a node, with those of what it is made of; None for one without rows."""
+    table = _table_of(node)
+    if table is None:
+        return None
+    rows = [*_read_rows(table.get("parameters", {}))]
+    for other in table.get("also", ()):
+        known = node_rows(other)
+        assert known is not None, other
+        written = {row.name for row in rows}
+        rows += (row for row in known.rows if row.name not in written)
+    return NodeRows(
+        node,
+        table.get("source", ""),
+        tuple(rows),
+        table.get("open", False),
+        table.get("any_type", False),
+        table.get("since", COVERED[0]),
+        table.get("until", COVERED[-1]),
+    )
+
+
+def _table_of(node: str) -> Mapping[str, Any] | None:
+    package = re.split("/|::", node)[0]
+    if package not in _files():
+        return None
+    table: Mapping[str, Any] | None = _read(package).get(node)
+    return table
+
+
+@cache
+def _files() -> Collection[str]:
+    return frozenset(path.stem for path in _FOLDER.glob("*.toml")) - {_NAMES}
+
+
+@cache
+def _read(name: str) -> Mapping[str, Any]:
+    return tomllib.loads((_FOLDER / f"{name}.toml").read_text("utf-8"))
+
+
+def _read_rows(parameters: Mapping[str, Any]) -> Iterator[ParameterRow]:
+    for name, written in parameters.items():
+        for keys in written if isinstance(written, list) else [written]:
+            yield ParameterRow(
+                name=name,
+                type=keys.get("type", ""),
+                default=keys.get("default"),
+                is_required=keys.get("required", False),
+                only_with=keys.get("with", ""),
+                unless=keys.get("unless", {}),
+                above=keys.get("above"),
+                below=keys.get("below"),
+                lower=keys.get("min"),
+                upper=keys.get("max"),
+                one_of=tuple(keys.get("one_of", ())),
+                entries=tuple(keys.get("subset_of", ())),
+                size=keys.get("size"),
+                libraries=tuple(keys.get("libraries", ())),
+                loads_libraries=keys.get("loads_libraries", False),
+                since=keys.get("since", COVERED[0]),
+                until=keys.get("until", COVERED[-1]),
+                is_class=keys.get("class", False),
+            )
+
+
+@cache
+def _pattern_of(name: str) -> re.Pattern[str]:
+    parts: list[str] = []
+    for number, part in enumerate(_PLACE.split(name)):
+        if number % 2 == 0:
+            parts.append(re.escape(part))
+        elif part == _NUMBER:
+            parts.append(r"(\d+)")
+        elif part == _REST:
+            parts.append("(.+)")
+        else:
+            parts.append("([^.]+)")
+    return re.compile("".join(parts))

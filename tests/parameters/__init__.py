@@ -1,0 +1,1 @@
+"""Tests of the parameters of well-known nodes."""
