@@ -38,6 +38,7 @@ from grader.report.examples import example_blocks, explanation_of, wrong_and_rig
 from grader.report.explanations import CAUSES_OF_CHECK, EFFECTS, default_text
 from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal
+from grader.ros.known.parameter_rows import NodeRows, known_nodes, node_rows
 from grader.ros.workspace.problem_kinds import EVERY_KIND
 
 KEYS = {
@@ -76,6 +77,7 @@ def pages() -> dict[str, str]:
         "problems.md": filled("problems.md", problems()),
         "checks.md": filled("checks.md", checks()),
         "misconfigurations.md": filled("misconfigurations.md", misconfigurations()),
+        "known-parameters.md": filled("known-parameters.md", known_parameters()),
         "rubric-reference.md": filled("rubric-reference.md", keys()),
         "grade-one-submission.md": filled(
             "grade-one-submission.md", ["```", terminal(report).rstrip(), "```"]
@@ -131,6 +133,22 @@ def checks() -> Iterator[str]:
                 yield f"- `{cause}`: {escaped(meaning)}"
             yield ""
         yield from example(check.name)
+
+
+def known_parameters() -> Iterator[str]:
+    """Yield the packages with parameters of nodes, in a table."""
+    packages: dict[str, list[NodeRows]] = {}
+    for node in known_nodes():
+        rows = node_rows(node)
+        assert rows is not None, node
+        packages.setdefault(re.split("/|::", node)[0], []).append(rows)
+    yield "| package | nodes and plugins | rows | read from |"
+    yield "|---|---|---|---|"
+    for package, nodes in packages.items():
+        names = ", ".join(f"`{re.split('/|::', known.node)[-1]}`" for known in nodes)
+        count = sum(len(known.own_rows) for known in nodes)
+        source = nodes[0].source.partition(",")[0]
+        yield f"| {package} | {names} | {count} | {source} |"
 
 
 def misconfigurations() -> Iterator[str]:

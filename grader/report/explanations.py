@@ -17,6 +17,7 @@ from grader.lab.rubric.rubric import Rubric, shipped_rubrics
 from grader.lab.rubric.toml_file import assignment, toml_literal
 from grader.report.criteria import model_lines, sentence
 from grader.report.examples import example_blocks, explanation_of
+from grader.ros.known.parameter_texts import parameter_explanation
 from grader.ros.workspace.problem_kinds import EVERY_KIND
 
 _WIDTH = 80
@@ -89,8 +90,8 @@ def checks_text() -> str:
 
 
 def explanation(name: str, rubric: Rubric) -> str:
-    """Return the explanation of a code, a criterion or a check. Raises InputError for another
-    name.
+    """Return the explanation of a code, a criterion, a check, or a parameter of a well-known node.
+    Raises InputError for another name.
     """
     kind = next((kind for kind in EVERY_KIND if kind.code == name.upper()), None)
     if kind is not None:
@@ -113,6 +114,9 @@ def explanation(name: str, rubric: Rubric) -> str:
         return _paragraphs(
             [*texts, _arguments(check).rstrip("\n"), _causes(check), *_examples(check.name)]
         )
+    parameter = parameter_explanation(name)
+    if parameter:
+        return parameter
     known = (
         [kind.code for kind in EVERY_KIND]
         + [criterion.id for criterion in rubric.criteria]

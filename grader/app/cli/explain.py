@@ -10,17 +10,19 @@ from grader.app.cli.completion import offer_explained
 from grader.app.cli.options import RubricOption
 from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
 
-_NAME = "For example URDF051, frame_at or lidar-frame."
+_NAME = "For example URDF051, frame_at, lidar-frame or ekf_node.frequency."
 
 
 def explain(
     name: Annotated[
         str,
-        typer.Argument(metavar="CODE|CHECK|CRITERION", help=_NAME, autocompletion=offer_explained),
+        typer.Argument(
+            metavar="CODE|CHECK|CRITERION|PARAMETER", help=_NAME, autocompletion=offer_explained
+        ),
     ],
     rubric: RubricOption = DEFAULT_RUBRIC,
 ) -> str:
-    """Explain a problem code, a check or a criterion.
+    """Explain a problem code, a check, a criterion or a parameter of a well-known node.
 
     Examples:
 

@@ -20,7 +20,7 @@ from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.workspace.endpoints import opened_by
-from grader.ros.workspace.names import FAMILIES, Family, Mismatch
+from grader.ros.workspace.names import FAMILIES, Family
 from grader.ros.workspace.reading import read_agreement, wrong_names
 
 _THE_PACKAGE, _THE_NAMES, _THE_VALUES = "The package", "The names", "The values"  # headings
@@ -221,9 +221,7 @@ def name_facts(submission: Submission) -> Facts:
         carried = (unbuilt,) if family in _OF_BUILDS else ()
         if family == "values":
             carried = (unbuilt._replace(causes=_measured_words(submission)),)
-        odd = _odd(
-            family, wrong_names(submission.workspace, family, submission.lab_packages.values())
-        )
+        odd = _odd(submission, family)
         yield odd or fact._replace(about=_THE_NAMES, title=_NAME_TITLES[family], carried=carried)
 
 
@@ -238,8 +236,9 @@ def _measured_words(submission: Submission) -> tuple[str, ...]:
     return tuple(words)
 
 
-def _odd(family: Family, mismatches: Sequence[Mismatch]) -> Omission | None:
+def _odd(submission: Submission, family: Family) -> Omission | None:
     """Return what certainly does not agree in a family, in one line; None if nothing does not."""
+    mismatches = wrong_names(submission.workspace, family, submission.lab_packages.values())
     wrong = {it.message: it for it in mismatches}
     if not wrong:
         return None

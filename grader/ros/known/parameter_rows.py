@@ -18,6 +18,7 @@ _NAMES = "nodes"  # the file with the usual names of nodes
 _FIRST, _LAST = RELEASES.index("humble"), RELEASES.index("kilted")
 COVERED: tuple[Release, ...] = RELEASES[_FIRST : _LAST + 1]
 _PLACE = re.compile(r"<([^<>]+)>")
+_SEPARATOR = re.compile("/|::")
 _NUMBER, _REST = "#", "**"
 
 
@@ -69,6 +70,8 @@ class ParameterRow(NamedTuple):
             return ""
         if self.since == COVERED[0]:
             return f"until {self.until.title()}"
+        if self.since == self.until:
+            return f"only {self.since.title()}"
         if self.until == COVERED[-1]:
             return f"since {self.since.title()}"
         return f"{self.since.title()} to {self.until.title()}"
@@ -84,6 +87,12 @@ class NodeRows(NamedTuple):
     takes_any_type: bool = False
     since: Release = COVERED[0]
     until: Release = COVERED[-1]
+
+    @property
+    def own_rows(self) -> tuple[ParameterRow, ...]:
+        """The rows that no other node has before it."""
+        table = _table_of(self.node) or {}
+        return tuple(row for row in self.rows if row.name in table.get("parameters", {}))
 
     def is_in(self, release: Release) -> bool:
         """Return whether a release has the node."""
@@ -129,9 +138,16 @@ def known_nodes() -> tuple[str, ...]:
 
 
 def node_called(name: str) -> str | None:
-    """Return the node that usually has a name, such as `amcl`; a name of a class is its own."""
-    usual = usual_names().get(name)
-    return usual or (name if node_rows(name) is not None else None)
+    """Return the node that a name means: its own, the one that it usually has when it runs, such as
+    `amcl`, the package of one node only, or the end of its own, such as `DiffDriveController`.
+    """
+    if name in usual_names():
+        return usual_names()[name]
+    if node_rows(name) is not None:
+        return name
+    ends = [node for node in known_nodes() if name in (_SEPARATOR.split(node)[0], node)]
+    ends = ends or [node for node in known_nodes() if _SEPARATOR.split(node)[-1] == name]
+    return ends[0] if len(ends) == 1 else None
 
 
 def usual_names() -> Mapping[str, str]:
@@ -163,7 +179,7 @@ def node_rows(node: str) -> NodeRows | None:
 
 
 def _table_of(node: str) -> Mapping[str, Any] | None:
-    package = re.split("/|::", node)[0]
+    package = _SEPARATOR.split(node)[0]
     if package not in _files():
         return None
     table: Mapping[str, Any] | None = _read(package).get(node)

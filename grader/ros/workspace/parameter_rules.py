@@ -80,14 +80,11 @@ class _RowTable(NamedTuple):
 
 
 class _RowIndex(NamedTuple):
+    """The rows of a release: all by their names, those of one name each, and those of many."""
+
+    all_rows: Mapping[str, ParameterRow]
     by_name: Mapping[str, ParameterRow]
     patterns: Sequence[ParameterRow]
-
-    @property
-    def rows(self) -> Iterator[ParameterRow]:
-        """All rows."""
-        yield from self.by_name.values()
-        yield from self.patterns
 
 
 class _ParameterMatch(NamedTuple):
@@ -174,7 +171,9 @@ class _NodeReader:
             elif switch.name not in said:
                 said.add(switch.name)
                 yield switch.finding(self._given, name, value)
-        if not _are_of_another_node(len(unmatched), len(self._values)):
+        # So many may be those of another program of this name, built from its own source.
+        is_another = len(unmatched) >= _MANY_UNKNOWN and 2 * len(unmatched) > len(self._values)
+        if not is_another:
             yield from self._name_findings(unmatched)
 
     def _name_findings(self, unmatched: Mapping[str, ParameterValue]) -> Iterator[_RowFinding]:
@@ -204,7 +203,7 @@ class _NodeReader:
                 continue
             index = _index(node, self._release)
             self._tables.append(_RowTable(prefix, index, known.is_open, known.takes_any_type))
-            for row in index.rows:
+            for row in index.all_rows.values():
                 if row.is_class:
                     waiting += self._plugins(prefix, row)
 
@@ -275,7 +274,7 @@ class _NodeReader:
         if given == row.default and not isinstance(given, bool):
             return None  # which says nothing in any case
         for switch, wanted in row.unless.items():
-            own_row = match.table.rows.by_name.get(switch) or _row_called(match.table, switch)
+            own_row = match.table.rows.all_rows.get(switch)
             switch_name = match.full_name(switch)
             if own_row is None:
                 continue
@@ -351,7 +350,7 @@ class _NodeReader:
         for table in self._tables:
             if name.startswith(table.prefix):
                 own_parts = name[len(table.prefix) :].split(".")
-                for row in table.rows.rows:
+                for row in table.rows.all_rows.values():
                     candidate = _corrected(own_parts, row.name.split("."))
                     if candidate is not None:
                         candidates.add(table.prefix + candidate)
@@ -366,7 +365,7 @@ class _NodeReader:
             return None
         at = value.named_at or value.location
         if near_name is not None:
-            old, new = _differing(name, near_name)
+            old, new = name.rpartition(".")[2], near_name.rpartition(".")[2]
             message = (
                 f"{self._given.said} has no parameter {quoted(self._given.shown(name))}; did you "
                 f"mean {quoted(self._given.shown(near_name))}?"
@@ -397,7 +396,7 @@ class _NodeReader:
         parts = name[len(table.prefix) :].split(".")
         for count in range(1, len(parts)):
             start = parts[:count]
-            if not any(self._begins(table, row, start) for row in table.rows.rows):
+            if not any(self._begins(table, row, start) for row in table.rows.all_rows.values()):
                 return table.prefix + ".".join(start)
         return name
 
@@ -458,18 +457,10 @@ class _OffSwitch(NamedTuple):
 
 @cache
 def _index(node: str, release: Release) -> _RowIndex:
-    by_name: dict[str, ParameterRow] = {}
-    patterns: list[ParameterRow] = []
-    for row in rows_of(node, release):
-        if row.places:
-            patterns.append(row)
-        else:
-            by_name[row.name] = row
-    return _RowIndex(by_name, patterns)
-
-
-def _row_called(table: _RowTable, name: str) -> ParameterRow | None:
-    return next((row for row in table.rows.patterns if row.name == name), None)
+    rows = {row.name: row for row in rows_of(node, release)}
+    by_name = {name: row for name, row in rows.items() if not row.places}
+    patterns = [row for row in rows.values() if row.places]
+    return _RowIndex(rows, by_name, patterns)
 
 
 def _entries(value: Any) -> Collection[str] | None:
@@ -477,13 +468,6 @@ def _entries(value: Any) -> Collection[str] | None:
     if isinstance(value, str):
         return frozenset(value.split())
     return frozenset(map(str, value)) if isinstance(value, list) else None
-
-
-def _are_of_another_node(unknown: int, given: int) -> bool:
-    """Return whether so many parameters are not known that they are those of another program, such
-    as one of the same name that is built from its own source.
-    """
-    return unknown >= _MANY_UNKNOWN and 2 * unknown > given
 
 
 def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> str | None:
@@ -506,11 +490,6 @@ def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> str | None:
                 return None
         corrected.append(meant)
     return ".".join(corrected) if changes == 1 else None
-
-
-def _differing(name: str, meant: str) -> tuple[str, str]:
-    """Return the last parts of two names."""
-    return name.rpartition(".")[2], meant.rpartition(".")[2]
 
 
 def type_in_words(value: Any) -> str:
