@@ -22,7 +22,7 @@ def explain(
     ],
     rubric: RubricOption = DEFAULT_RUBRIC,
 ) -> str:
-    """Explain a problem code, a check, a criterion or a parameter of a well-known node.
+    """Explain a problem code, a check, a criterion or a parameter.
 
     Examples:
 

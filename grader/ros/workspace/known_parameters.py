@@ -15,6 +15,7 @@ from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.known import known
 from grader.ros.known.parameter_rows import node_rows, usual_names
+from grader.ros.known.releases import RELEASES, Release
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import value_in_file
 from grader.ros.package.package import Package
@@ -23,6 +24,7 @@ from grader.ros.python.values import Unknown
 from grader.ros.workspace.controllers import defined_controllers
 from grader.ros.workspace.names import Compared, Fact
 from grader.ros.workspace.parameter_rules import GivenNode, wrong_values
+from grader.ros.workspace.stated_releases import deciding_launch_files, releases_in_path
 from grader.ros.workspace.workspace import Workspace
 
 # The node that MoveIt's joint_limits.yaml is for, and where its table is among the parameters.
@@ -41,13 +43,28 @@ def known_parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     said: set[Location] = set()
     for given in _given_nodes(workspace):
         workspace.charge(1 + _COST_OF_VALUE * len(given.values))
-        yield Compared("parameters")
+        if any(value.named_at for value in given.values.values()):
+            yield Compared("parameters")
         if workspace.robots:
             said |= _negative_lengths(given)
-        for mismatch in wrong_values(given, workspace.releases):
+        releases = _releases_of(workspace, given)
+        for mismatch in wrong_values(given, releases) if releases is not None else ():
             if mismatch.location not in said or mismatch.location == given.at:
                 yield mismatch
             said.add(mismatch.location)
+
+
+def _releases_of(workspace: Workspace, given: GivenNode) -> tuple[Release, ...] | None:
+    """Return the releases that values may be for: those that are stated, and those that their files
+    are named after; None if a launch file decides by the release what it gives.
+    """
+    stated = dict.fromkeys(workspace.releases)
+    paths = {value.location.path for value in given.values.values()}
+    if not paths.isdisjoint(deciding_launch_files(workspace)):
+        return None
+    for path in paths if stated else ():
+        stated |= dict.fromkeys(releases_in_path(path))
+    return tuple(sorted(stated, key=RELEASES.index))
 
 
 def _negative_lengths(given: GivenNode) -> set[Location]:

@@ -11,7 +11,7 @@ from grader.base.names import MAX_GUESSES, are_of_one_side, closest, is_misspell
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.known.parameter_rows import COVERED, ParameterRow, node_rows, rows_of
-from grader.ros.known.releases import RELEASES, Release
+from grader.ros.known.releases import RELEASES, Release, other_name
 from grader.ros.launch.launch_model import ParameterValue
 from grader.ros.workspace.names import (
     NO_EFFECT,
@@ -132,12 +132,18 @@ def _of_other_release(
     """Return that a name is one of other releases, if it is; else that it is not known."""
     if not releases or not stated:
         return mismatch
+    at = given.values[name].location if name in given.values else mismatch.location
+    for owner in (f"{given.node}/", f"{given.node.rpartition('/')[2]}/"):
+        other = other_name("parameter", owner + name, stated, shown=owner)
+        if other is not None:
+            return Mismatch(
+                "parameters", other.message, at, is_certain=False, rule=OF_OTHER_RELEASE
+            )
     if RELEASES.index(releases[-1]) < RELEASES.index(stated[0]):
         gone = RELEASES[RELEASES.index(releases[-1]) + 1]
         text = f"there is no parameter {name!r} from {gone.title()} on"
     else:
         text = f"there is no parameter {name!r} before {releases[0].title()}"
-    at = given.values[name].location if name in given.values else mismatch.location
     return Mismatch("parameters", text, at, is_certain=False, rule=OF_OTHER_RELEASE)
 
 

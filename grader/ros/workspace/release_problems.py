@@ -7,14 +7,14 @@ from grader.base.errors import NotDecided
 from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.ros.config.yaml_values import sections_in, values_in
-from grader.ros.known.releases import RELEASES, NameKind, other_name
+from grader.ros.known.releases import NameKind, other_name
 from grader.ros.workspace.controllers import defined_controllers
 from grader.ros.workspace.name_problems import OTHER_RELEASE, UNCOMPARED, name_problems
 from grader.ros.workspace.names import Agreement
 from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.stated_releases import deciding_launch_files, releases_in_path
 from grader.ros.workspace.workspace import TOO_MUCH, Workspace
 
-_DISTRO = "ROS_DISTRO"
 _DEPENDENCY = re.compile(r"<\w*depend>\s*([\w-]+)\s*</")
 _PLUGIN_KEYS = ("plugin", "robot_model_type")
 
@@ -41,17 +41,14 @@ def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Proble
     if not workspace.releases:
         return []
     said = {it.location for it in agreement.mismatches if it.family != "dependencies"}
-    # Launch files that decide by the release name what each release has.
-    deciding = {it.source.path for _, _, it in workspace.launches if _DISTRO in it.source.text}
+    deciding = deciding_launch_files(workspace)
     found: dict[tuple[str, str], Problem] = {}
     for reader in _READERS:
         for kind, name, at, owner in reader(workspace):
             if at in said or at.path in deciding:
                 continue
-            # A file such as humble/nav2.yaml is for this release as well.
-            words = re.split("[^a-z]+", at.path.lower())
-            named = [release for release in RELEASES if release in words]
-            other = other_name(kind, name, {*workspace.releases, *named}, shown=owner)
+            releases = {*workspace.releases, *releases_in_path(at.path)}
+            other = other_name(kind, name, releases, shown=owner)
             if other is not None:
                 problem = Problem(OTHER_RELEASE, other.message, at, kind)
                 found.setdefault((other.message, at.path), problem)

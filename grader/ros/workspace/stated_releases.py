@@ -2,10 +2,12 @@
 
 import re
 from collections.abc import Callable, Iterator, Sequence
+from functools import lru_cache
 
 from grader.base.errors import InputError
 from grader.files.tree import File, Tree
 from grader.ros.known.releases import RELEASES, Release, StatedReleases
+from grader.ros.workspace.workspace import Workspace
 
 _NAME = rf"({'|'.join(RELEASES)})(?![a-z0-9])"
 _RELEASE = re.compile(_NAME, re.IGNORECASE)
@@ -36,6 +38,7 @@ _OF_UBUNTU: dict[str, tuple[Release, ...]] = {
     **dict.fromkeys(("22.04", "jammy"), ("humble", "iron")),
     **dict.fromkeys(("24.04", "noble"), ("jazzy", "kilted")),
 }
+_VARIABLE = "ROS_DISTRO"
 _COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*")
 _MAX_FILES, _MAX_SIZE = 60, 128 * 1024  # of one kind; bytes
 
@@ -123,3 +126,16 @@ def _by_ubuntu(text: str) -> set[str]:
     for version in _UBUNTU.findall(text):
         found.update(_OF_UBUNTU[version])
     return found
+
+
+def releases_in_path(path: str) -> list[Release]:
+    """Return the releases that a file such as humble/nav2.yaml is for as well."""
+    words = re.split("[^a-z]+", path.lower())
+    return [release for release in RELEASES if release in words]
+
+
+@lru_cache(maxsize=2)
+def deciding_launch_files(workspace: Workspace) -> frozenset[str]:
+    """Return the launch files that decide by the name of the release what each release has."""
+    sources = [launch.source for _, _, launch in workspace.launches]
+    return frozenset(source.path for source in sources if _VARIABLE in source.text)
