@@ -127,7 +127,12 @@ def _values_of(
     if workspace.package_of(node) is not None:
         return None
     given = workspace.read_given(package, node, workspace.name_of(node) or "")
-    return not given.unknown and node.arguments == (), given.values
+    return not given.unknown and node.arguments == (), _without_time(given.values)
+
+
+def _without_time(values: Mapping[str, ParameterValue]) -> dict[str, ParameterValue]:
+    """Return values without `use_sim_time`, which is asked for of every node."""
+    return {name: value for name, value in values.items() if name != "use_sim_time"}
 
 
 def _places_for_every_node(workspace: Workspace) -> frozenset[Location]:
@@ -149,7 +154,7 @@ def _controllers(workspace: Workspace) -> Iterator[GivenNode]:
             # Another launch file may define another controller of this name.
             paths = {value.location.path for value in given.values.values()}
             if controller.location.path in paths:
-                values = _without_wrong_lists(kind, given.values)
+                values = _without_wrong_lists(kind, _without_time(given.values))
                 at = controller.location if not given.unknown else None
                 yield GivenNode(kind, repr(controller.name), values, at)
 

@@ -352,16 +352,23 @@ class _NodeReader:
 
     def _near(self, name: str) -> str | None:
         """Return the parameter that another name surely stands for: one part of it is misspelt."""
-        candidates: set[str] = set()
+        candidates: dict[str, str] = {}  # the parts that are misspelt, by what they stand for
+        found: dict[str, str] = {}  # the names, by the same
         for table in self._tables:
-            if name.startswith(table.prefix):
-                own_parts = name[len(table.prefix) :].split(".")
-                for row in table.rows.all_rows.values():
-                    candidate = _corrected(own_parts, row.name.split("."))
-                    if candidate is not None:
-                        candidates.add(table.prefix + candidate)
-        candidates = {it for it in candidates if it not in self._values and self.has(it)}
-        return candidates.pop() if len(candidates) == 1 else None
+            if not name.startswith(table.prefix):
+                continue
+            own_parts = name[len(table.prefix) :].split(".")
+            for row in table.rows.all_rows.values():
+                corrected = _corrected(own_parts, row.name.split("."))
+                if corrected is None:
+                    continue
+                full = table.prefix + ".".join(corrected.parts)
+                if full not in self._values and self.has(full):
+                    candidates[corrected.meant] = corrected.part
+                    found[corrected.meant] = full
+        parts = set(candidates.values())
+        meant = near(parts.pop(), candidates) if len(parts) == 1 else None
+        return found[meant] if meant is not None else None
 
     def _unknown(
         self, name: str, value: ParameterValue, near_name: str | None
@@ -476,13 +483,22 @@ def _entries(value: Any) -> Collection[str] | None:
     return frozenset(map(str, value)) if isinstance(value, list) else None
 
 
-def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> str | None:
+class _Corrected(NamedTuple):
+    """A name with one part corrected."""
+
+    parts: Sequence[str]
+    part: str
+    meant: str
+
+
+def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> _Corrected | None:
     """Return a name with the one part corrected that differs from a row's; None if not one does, or
     not surely.
     """
     if len(parts) != len(wanted):
         return None
-    corrected, changes = [], 0
+    corrected: list[str] = []
+    changed: list[tuple[str, str]] = []
     for part, own in zip(parts, wanted, strict=True):
         meant = own
         if "<#>" in own:
@@ -491,11 +507,11 @@ def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> str | None:
         elif "<" in own:
             meant = part
         if meant != part:
-            changes += 1
-            if near(part, [meant]) is None:
-                return None
+            changed.append((part, meant))
         corrected.append(meant)
-    return ".".join(corrected) if changes == 1 else None
+    if len(changed) != 1 or near(changed[0][0], [changed[0][1]]) is None:
+        return None
+    return _Corrected(corrected, *changed[0])
 
 
 def type_in_words(value: Any) -> str:

@@ -1,0 +1,343 @@
+"""What files give well-known nodes is compared with their rows, by release."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.files.reading import URDF_LIMIT
+from grader.files.tree import make_tree, overlaid
+from grader.ros.known.parameter_rows import (
+    COVERED,
+    ParameterRow,
+    known_nodes,
+    node_called,
+    node_rows,
+    row_for,
+    rows_of,
+    usual_names,
+)
+from grader.ros.known.releases import RELEASES, Release
+from grader.ros.workspace.all_robots import read_workspace
+from grader.ros.workspace.names import Mismatch
+from grader.ros.workspace.reading import read_agreement
+from tests.workspace.rovers import FILES
+
+FOLDER = Path("grader/ros/known/parameters")
+MAX_SIZE = 400 * 1024  # bytes of the rows in the wheel
+_PACKAGE = ("package.xml", "setup.py", "setup.cfg", "resource/rover", "rover/__init__.py")
+_PROGRAMS = ("rover/pilot.py", "rover/horn.py")  # of the entry points of setup.py
+# The nodes whose rows are those of others, and which no program runs.
+_BASES = ("rclcpp/node", "nav2_util/LifecycleNode", "controller_interface/ControllerInterface")
+_TYPES: Mapping[str, tuple[Any, Any]] = {  # with a value, and one of another type
+    "bool": (True, "text"),
+    "int": (7, "text"),
+    "double": (0.5, 7),
+    "string": ("text", 7),
+    "bool_array": ([True], ["text"]),
+    "int_array": ([7], ["text"]),
+    "double_array": ([0.5], [7]),
+    "string_array": (["text"], [7]),
+}
+_WORD = re.compile(r"[a-z]{5,}")
+Values = dict[str, Any]
+NODES = [node for node in known_nodes() if node not in _BASES and rows_of(node)]
+
+
+@pytest.mark.parametrize("node", known_nodes())
+def test_rows_are_of_known_forms(node: str) -> None:
+    """Rows name their source, their releases in order, and rows of the same node."""
+    known = node_rows(node)
+    assert known is not None
+    assert known.source
+    names = {row.name for row in known.rows}
+    for row in known.rows:
+        assert row.type in ("", *_TYPES), row
+        assert RELEASES.index(row.since) <= RELEASES.index(row.until), row
+        assert {*row.unless, row.only_with or row.name} <= names, row
+    for release in COVERED:
+        in_release = [row.name for row in known.in_release(release)]
+        assert len(in_release) == len(set(in_release)), release
+
+
+def test_the_rows_stay_small_and_all_of_a_package_are_in_its_file() -> None:
+    """The wheel has at most 400 KB of rows; usual names are those of nodes with rows."""
+    assert sum(path.stat().st_size for path in FOLDER.glob("*.toml")) < MAX_SIZE
+    for node in [*known_nodes(), *usual_names().values()]:
+        assert (FOLDER / f"{re.split('/|::', node)[0]}.toml").is_file()
+        assert node_rows(node) is not None
+
+
+@pytest.mark.parametrize(
+    ("name", "node"),
+    [
+        ("amcl", "nav2_amcl/amcl"),
+        ("ekf_node", "robot_localization/ekf_node"),
+        ("DiffDriveController", "diff_drive_controller/DiffDriveController"),
+        ("joint_trajectory_controller", "joint_trajectory_controller/JointTrajectoryController"),
+        ("nav2_costmap_2d::VoxelLayer", "nav2_costmap_2d::VoxelLayer"),
+        ("GripperActionController", None),  # of three packages
+        ("driver", None),
+    ],
+)
+def test_a_node_is_found_by_its_names(name: str, node: str | None) -> None:
+    """A usual name, a class and a package of one class mean a node; several of one end do not."""
+    assert node_called(name) == node
+
+
+def test_a_row_is_that_of_the_release() -> None:
+    """The newest row that has a name counts where no release is given."""
+    node = "diff_drive_controller/DiffDriveController"
+    assert row_for(node, "use_stamped_vel", "humble") is not None
+    assert row_for(node, "use_stamped_vel", "jazzy") is None
+    row = row_for(node, "linear.x.max_velocity")
+    assert row is not None
+    assert row.lower == 0.0
+    assert row_for("robot_localization/ekf_node", "imu12_config") is not None
+    assert row_for("nobody/nothing", "frequency") is None
+
+
+@pytest.mark.parametrize("node", NODES)
+def test_each_row_is_asked_for(node: str) -> None:
+    """A right value is no problem; a misspelt name, another type and a missing value are one each."""
+    variants = [*_variants(node)]
+    found = _mismatches(node, [values for _, values, _ in variants], variants[0][2])
+    expected = {f"n{number}": int(what != "right") for number, (what, _, _) in enumerate(variants)}
+    counts = {f"n{number}": len(found.get(number, ())) for number in range(len(variants))}
+    wrong = {
+        name: (variants[int(name[1:])], found.get(int(name[1:])))
+        for name in expected
+        if counts[name] != expected[name]
+    }
+    assert not wrong, next(iter(wrong.values()))
+
+
+def _variants(node: str) -> Iterator[tuple[str, Values, Release]]:
+    """Yield the parameters of a node with each of its rows right and wrong, in its last release."""
+    known = node_rows(node)
+    assert known is not None
+    release = known.until
+    rows = known.in_release(release)
+    required: Values = {}
+    for row in rows:
+        if row.is_required or "<**>" in row.name:
+            required |= _given(row, rows)
+    yield "right", required, release
+    for row in rows:
+        if "<**>" in row.name:
+            continue
+        given = required | _given(row, rows)
+        name = _name(row)
+        yield "right", given, release
+        written = re.sub(r"<[^<>]+>", lambda it: "0" * len(it[0]), row.name)
+        words = [*_WORD.finditer(written)]
+        if words and not row.name.endswith((".type", ".plugin", "primary_controller")):
+            wrong = _name(row, misspelt=words[-1].span())
+            rest = {key: value for key, value in given.items() if key != name}
+            yield "misspelt", {**rest, wrong: given[name]}, release
+        is_list = any(row.name in other.places for other in rows)  # which is not wrong alone
+        is_asked_for = name != "use_sim_time"  # of every node, by other rules
+        if row.type and not (known.takes_any_type or row.is_class or is_list) and is_asked_for:
+            other = _TYPES[row.type][1]
+            if isinstance(other, list):
+                other = other * len(given[name])
+            yield "type", {**given, name: other}, release
+        if row.is_required:
+            yield "missing", {key: it for key, it in given.items() if key != name}, release
+
+
+def _name(row: ParameterRow, misspelt: tuple[int, int] | None = None) -> str:
+    """Return a name of a row, with a letter twice in the word at a span."""
+    name = row.name
+    if misspelt is not None:
+        middle = (misspelt[0] + misspelt[1]) // 2
+        name = name[:middle] + name[middle - 1] + name[middle:]
+    return re.sub(r"<#>", "0", re.sub(r"<[^<>#]+>", "it", name))
+
+
+def _given(row: ParameterRow, rows: Sequence[ParameterRow]) -> Values:
+    """Return a value for a row, with those that it needs."""
+    values: Values = {} if "<**>" in row.name else {_name(row): _valid(row)}
+    lists = {other.name: other for other in rows}
+    for place in row.places:
+        if place in lists:
+            values[place] = "it" if lists[place].type == "string" else ["it"]
+    if row.only_with:
+        values[_name(row._replace(name=row.only_with))] = "text"
+    for switch, value in row.unless.items():
+        if switch in lists:
+            values[_name(row._replace(name=switch))] = value
+    return values
+
+
+def _valid(row: ParameterRow) -> Any:
+    if row.one_of or row.entries:
+        items = [*row.one_of, *row.entries]
+        return items[0] if row.one_of else items[:1]
+    if row.is_class:
+        return "nav2_navfn_planner::NavfnPlanner"
+    if row.name == "robot_description":
+        return "<robot/>"
+    value = _TYPES[row.type][0] if row.type else "text"
+    if row.upper is not None and isinstance(value, float) and row.upper < value:
+        return float(row.upper)
+    if row.size is not None or row.name.endswith("#>_config"):  # which another rule counts
+        return value * (row.size or 15)
+    return value
+
+
+def _mismatches(
+    node: str, variants: Sequence[Values], release: Release
+) -> dict[int, list[Mismatch]]:
+    """Return what is wrong with the parameters of some nodes of one kind, by their numbers."""
+    names = [f"n{number}" for number in range(len(variants))]
+    package, _, program = node.partition("/")
+    sections, manager = [], ""
+    lines: list[int] = [0]
+    if "::" in node:
+        variants = [
+            {"planner_plugins": ["own"], "own.plugin": node}
+            | {f"own.{name}": value for name, value in values.items()}
+            for values in variants
+        ]
+        package, program = "nav2_planner", "planner_server"
+    is_controller = "::" not in node and program[0].isupper()
+    if is_controller:
+        types = "".join(f"    {name}:\n      type: {node}\n" for name in names)
+        manager = f"controller_manager:\n  ros__parameters:\n{types}"
+    for name, values in zip(names, variants, strict=True):
+        written = "".join(f"    {key}: {_yaml(value)}\n" for key, value in values.items())
+        sections.append(f"{name}:\n  ros__parameters:\n    use_sim_time: false\n{written}")
+        lines.append(lines[-1] + sections[-1].count("\n"))
+    if is_controller:
+        words = ", ".join(map(repr, [*names, "--param-file"]))
+        started = (
+            f"Node(package='controller_manager', executable='spawner', arguments=[{words}, given])"
+        )
+    else:
+        started = (
+            f"*[Node(package='{package}', executable='{program}', name=f'n{{number}}', "
+            f"parameters=[given]) for number in range({len(names)})]"
+        )
+    files = {f"rover/{name}": FILES[f"rover/{name}"] for name in (*_PACKAGE, *_PROGRAMS)}
+    files["rover/config/nodes.yaml"] = manager + "".join(sections)
+    files["rover/launch/nodes.launch.py"] = _LAUNCH.replace("STARTED", started)
+    tree = overlaid(make_tree("ws", (), ()), {path: it.encode() for path, it in files.items()})
+    workspace = replace(read_workspace(tree, "ws", URDF_LIMIT, {}).workspace, releases=(release,))
+    found: dict[int, list[Mismatch]] = {}
+    first = manager.count("\n")
+    for mismatch in read_agreement(workspace).mismatches:
+        if mismatch.family != "parameters":
+            continue
+        if mismatch.location.path.endswith("nodes.yaml"):
+            line = mismatch.location.line - 1
+            number = sum(start <= line - first for start in lines) - 1
+            if line < first:  # of the type of a controller
+                number = (line - 2) // 2
+        else:  # of what is missing
+            said = re.match(r"'n(\d+)' stops", mismatch.message)
+            assert said is not None, mismatch
+            number = int(said[1])
+        found.setdefault(number, []).append(mismatch)
+    return found
+
+
+def _yaml(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_yaml, value)) + "]"
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{key}: {_yaml(it)}" for key, it in value.items()) + "}"
+    return f"'{value}'" if isinstance(value, str) else str(value)
+
+
+_LAUNCH = """\
+from launch import LaunchDescription
+from launch.substitutions import PathJoinSubstitution
+from launch_ros.actions import Node
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    given = PathJoinSubstitution([FindPackageShare('rover'), 'config', 'nodes.yaml'])
+    return LaunchDescription([STARTED])
+"""
+
+
+@pytest.mark.parametrize(
+    ("node", "release", "values", "messages"),
+    [
+        (
+            "robot_localization/ekf_node",
+            "humble",
+            {"twist0_config": [True] * 15, "twist0_relative": True},
+            ["'n0' does not use twist0_config without twist0"],
+        ),
+        (
+            "diff_drive_controller/DiffDriveController",
+            "humble",
+            {"left_wheel_names": ["text"], "right_wheel_names": ["text"]}
+            | {"wheel_separation": 0.3, "wheel_radius": 0.0, "linear.x.max_velocity": 1.0},
+            [
+                "the parameter 'wheel_radius' is 0; 'n0' needs more than 0, and stops",
+                (
+                    "'n0' does not use linear.x.max_velocity: linear.x.has_velocity_limits is "
+                    "false, by default"
+                ),
+            ],
+        ),
+        (
+            "nav2_bt_navigator/bt_navigator",
+            "jazzy",
+            {"plugin_lib_names": ["nav2_spin_action_bt_node", "own_bt_node"]},
+            [
+                (
+                    "'n0' loads nav2_spin_action_bt_node itself, and stops where plugin_lib_names "
+                    "has the same: list only other libraries"
+                )
+            ],
+        ),
+        (
+            "nav2_bt_navigator/bt_navigator",
+            "humble",
+            {"plugin_lib_names": ["nav2_spin_action_bt_node", "nav2_is_stopped_condition_bt_node"]},
+            ["'n0' stops: Humble has no library 'nav2_is_stopped_condition_bt_node'"],
+        ),
+        ("nav2_bt_navigator/bt_navigator", "foxy", {"plugin_lib_names": 1, "frequncy": 1}, []),
+        (
+            "nav2_velocity_smoother/velocity_smoother",
+            "jazzy",
+            {"feedback": "NONE AT ALL", "own": {"table": 1, "other": 2}},
+            [
+                "the parameter 'feedback' is 'NONE AT ALL'; 'n0' needs 'OPEN_LOOP' or 'CLOSED_LOOP', and stops",
+                "'n0' has no parameter 'own'",
+            ],
+        ),
+        (
+            "joint_trajectory_controller/JointTrajectoryController",
+            "jazzy",
+            {"joints": ["a"], "command_interfaces": ["positon"], "state_interfaces": ["position"]}
+            | {"gains.b.p": 1.0, "gains.b.d": 1.0},
+            [
+                "the parameter 'command_interfaces' is ['positon']; 'n0' knows no 'positon' there, and stops",
+                "'n0' has no parameter 'gains.b'",
+            ],
+        ),
+        (
+            "amcl_of_somebody/amcl",
+            "jazzy",
+            {"frequncy": 1},
+            [],
+        ),
+    ],
+)
+def test_what_a_node_does_with_a_value(
+    node: str, release: Release, values: Values, messages: list[str]
+) -> None:
+    """A value without effect, beyond its bounds, or of a table that there is not, is one problem."""
+    found = _mismatches(node, [values], release).get(0, [])
+    assert sorted(it.message for it in found) == sorted(messages)
