@@ -222,16 +222,9 @@ def _mismatches(
             f"*[Node(package='{package}', executable='{program}', name=f'n{{number}}', "
             f"parameters=[given]) for number in range({len(names)})]"
         )
-    files = {f"rover/{name}": FILES[f"rover/{name}"] for name in (*_PACKAGE, *_PROGRAMS)}
-    files["rover/config/nodes.yaml"] = manager + "".join(sections)
-    files["rover/launch/nodes.launch.py"] = _LAUNCH.replace("STARTED", started)
-    tree = overlaid(make_tree("ws", (), ()), {path: it.encode() for path, it in files.items()})
-    workspace = replace(read_workspace(tree, "ws", URDF_LIMIT, {}).workspace, releases=(release,))
     found: dict[int, list[Mismatch]] = {}
     first = manager.count("\n")
-    for mismatch in read_agreement(workspace).mismatches:
-        if mismatch.family != "parameters":
-            continue
+    for mismatch in _wrong(manager + "".join(sections), started, release):
         if mismatch.location.path.endswith("nodes.yaml"):
             line = mismatch.location.line - 1
             number = sum(start <= line - first for start in lines) - 1
@@ -243,6 +236,70 @@ def _mismatches(
             number = int(said[1])
         found.setdefault(number, []).append(mismatch)
     return found
+
+
+def _wrong(nodes: str, started: str, release: Release) -> list[Mismatch]:
+    """Return what is wrong with a parameter file of a workspace whose launch file starts nodes."""
+    files = {f"rover/{name}": FILES[f"rover/{name}"] for name in (*_PACKAGE, *_PROGRAMS)}
+    files["rover/config/nodes.yaml"] = nodes
+    files["rover/launch/nodes.launch.py"] = _LAUNCH.replace("STARTED", started)
+    tree = overlaid(make_tree("ws", (), ()), {path: it.encode() for path, it in files.items()})
+    workspace = replace(read_workspace(tree, "ws", URDF_LIMIT, {}).workspace, releases=(release,))
+    return [it for it in read_agreement(workspace).mismatches if it.family == "parameters"]
+
+
+@pytest.mark.parametrize(
+    ("nodes", "started"),
+    [
+        (  # values for any node, of which a controller is one
+            (
+                "/**:\n  ros__parameters:\n    robots: 2\n"
+                "controller_manager:\n  ros__parameters:\n"
+                "    wheels:\n      type: joint_state_broadcaster/JointStateBroadcaster\n"
+                "wheels:\n  ros__parameters:\n    use_local_topics: true\n"
+            ),
+            (
+                "Node(package='controller_manager', executable='spawner', "
+                "arguments=['wheels', '--param-file', given])"
+            ),
+        ),
+        (  # a node whose name only its program has: each section may be its own
+            "somebody:\n  ros__parameters:\n    robots: 2\n",
+            ("Node(package='urg_node2', executable='urg_node2_node', parameters=[given])"),
+        ),
+        (  # a name of several nodes
+            "/**:\n  ros__parameters:\n    robots: 2\n",
+            (
+                "*[Node(package='nav2_smoother', executable='smoother_server', name=f'n{i}', "
+                "parameters=[given]) for i in range(2)]"
+            ),
+        ),
+        (  # so many unknown names are those of another program
+            "n0:\n  ros__parameters:\n" + "".join(f"    own_{i}: 1\n" for i in range(5)),
+            (
+                "Node(package='nav2_smoother', executable='smoother_server', name='n0', "
+                "parameters=[given])"
+            ),
+        ),
+        (  # more plugins than are read
+            "n0:\n  ros__parameters:\n    planner_plugins: ["
+            + ", ".join(f"p{i}" for i in range(150))
+            + "]\n"
+            + "".join(
+                f"    p{i}:\n      plugin: nav2_navfn_planner::NavfnPlanner\n      own: 1\n"
+                for i in range(150)
+            ),
+            (
+                "Node(package='nav2_planner', executable='planner_server', name='n0', "
+                "parameters=[given])"
+            ),
+        ),
+    ],
+    ids=["any node", "no name", "several nodes", "another program", "many plugins"],
+)
+def test_what_may_be_another_nodes_is_not_reported(nodes: str, started: str) -> None:
+    """A name that another node may have, or a node of another source, is no mistake."""
+    assert [it.message for it in _wrong(nodes, started, "jazzy")] == []
 
 
 def _yaml(value: Any) -> str:

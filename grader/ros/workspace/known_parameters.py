@@ -122,10 +122,13 @@ def _values_of(
     workspace: Workspace, package: Package, node: StartedNode
 ) -> tuple[bool, Mapping[str, ParameterValue]] | None:
     """Return the parameters of a node of another package, and whether it gets no others; None for
-    one of the workspace.
+    one of the workspace, and for one that is not known by its name.
     """
     if workspace.package_of(node) is not None:
         return None
+    has_name = workspace.name_of(node) is not None and node.namespace is not None
+    if not has_name and any(it.path for it in node.parameters or ()):
+        return None  # any section may be its own
     given = workspace.read_given(package, node, workspace.name_of(node) or "")
     return not given.unknown and node.arguments == (), _without_time(given.values)
 
@@ -156,7 +159,19 @@ def _controllers(workspace: Workspace) -> Iterator[GivenNode]:
             if controller.location.path in paths:
                 values = _without_wrong_lists(kind, _without_time(given.values))
                 at = controller.location if not given.unknown else None
-                yield GivenNode(kind, repr(controller.name), values, at)
+                shared = _places_for_any_name(workspace)
+                yield GivenNode(kind, repr(controller.name), values, at, shared)
+
+
+@lru_cache(maxsize=2)
+def _places_for_any_name(workspace: Workspace) -> frozenset[Location]:
+    """Return the places of the parameters that files give to nodes of any name."""
+    places: set[Location] = set()
+    for _, tree in workspace.trees:
+        for keys, section in sections_in(tree):
+            if not keys or keys[-1].strip("/") in ("*", "**"):
+                places.update(value.node.location for value in values_in(section))
+    return frozenset(places)
 
 
 def _without_wrong_lists(

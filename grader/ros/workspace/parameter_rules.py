@@ -155,6 +155,7 @@ class _NodeReader:
         self._values = given.values
         self._tables: list[_RowTable] = []
         self._unread: list[str] = []  # prefixes of plugins that are not known
+        self._is_complete = True  # whether the rows of all plugins are read
         self._lists: dict[str, Collection[str] | None] = {}  # by their names
         self._add_tables()
 
@@ -179,7 +180,7 @@ class _NodeReader:
                 yield switch.finding(self._given, name, value)
         # So many may be those of another program of this name, built from its own source.
         is_another = len(unmatched) >= _MANY_UNKNOWN and 2 * len(unmatched) > len(self._values)
-        if not is_another:
+        if not is_another and self._is_complete:
             yield from self._name_findings(unmatched)
 
     def _name_findings(self, unmatched: Mapping[str, ParameterValue]) -> Iterator[_RowFinding]:
@@ -212,6 +213,7 @@ class _NodeReader:
             for row in index.all_rows.values():
                 if row.is_class:
                     waiting += self._plugins(prefix, row)
+        self._is_complete = not waiting
 
     def _plugins(self, prefix: str, row: ParameterRow) -> Iterator[tuple[str, str]]:
         """Yield the classes that a parameter names, with the prefix of their parameters."""
