@@ -238,14 +238,16 @@ def _rubric_text(
     shown = {node: found[:_MAX_VALUES] for node, found in values.items()}
     named = _with_ids([*of_robot, *of_package, *chain.from_iterable(shown.values())])
     ids = {row.fact.words: name for name, row in named.items()}
-    layout, about = _Layout(part, usual, ids), ""
+    # A criterion refers to no value, which is only a comment.
+    of_criteria = {row.fact.words: ids[row.fact.words] for row in [*of_robot, *of_package]}
+    layout, about = _Layout(part, usual, of_criteria), ""
     for (name, row), worth in zip(named.items(), points, strict=False):
         if row.fact.about != about:
             about = row.fact.about
             lines += ["", f"# --- {printable(about)} ".ljust(_WIDTH, "-")]
         lines += layout.criterion(name, row, worth)
     if shown:
-        lines += _value_lines(layout, values)
+        lines += _value_lines(layout._replace(ids=ids), values)
     return "\n".join(lines) + "\n"
 
 
