@@ -26,6 +26,8 @@ _CLOCK = (
     "Node(package='ros_gz_bridge', executable='parameter_bridge', "
     "arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock']),"
 )
+
+_SRDF = '<robot name="rover"></robot>\n'
 _JOINTS = "Node(package='joint_state_publisher', executable='joint_state_publisher'),"
 _BROADCASTER = """\
         Node(package='controller_manager', executable='spawner',
@@ -122,7 +124,8 @@ WRONG: list[tuple[str, list[Edit]]] = [
                 LIMITS,
                 "has_velocity_limits: true\n    max_velocity: 1.5",
                 "has_velocity_limits: false\n    max_velocity: 9.0",
-            )
+            ),
+            ("config/rover.srdf", _SRDF, _SRDF),
         ],
     ),
     (
@@ -488,6 +491,23 @@ CORRECT: list[tuple[str, list[Edit]]] = [
         ],
     ),
     ("a plugin that agrees", _gazebo("0.3")),
+    (
+        "a limit that is not switched on, without MoveIt",
+        [
+            (
+                LIMITS,
+                "has_velocity_limits: true\n    max_velocity: 1.5",
+                "has_velocity_limits: false\n    max_velocity: 9.0",
+            )
+        ],
+    ),
+    (
+        "limits of a URDF that MoveIt does not read",
+        [
+            (LIMITS, "max_velocity: 1.5", "max_velocity: 1\n    max_effort: 5"),
+            ("config/rover.srdf", _SRDF, _SRDF),
+        ],
+    ),
     (
         "a lower update rate than the default",
         [

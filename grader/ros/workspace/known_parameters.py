@@ -31,6 +31,8 @@ from grader.ros.workspace.workspace import Workspace
 _MOVE_GROUP = "moveit_ros_move_group/move_group"
 _LIMITS = ("robot_description_planning", "joint_limits")
 _SWITCHES = ("has_velocity_limits", "has_acceleration_limits")
+# Of a file of this form that xacro loads for the limits in a URDF: MoveIt has no limits of effort.
+_OF_URDF = ("has_effort_limits", "max_effort")
 _MAX_REPOS = 64 * 1024  # bytes of a file of vcstool
 _WRITTEN_OTHERWISE = Unknown("a string in place of a list", START)
 _COST_OF_VALUE = 20  # parts of comparing a value with the rows of its node
@@ -251,12 +253,19 @@ def _section_values(section: YamlNode, prefix: str = "") -> dict[str, ParameterV
 
 
 def _limits_of_moveit(workspace: Workspace) -> Iterator[GivenNode]:
-    """Yield the joint_limits.yaml of MoveIt, which moveit_configs_utils gives to move_group."""
+    """Yield the joint_limits.yaml of MoveIt, which moveit_configs_utils gives to move_group, of a
+    workspace with an SRDF.
+    """
+    if not workspace.srdf_files:
+        return
     for _, tree in workspace.trees:
         table = tree.get(_LIMITS[1])
         if table is None or not isinstance(table.value, dict):
             continue
-        if any(limits.get(key) is not None for limits in table.value.values() for key in _SWITCHES):
+        keys: set[str] = set()
+        for limits in table.value.values():
+            keys |= {key for key, _ in limits.pairs}
+        if keys.intersection(_SWITCHES) and keys.isdisjoint(_OF_URDF):
             prefix = ".".join(_LIMITS) + "."
             values = _section_values(table, prefix)
             yield GivenNode(_MOVE_GROUP, "'move_group'", values, None, prefix=prefix)
