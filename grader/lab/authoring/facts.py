@@ -18,7 +18,7 @@ from grader.lab.checks.visuals import MAX_SHAPES
 from grader.lab.submission.submission import Submission
 from grader.ros.package.mesh_files import mesh_file
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Box, Collision, Cylinder, Joint, Limit, Link, Mesh, Sphere, Visual
+from grader.ros.urdf.model import Box, Collision, Cylinder, Joint, Link, Mesh, Sphere, Visual
 from grader.ros.urdf.reader import Reading
 from grader.ros.workspace.reading import read_agreement
 from grader.ros.xml.elements import words_of_foreign
@@ -254,7 +254,7 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
         (f"{link} held_by",), "frame_at", frame.arguments
     )  # a joint of another type has no such range
     if joint.limit is not None and joint.type in ("revolute", "prismatic"):
-        yield _range_fact(joint, joint.limit)._replace(carried=(of_type,))
+        yield _range_fact(joint)._replace(carried=(of_type,))
     if joint.dynamics is not None and joint.type != "fixed":
         friction, damping = joint.dynamics.friction, joint.dynamics.damping
         title = f"the joint that moves {link!r} has friction {friction:g} and damping {damping:g}"
@@ -283,8 +283,10 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
         )
 
 
-def _range_fact(joint: Joint, limit: Limit) -> Fact:
-    """Return the range of a joint that turns or slides, in degrees or metres."""
+def _range_fact(joint: Joint) -> Fact:
+    """Return the range of a joint that turns or slides and has limits, in degrees or metres."""
+    limit = joint.limit
+    assert limit is not None
     ends, turns = (limit.lower, limit.upper), joint.type == "revolute"
     lower, upper = _rounded([degrees(end) for end in ends], 1) if turns else _rounded(ends)
     given = {"effort": limit.effort, "velocity": limit.velocity}
