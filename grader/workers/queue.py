@@ -31,6 +31,7 @@ class Progress:
     unchanged: int = 0
     unreadable: int = 0
     errored: int = 0
+    note: str = ""  # what is said besides the counts
 
     @property
     def done(self) -> int:

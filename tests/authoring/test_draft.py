@@ -188,9 +188,9 @@ def test_values_of_parameters_are_comments_that_may_become_criteria(of_cart: Rub
     _ = changed.write_text(f"{before}{marked}{line}\n{re.sub('(?m)^# ', '', values)}")
     done = run(("rubric", "check", changed))
     more = values.count("# [[criterion]]")
-    assert more == 11
+    assert more == 6
     assert (
-        f"{len(of_cart.criteria) + more} criteria, 100 points, no mistakes found"
+        f"{len(of_cart.criteria) + more} criteria, {of_cart.points} points, no mistakes found"
         in done.stdout.decode()
     ), done.stderr
 
@@ -388,3 +388,185 @@ def test_more_values_of_a_node_are_counted(tmp_path: Path, monkeypatch: pytest.M
     text = (tmp_path / "lab.toml").read_text()
     assert "\n# # 1 more of drive_circle\n" in text
     assert text.count('\n# [[criterion]]\n# id = "drive-circle-') == 1
+
+
+def points_by_check(rubric: Rubric) -> dict[str, set[int]]:
+    """Return the points of the criteria of each check."""
+    points: dict[str, set[int]] = {}
+    for criterion in rubric.criteria:
+        points.setdefault(criterion.check.name, set()).add(int(criterion.points))
+    return points
+
+
+def test_names_get_half_of_the_points_where_the_work_is_not_the_robot(of_cart: Rubric) -> None:
+    """And each of them more than a criterion of the robot."""
+    of_names = [it for it in of_cart.criteria if it.check.name == "names_agree"]
+    assert 2 * sum(it.points for it in of_names) == of_cart.points
+    others = [it.points for it in of_cart.criteria if it not in of_names]
+    assert min(it.points for it in of_names) >= max(others)
+
+
+def test_frames_axes_and_limits_weigh_more_than_colours_and_masses(tmp_path: Path) -> None:
+    """In the draft of a robot, unless all weights are equal."""
+    assert new(tmp_path, ARM).returncode == 0
+    points = points_by_check(load_rubric(str(tmp_path / "lab.toml")))
+    for heavy in ("frame_at", "joint_axis", "joint_limits"):
+        for light in ("shows_colour", "mass_is", "inertia_plausible"):
+            assert min(points[heavy]) > max(points[light])
+    done = run(
+        ("rubric", "new", tmp_path / "equal.toml", "--from", ARM, "--weights", "equal"),
+    )
+    assert done.returncode == 0
+    of_equal = points_by_check(load_rubric(str(tmp_path / "equal.toml")))
+    assert set().union(*of_equal.values()) == {1}
+
+
+def test_titles_have_at_most_a_hundred_characters_and_differ(of_cart: Rubric) -> None:
+    """So a list of them says which joint is meant."""
+    titles = [criterion.title for criterion in of_cart.criteria]
+    assert max(map(len, titles)) <= 100
+    assert not any("expected values" in title for title in titles)
+
+
+KINDS = {
+    "colours,masses": {"shows_colour", "mass_is"},
+    "inertia": {"inertia_plausible"},
+    "shapes": {"shows_box", "shows_cylinder", "shows_mesh", "centre_at"},
+}
+
+
+@pytest.mark.parametrize(("kinds", "checks"), KINDS.items(), ids=KINDS)
+def test_kinds_of_criteria_can_be_omitted(kinds: str, checks: set[str], tmp_path: Path) -> None:
+    """The others stay."""
+    assert new(tmp_path, ARM).returncode == 0
+    before = {it.check.name for it in load_rubric(str(tmp_path / "lab.toml")).criteria}
+    file = tmp_path / "fewer.toml"
+    assert run(("rubric", "new", file, "--from", ARM, "--without", kinds)).returncode == 0
+    after = {it.check.name for it in load_rubric(str(file)).criteria}
+    assert (before - after, after - before) == (before & checks, set())
+    assert before & checks
+
+
+def test_only_names_may_be_asked_for(tmp_path: Path) -> None:
+    """With what they need: packages that build, and a robot that ROS 2 loads."""
+    folder = write_cart(tmp_path / "src")
+    file = tmp_path / "names.toml"
+    assert run(("rubric", "new", file, "--from", folder, "--names-only")).returncode == 0
+    checks = {criterion.check.name for criterion in load_rubric(str(file)).criteria}
+    assert checks >= {"names_agree", "urdf_loads", "setup_imports"}
+    assert not checks & {"shows_box", "frame_at", "entry_is", "parameter_is", "node_runs"}
+    assert "parameter_is" not in file.read_text()
+
+
+def test_a_free_link_is_named_by_its_place(tmp_path: Path) -> None:
+    """A robot in which it has another name keeps all points."""
+    file = tmp_path / "lab.toml"
+    robot = """<robot name="r"><link name="torso"/><link name="arm"/>
+<joint name="j" type="revolute"><parent link="torso"/><child link="arm"/><axis xyz="0 0 1"/>
+<limit lower="-1" upper="1" effort="1" velocity="1"/></joint></robot>"""
+    (tmp_path / "robot.urdf").write_text(robot)
+    (tmp_path / "other.urdf").write_text(robot.replace("torso", "base").replace("arm", "boom"))
+    done = run(
+        (
+            "rubric",
+            "new",
+            file,
+            "--from",
+            tmp_path / "robot.urdf",
+            "--free",
+            "torso",
+            "--free",
+            "arm",
+        ),
+    )
+    assert done.returncode == 0, done.stderr
+    assert run(("grade", tmp_path / "other.urdf", "--rubric", file)).returncode == 0
+    (tmp_path / "other.urdf").write_text(robot.replace('axis xyz="0 0 1"', 'axis xyz="0 1 0"'))
+    assert run(("grade", tmp_path / "other.urdf", "--rubric", file)).returncode == 1
+
+
+MIMIC = """<robot name="r"><link name="palm"/><link name="left"/><link name="right"/>
+<joint name="l" type="prismatic"><parent link="palm"/><child link="left"/><axis xyz="0 1 0"/>
+<limit lower="0" upper="0.04" effort="1" velocity="1"/></joint>
+<joint name="r" type="prismatic"><parent link="palm"/><child link="right"/><axis xyz="0 1 0"/>
+<limit lower="-0.04" upper="0" effort="1" velocity="1"/><mimic joint="l" multiplier="-1"/></joint></robot>"""
+
+
+def test_a_joint_that_follows_is_measured_by_its_motion(tmp_path: Path) -> None:
+    """The opposite axis with the opposite multiplier and limits is equal; one of these alone is not."""
+    (tmp_path / "robot.urdf").write_text(MIMIC)
+    assert new(tmp_path, tmp_path / "robot.urdf").returncode == 0
+    lab, file = tmp_path / "lab.toml", tmp_path / "other.urdf"
+    text = lab.read_text()
+    assert "2 moving joints: 1 prismatic and 1 prismatic that follows another joint" in text
+    start = MIMIC.index('<joint name="r"')
+    turned = MIMIC[:start] + MIMIC[start:].replace('"0 1 0"', '"0 -1 0"').replace(
+        'multiplier="-1"', 'multiplier="1"'
+    )
+    file.write_text(turned.replace('lower="-0.04" upper="0"', 'lower="0" upper="0.04"'))
+    done = run(("grade", file, "--rubric", lab))
+    assert done.returncode == 0, done.stdout
+    file.write_text(turned)
+    assert run(("grade", file, "--rubric", lab)).returncode == 1
+    file.write_text(MIMIC.replace('multiplier="-1"', 'multiplier="1"'))
+    assert run(("grade", file, "--rubric", lab)).returncode == 1
+
+
+def test_names_that_ros_2_does_not_care_about_are_free(
+    of_diffdrive: Rubric, tmp_path: Path
+) -> None:
+    """Those of <ros2_control> and of launch files."""
+    system = "urdf/diffdrive.ros2_control.xacro"
+    text = (DIFFDRIVE / system).read_text()
+    [name] = re.findall('<ros2_control name="([^"]*)"', text)
+    edit: Edit = (system, f'<ros2_control name="{name}"', '<ros2_control name="the_wheels"')
+    package = write_diffdrive(tmp_path, *SIMULATED, edit)
+    (package / LAUNCH).rename(package / LAUNCH.replace("diffdrive", "go"))
+    report = grade(of_diffdrive, open_submission(str(package), of_diffdrive.lab))
+    assert [it.criterion.id for it in report.results if it.is_lost] == []
+
+
+def test_a_misspelt_executable_of_a_known_package_is_found(
+    of_diffdrive: Rubric, tmp_path: Path
+) -> None:
+    """Though the solution has no program of its own."""
+    edit: Edit = (LAUNCH, 'executable="spawner"', 'executable="spaner"')
+    report = grade(
+        of_diffdrive,
+        open_submission(str(write_diffdrive(tmp_path, *SIMULATED, edit)), of_diffdrive.lab),
+    )
+    assert "programs-names-agree" in [it.criterion.id for it in report.results if it.is_lost]
+
+
+def test_a_parameter_that_names_joints_is_a_criterion(of_cart: Rubric) -> None:
+    """By the links that they hold, in any order."""
+    text = of_cart.path.read_text().partition("# --- Other values")[0]
+    assert 'has = ["@joint:' in text
+
+
+def test_criteria_may_be_deleted(of_cart: Rubric) -> None:
+    """What is carried from one that is not there is ignored, and one note says so."""
+    blocks = of_cart.path.read_text().split("\n[[criterion]]\n")
+    kept = [it for it in blocks if not it.startswith('id = "files-names-agree"')]
+    assert len(kept) == len(blocks) - 1
+    changed = of_cart.path.with_name("deleted.toml")
+    lines = "\n[[criterion]]\n".join(kept).splitlines(keepends=True)
+    changed.write_text("".join(it for it in lines if not re.match(r"points = \d\d", it)))
+    done = run(("rubric", "check", changed))
+    assert done.returncode == 0, done.stderr
+    assert done.stderr.decode().count("files-names-agree") == 1
+
+
+def test_all_mistakes_are_reported_at_once(tmp_path: Path) -> None:
+    """Those in the file, and what the reference does not pass of the other criteria."""
+    assert new(tmp_path, ARM).returncode == 0
+    text = (tmp_path / "lab.toml").read_text()
+    wrong = re.sub(r"mass = [\d.]+", "mass = 77.0", text, count=1).replace(
+        'check = "frame_at"', 'check = "frame_att"'
+    )
+    (tmp_path / "lab.toml").write_text(re.sub(r"(?m)^points = \d\d+$", "points = 1", wrong))
+    done = run(("rubric", "check", tmp_path / "lab.toml"))
+    lines = done.stderr.decode()
+    assert done.returncode == 2
+    assert "there is no check 'frame_att'" in lines
+    assert "it should be 77 kg" in lines

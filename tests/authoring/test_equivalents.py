@@ -9,7 +9,7 @@ from lxml import etree
 from grader.lab.authoring.equivalents import Equivalent, RewritingRules, equivalents
 from grader.lab.authoring.rubric_test import Trial
 from grader.lab.authoring.trees import copied
-from grader.lab.checks.check import EQUIVALENTS
+from grader.lab.checks.check import EQUIVALENTS, MIMIC_TURNED
 from grader.lab.checks.registry import find_check
 from grader.lab.submission.opening import read_submission
 from grader.ros.package.robot_file import Read
@@ -173,8 +173,12 @@ def test_frames_of_links_that_are_named_by_their_place_stay() -> None:
         (
             "entry_is",
             {"at": "joint"},
-            ("fixed joints split", "frames moved", "links renamed", "joints renamed"),
+            ("fixed joints split", "frames moved", "links renamed", "joints renamed", MIMIC_TURNED),
         ),
+        ("mimics", {"multiplier": -1.0, "direction": (0, 1, 0)}, ()),
+        ("mimics", {"multiplier": -1.0}, (MIMIC_TURNED,)),
+        ("joint_axis", {"either_way": True}, ()),
+        ("joint_axis", {}, (MIMIC_TURNED,)),
         ("without_problems", {"problems": ["URDF063"]}, EQUIVALENTS),
         ("xacro_uses", {"macros": 1}, EQUIVALENTS),
     ],

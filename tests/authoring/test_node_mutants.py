@@ -9,6 +9,7 @@ from tests.workspace.carts import cart
 from tests.workspace.test_nodes import laundry_files
 
 TOPICS: tuple[Family, ...] = ("topics",)
+CODE: tuple[Family, ...] = ("code",)
 
 
 def test_interfaces_and_code_have_mutants() -> None:
@@ -26,6 +27,13 @@ def test_interfaces_and_code_have_mutants() -> None:
         "spin removed": 3,
         "callback called": 5,
         "response not returned": 1,
+        "init removed": 3,
+        "constructor removed": 3,
+        "declaration removed": 5,
+        "quality of service changed": 2,
+        "call awaited": 1,
+        "interface not generated": 3,
+        "field type changed": 9,
     }
 
 
@@ -34,3 +42,24 @@ def test_a_family_that_is_not_compared_has_no_mutants() -> None:
     submission = cart(laundry_files())
     for path, text in laundry_files().items():
         assert [*node_changes(submission, Source(path, text), path, TOPICS)] == []
+
+
+CPP = """#include "rclcpp/rclcpp.hpp"
+int main(int argc, char ** argv)
+{
+  rclcpp::init(argc, argv);
+  auto node = std::make_shared<Beacon>();
+  node->get_logger();
+  rclcpp::spin(node);
+}
+"""
+
+
+def test_nodes_in_cpp_have_mutants() -> None:
+    """Without what initialises rclcpp, or what spins."""
+    source = Source("src/beacon.cpp", CPP)
+    found = [*node_changes(cart(laundry_files()), source, "beacon.cpp", CODE)]
+    assert [(it.family, CPP[it.start : it.end].strip()) for it in found] == [
+        ("spin removed", "rclcpp::spin(node);"),
+        ("init removed", "rclcpp::init(argc, argv);"),
+    ]

@@ -15,7 +15,7 @@ from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC, load_named
 from grader.report.formats import OutputFormat
 from grader.report.writing import write_stdout
 
-_HELP = """List, show, write, check and test rubrics, and list the checks.
+_HELP = """List, write, check, test and review rubrics; list the checks.
 
 Examples:
 
@@ -30,7 +30,13 @@ Examples:
   grader rubric test my_lab.toml
 """
 _FOLDER = "A folder with samples: submissions with an expected.toml."
+_WITHOUT = "Omit kinds of criteria, such as colours,masses,inertia,collision, or families of names."
+_NAMES_ONLY = "Only what names have to agree on, and that the packages build."
+_FREE = "A name that the handout leaves open: of a link, joint, node, topic or file. Repeatable."
+_WEIGHTS = "What matters gets more points, or all criteria get equal ones."
 _LEAST = "Exit 1 if the mutation score is less, in percent."
+_ALL = "Grade all mutants, not a sample."
+_SEED = "Draw another sample of the mutants."
 rubric = typer.Typer(help=_HELP, no_args_is_help=True)
 RubricArgument = Annotated[
     str,
@@ -96,11 +102,18 @@ def new_rubric(
         ),
     ],
     force: Annotated[bool, typer.Option("--force", help="Replace FILE if it exists.")] = False,
+    without: Annotated[list[str] | None, typer.Option(metavar="KINDS", help=_WITHOUT)] = None,
+    names_only: Annotated[bool, typer.Option("--names-only", help=_NAMES_ONLY)] = False,
+    free: Annotated[list[str] | None, typer.Option(metavar="NAME", help=_FREE)] = None,
+    weights: Annotated[Literal["importance", "equal"], typer.Option(help=_WEIGHTS)] = "importance",
 ) -> str:
     """Write a rubric from a reference solution.
 
     It has a criterion for each fact that can be measured. It is graded on the reference, which must
     get full marks. The output lists the facts that no check can test.
+
+    What ROS 2 does not care about is free: names of launch files and of `<ros2_control>`, files
+    that are only named, the build type.
 
     Examples:
 
@@ -109,10 +122,13 @@ def new_rubric(
       grader rubric new my_lab.toml --from my_lab/my_robot
 
       grader rubric new my_lab.toml --from solution.urdf --force
-    """
-    from grader.app.commands.rubric_making import write_rubric
 
-    return write_rubric(file, reference, warn, force=force)
+      grader rubric new my_lab.toml --from my_lab --without colours,masses --free lidar
+    """
+    from grader.app.commands.rubric_making import draft_choice, write_rubric
+
+    choice = draft_choice(without or (), free or (), is_names_only=names_only, weights=weights)
+    return write_rubric(file, reference, warn, choice, force=force)
 
 
 @rubric.command("copy")
@@ -156,11 +172,14 @@ def run_test(
     folder: Annotated[Path | None, typer.Argument(metavar="[FOLDER]", help=_FOLDER)] = None,
     fail_under: Annotated[str | None, typer.Option(metavar="N|N%", help=_LEAST)] = None,
     output_format: FormatOption = OutputFormat.TERMINAL,
+    are_all: Annotated[bool, typer.Option("--all", help=_ALL)] = False,
+    seed: Annotated[int, typer.Option(metavar="N", help=_SEED)] = 0,
 ) -> int:
     """Test a rubric on variants of its reference and on samples.
 
     The reference and its equivalents must keep full marks; every mutant must lose points. Mutants
-    that get full marks are listed with their diff.
+    that get full marks are listed with their diff. Of more than 600 mutants, a sample over all
+    kinds is graded.
 
     Exit codes: 0 no correct robot loses points, all samples are as expected, and the score reaches
     --fail-under; 1 otherwise; 2 the rubric is broken or has no reference; 3 a check is faulty.
@@ -174,9 +193,35 @@ def run_test(
     from grader.app.commands.rubric_making import test_rubric
 
     is_json = output_format is OutputFormat.JSON
-    text, code = test_rubric(name, folder, fail_under, is_json, TERMINAL)
+    text, code = test_rubric(
+        name, folder, fail_under, is_json, TERMINAL, are_all_graded=are_all, seed=seed
+    )
     write_stdout(text)
     return code
+
+
+@rubric.command("review")
+def review_rubric(
+    gradebook: Annotated[
+        Path | None,
+        typer.Argument(metavar="[GRADEBOOK]", help="The gradebook (default: the only one here)."),
+    ] = None,
+) -> str:
+    """Show what to look at before grades go out.
+
+    Criteria that all submissions pass or fail, those that need manual grading most, and equal
+    robots with different results: there the rubric may be wrong, or the handout unclear.
+
+    Examples:
+
+      grader rubric review
+
+      grader rubric review lab6-grades
+    """
+    from grader.app.cli.options import only_gradebook
+    from grader.classroom.reports.class_figures import rubric_review
+
+    return rubric_review(gradebook or only_gradebook(), TERMINAL)
 
 
 def bundle(

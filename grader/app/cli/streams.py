@@ -103,7 +103,8 @@ def _progress_line(progress: "Progress", seconds: float) -> str:
     rate = progress.done / seconds
     left = (progress.total - progress.done) / rate
     kinds = (progress.errored, "errored"), (progress.unreadable, "unreadable")
-    counts = ", ".join(f"{count} {kind}" for count, kind in kinds if count)
+    texts = [f"{count} {kind}" for count, kind in kinds if count]
+    counts = ", ".join([*texts, progress.note] if progress.note else texts)
     time_left = f"{left:.0f} s" if left < 100 else f"{left / 60:.0f} min"
     return (
         f"{progress.done} of {progress.total}, {rate:.0f}/s, {time_left} "

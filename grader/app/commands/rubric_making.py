@@ -4,17 +4,21 @@ and mutants.
 
 import os
 import re
+import sys
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from itertools import chain
 from pathlib import Path
 
 from grader.base.errors import GraderError, InputError
+from grader.base.names import did_you_mean
 from grader.base.text import enumerated, printable, printable_path, shell_quoted
 from grader.classroom.run.preloading import PRELOAD
 from grader.files.reading import URDF_LIMIT
 from grader.lab.authoring.draft import Head, RubricDraft, draft
+from grader.lab.authoring.draft_choice import WITHOUT, DraftChoice
 from grader.lab.authoring.facts import Omission, Solution
+from grader.lab.authoring.mutant_kinds import KindScore
 from grader.lab.authoring.mutants import Mutant
 from grader.lab.authoring.rubric_test import MutantOutcome, Trial, mutant_outcomes, run_rubric_test
 from grader.lab.authoring.samples import read_samples
@@ -42,7 +46,38 @@ _MAX_IN_NOTE = 4  # files or criteria
 _GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how long they may take
 
 
-def write_rubric(file: Path, reference: str, warn: Warn, *, force: bool) -> str:
+def draft_choice(
+    without: Iterable[str], free: Iterable[str], *, is_names_only: bool, weights: str
+) -> DraftChoice:
+    """Return what a draft has criteria about. Raises GraderError for a kind that does not exist.
+
+    Args:
+        without: Kinds that are omitted, also several in one text with commas.
+        free: Names that the handout leaves open, likewise.
+        is_names_only: Whether only names are compared.
+        weights: equal, or importance.
+    """
+    kinds = frozenset(_split_texts(without))
+    for kind in sorted(kinds.difference(WITHOUT)):
+        guess = did_you_mean(kind, WITHOUT) or f"; there are: {', '.join(WITHOUT)}"
+        raise GraderError(f"--without takes no {printable(kind)!r}{guess}")
+    return DraftChoice(
+        without=kinds,
+        is_names_only=is_names_only,
+        free=frozenset(_split_texts(free)),
+        has_equal_weights=weights == "equal",
+    )
+
+
+def _split_texts(given: Iterable[str]) -> Iterator[str]:
+    """Yield the words of options, of which several may be in one text, with commas."""
+    for text in given:
+        yield from filter(None, map(str.strip, text.split(",")))
+
+
+def write_rubric(
+    file: Path, reference: str, warn: Warn, choice: DraftChoice, *, force: bool
+) -> str:
     """Write a rubric of a reference's facts; return what it contains, omits, and the next step.
     Raises GraderError.
     """
@@ -51,7 +86,7 @@ def write_rubric(file: Path, reference: str, warn: Warn, *, force: bool) -> str:
         raise GraderError("--from takes a file or folder, which the rubric names as its reference")
     submission = open_with_packages(reference)
     solution = _solution(submission, reference, warn)
-    made = draft(submission, solution, _rubric_head(file, reference, submission), file)
+    made = draft(submission, solution, _rubric_head(file, reference, submission), file, choice)
     if len(made.data) > URDF_LIMIT:
         raise GraderError(
             f"the reference has too many facts for a rubric: {len(made.rubric.criteria)} criteria"
@@ -155,9 +190,17 @@ def _omission_lines(omissions: Iterable[Omission]) -> Iterator[str]:
 
 
 def test_rubric(
-    name: str, folder: Path | None, fail_under: str | None, is_json: bool, terminal: Terminal
+    name: str,
+    folder: Path | None,
+    fail_under: str | None,
+    is_json: bool,
+    terminal: Terminal,
+    *,
+    are_all_graded: bool,
+    seed: int,
 ) -> tuple[str, ExitCode]:
-    """Return the result of testing a rubric, and the exit code.
+    """Return the result of testing a rubric, and the exit code. All mutants are graded, or a sample
+    that the seed draws.
 
     Raises GraderError for a broken rubric or one without a reference.
     """
@@ -168,8 +211,16 @@ def test_rubric(
         terminal.show_class(f"Testing {rubric.id}") as show,
         Processes(processors(), _SECONDS, preload=PRELOAD) as executor,
     ):
-        progress = lambda done, total: show(Progress(total, done))  # noqa: E731
-        result = run_rubric_test(rubric, samples, progress, partial(_graded, executor, rubric))
+
+        def progress(done: int, total: int, scores: Sequence[KindScore]) -> None:
+            kinds = ", ".join(f"{it.kind} {100 * it.caught // it.graded} %" for it in scores)
+            show(Progress(total, done, note=kinds))
+
+        grade_all = partial(_graded, executor, rubric)
+        if are_all_graded:
+            result = run_rubric_test(rubric, samples, progress, grade_all, most=sys.maxsize)
+        else:
+            result = run_rubric_test(rubric, samples, progress, grade_all, seed=seed)
     if is_json:
         text = render_rubric_test_json(result)
     else:

@@ -69,13 +69,16 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
     """Check a rubric; return a summary and the exit code: 1 if criteria cannot be decided on the
     reference solution.
 
-    Raises RubricError if the reference loses points.
+    Raises RubricError, with all mistakes in the file, or if the reference loses points.
     """
     from grader.lab.authoring.rubric_check import likely_mistakes, reference_failures
     from grader.lab.rubric.model_answers import load_with_answers, missing_answers
     from grader.report.explanations import rubric_size
 
-    rubric = load_with_answers(name)
+    try:
+        rubric = load_with_answers(name)
+    except RubricError as error:
+        raise RubricError((*error.complaints, *_lines_on_the_rest(name, warn))) from None
     if missing_answers(rubric) and not rubric.is_shipped:
         warn(missing_answers(rubric))
     for message in likely_mistakes(rubric):
@@ -91,6 +94,29 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
     criteria = counted(failures.undecided, "criterion", "criteria")
     found += f"; its reference does not get full marks: {criteria} cannot be decided on it"
     return "".join(f"{printable(line)}\n" for line in (found, *failures.lines)), ExitCode.FAILED
+
+
+def _lines_on_the_rest(name: str, warn: Warn) -> list[str]:
+    """Return what the reference does not pass of the correct criteria of a rubric that has
+    mistakes, and warn of likely ones.
+    """
+    from grader.files.reading import read_capped
+    from grader.lab.authoring.rubric_check import likely_mistakes, reference_failures
+    from grader.lab.rubric.rubric import find_rubric, read_correct_rows
+
+    path = find_rubric(name)
+    try:
+        rubric = read_correct_rows(read_capped(path, advice=""), path)
+        if rubric is None:
+            return []
+        for message in likely_mistakes(rubric):
+            warn(printable(f"warning: {message}"))
+        if rubric.solution is None:
+            return []
+        failures = reference_failures(rubric)
+        return [*map(printable, failures.lines)] if failures.is_failed else []
+    except GraderError:  # there is no more to say of a file or reference that cannot be read
+        return []
 
 
 def bundle(platform: str, output: Path, name: str) -> str:

@@ -48,6 +48,16 @@ def append_run(book: Gradebook) -> Results | None:
     return Results(book.folder / RESULTS)
 
 
+def rubric_review(gradebook: Path, terminal: Terminal) -> str:
+    """Return what an instructor should look at before grades go out. Raises InputError."""
+    from grader.classroom.gradebook.rubric_review import review_rubric
+    from grader.classroom.reports.rubric_review_text import render_rubric_review
+
+    book = Gradebook(gradebook)
+    warn_of_ignored(book, terminal.warn)
+    return render_rubric_review(review_rubric(book), terminal.screen().width)
+
+
 def class_statistics(
     gradebook: Path, kind: OutputFormat, terminal: Terminal, *, verbose: bool
 ) -> str:

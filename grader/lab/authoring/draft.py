@@ -8,17 +8,19 @@ its heading.
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from itertools import chain, islice
+from itertools import chain, cycle, islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
-from grader.base.text import capitalised, printable
+from grader.base.text import capitalised, cut, printable
+from grader.lab.authoring.draft_choice import DraftChoice
 from grader.lab.authoring.element_facts import element_facts
 from grader.lab.authoring.facts import CarriedFact, Fact, Omission, Solution, robot_facts
 from grader.lab.authoring.package_facts import (
     measure_facts,
     name_facts,
+    naming_facts,
     package_facts,
     value_facts,
     words_of_launches,
@@ -45,6 +47,7 @@ _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
     "centre_at": _METRES,
     **dict.fromkeys(("joint_limits", "joint_axis"), _DEGREES),
     "mass_is": ({"tolerance": 0.001}, "kilograms"),
+    "entry_is": ({"tolerance": 0.001}, "in the number's own unit"),
     "inertia_plausible": ({"tolerance": 2.0}, "percent"),
     "collision_matches_visual": _METRES,
     "collides_as": ({"tolerance": 0.002}, "metres; rpy is in radians"),
@@ -54,19 +57,38 @@ _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
     ),
 }
 _ROBOT, _PACKAGE = "robot", "package"
-_OF_ROBOT, _OF_PACKAGE = 70, 30  # points
+_NAMES = "names"
+_WHOLE, _OF_ROBOT, _OF_NAMES = 100, 70, 50  # points
+# Families of names that only nodes, controllers and simulators have: there the work is not the
+# robot.
+_WIRED = ("controllers", "topics", "services", "interfaces", "code", "transforms")
 # Checks of what matters most, and of what matters less, or others are about as well.
-_HEAVY = ("frame_at", "joint_axis", "mimics", "names_agree", "node_runs", "parameter_is")
+_HEAVY = (
+    "frame_at",
+    "joint_axis",
+    "joint_limits",
+    "mimics",
+    "names_agree",
+    "node_runs",
+    "parameter_is",
+)
 _LIGHT = (
     "shows_colour",
+    "mass_is",
+    "inertia_plausible",
+    "collision_matches_visual",
+    "collides_as",
+    "joint_dynamics",
     "kinematics_match_reference",
     "package_found",
     "package_type",
     "rviz_display_on",
 )
+_EVERYTHING = DraftChoice()
 _MAX_COMMENT = 10_000  # columns
 _MAX_VALUES = 40  # of a node, that are written as comments
 _MAX_ID = 60
+_MAX_TITLE = 100
 
 
 _Subjects = Mapping[str, Any]  # what checks examine, by the names of their parameters
@@ -107,24 +129,19 @@ class RubricDraft(NamedTuple):
     omissions: tuple[Omission, ...]
 
 
-def draft(submission: Submission, solution: Solution | None, head: Head, path: Path) -> RubricDraft:
+def draft(
+    submission: Submission,
+    solution: Solution | None,
+    head: Head,
+    path: Path,
+    choice: DraftChoice = _EVERYTHING,
+) -> RubricDraft:
     """Return a rubric for a file at `path` with a criterion for each fact that a check can test.
 
     Other values of parameters are in it as comments. Without a robot it has no `solution`. Raises
     InputError.
     """
-    started = [*words_of_launches(submission)]
-    of_robot: Iterable[Fact | Omission] = ()
-    if solution is not None:
-        of_robot = chain(robot_facts(solution), element_facts(solution, started))
-    measured = measure_facts(solution) if solution is not None else ()
-    of_packages = chain(package_facts(submission), name_facts(submission), measured)
-    found = list(islice(chain(of_robot, of_packages), _MAX_FACTS + 1))
-    if len(found) > _MAX_FACTS:
-        raise InputError(
-            f"the reference has more than {_MAX_FACTS} facts, which is too long for a "
-            "rubric: name a smaller one"
-        )
+    found = _chosen_facts(submission, solution, choice)
     subjects: dict[str, Any] = {"submission": submission}
     if solution is not None:
         subjects |= {"urdf": solution.reading, "robot": solution.robot, "reference": solution.robot}
@@ -138,12 +155,39 @@ def draft(submission: Submission, solution: Solution | None, head: Head, path: P
             arguments = toml_literal([row.fact.args, row.fact.arguments])
             rows_by_fact[row.fact.check, row.fact.package, arguments] = row
     rows = [*rows_by_fact.values()]
-    if submission.packages:
+    values: Mapping[str, list[_DraftCriterion]] = {}
+    if submission.packages and not choice.is_names_only:
         values = _values(subjects, submission, {row.fact.words for row in rows})
-    else:
-        values = {}
-    data = _rubric_text(head, rows, values).encode()
+    data = _rubric_text(head, rows, values, choice).encode()
     return RubricDraft(data, read_rubric(data, path), tuple(omissions))
+
+
+def _chosen_facts(
+    submission: Submission, solution: Solution | None, choice: DraftChoice
+) -> list[Fact | Omission]:
+    """Return the facts of a reference that are chosen, without the names that are free. Raises
+    InputError for too many.
+    """
+    started = [*words_of_launches(submission)]
+    of_robot: Iterable[Fact | Omission] = ()
+    measured: Iterable[Fact] = ()
+    if solution is not None:
+        of_robot = chain(robot_facts(solution), element_facts(solution, started))
+        measured = chain(measure_facts(solution), naming_facts(solution))
+    of_packages = chain(package_facts(submission), name_facts(submission), measured)
+    chosen: list[Fact | Omission] = []
+    robot = solution.robot if solution is not None else None
+    for fact in islice(chain(of_robot, of_packages), _MAX_FACTS + 1):
+        if isinstance(fact, Omission):
+            chosen.append(fact)
+        elif choice.takes(fact) and (freed := choice.freed(fact, robot)) is not None:
+            chosen.append(freed)
+    if len(chosen) > _MAX_FACTS:
+        raise InputError(
+            f"the reference has more than {_MAX_FACTS} facts, which is too long for a "
+            "rubric: name a smaller one"
+        )
+    return chosen
 
 
 def _values(
@@ -176,9 +220,8 @@ def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
             continue
         if outcome.status == "passed":
             carried = tuple(it for it in one.carried if _holds(subjects, one, it))
-            return _DraftCriterion(
-                one._replace(carried=carried), capitalised(one.title or outcome.message)
-            )
+            title = cut(one.title or outcome.message, _MAX_TITLE)
+            return _DraftCriterion(one._replace(carried=carried), capitalised(title))
         reasons.append(outcome.mistake if outcome.status == "pending" else outcome.message)
     return Omission(fact.words, reasons[0])
 
@@ -218,12 +261,15 @@ def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
 
 
 def _rubric_text(
-    head: Head, rows: Sequence[_DraftCriterion], values: Mapping[str, Sequence[_DraftCriterion]]
+    head: Head,
+    rows: Sequence[_DraftCriterion],
+    values: Mapping[str, Sequence[_DraftCriterion]],
+    choice: DraftChoice,
 ) -> str:
     """Return a rubric with a criterion for each row; those with one heading follow each other."""
     of_robot = [row for row in rows if not row.is_of_package]
     of_package = [row for row in rows if row.is_of_package]
-    points = _points(of_robot, of_package)
+    points = _points(of_robot, of_package, choice)
     checks: set[str] = set()
     for row in rows:
         checks.add(row.fact.check)
@@ -252,27 +298,79 @@ def _rubric_text(
 
 
 def _points(
-    of_robot: Sequence[_DraftCriterion], of_package: Sequence[_DraftCriterion]
+    of_robot: Sequence[_DraftCriterion],
+    of_package: Sequence[_DraftCriterion],
+    choice: DraftChoice,
 ) -> list[int]:
-    """Return the points of criteria, whole numbers: those of the robot share 70 of 100, or of a
-    multiple of it.
+    """Return the points of criteria, whole numbers, first of those of the robot.
+
+    A robot without a package has the weights of its criteria. All else shares 100 points, or a
+    multiple of them: names half, where the lab's work is not the robot.
     """
-    if not (of_robot and of_package):
-        return [1] * (len(of_robot) + len(of_package))
-    multiple = max(-(-len(of_robot) // _OF_ROBOT), -(-len(of_package) // _OF_PACKAGE))
-    return [*_shared(_OF_ROBOT * multiple, of_robot), *_shared(_OF_PACKAGE * multiple, of_package)]
+    weights = [_weight(row, choice) for row in (*of_robot, *of_package)]
+    if not of_package or (choice.has_equal_weights and not of_robot):
+        return weights
+    families = [row for row in of_package if row.fact.check == "names_agree"]
+    wired = {row.fact.arguments["of"] for row in families}.intersection(_WIRED)
+    if choice.has_equal_weights or (of_robot and not wired):
+        shares = {_ROBOT: _OF_ROBOT, _PACKAGE: _WHOLE - _OF_ROBOT}
+        groups = [_ROBOT] * len(of_robot) + [_PACKAGE] * len(of_package)
+    else:
+        rest = _WHOLE - _OF_NAMES
+        of_rest = round(rest * _OF_ROBOT / _WHOLE) if of_robot else 0
+        shares = {_ROBOT: of_rest, _PACKAGE: rest - of_rest, _NAMES: _OF_NAMES}
+        groups = [_ROBOT] * len(of_robot)
+        groups += [_NAMES if row in families else _PACKAGE for row in of_package]
+    if not of_robot:
+        shares[_PACKAGE] += shares.pop(_ROBOT)
+    if _NAMES in shares and not families:
+        shares[_PACKAGE] += shares.pop(_NAMES)
+    elif _NAMES in shares and len(families) == len(of_package):
+        shares[_NAMES] += shares.pop(_PACKAGE)
+    return _shared(shares, groups, weights)
 
 
-def _shared(points: int, rows: Sequence[_DraftCriterion]) -> list[int]:
-    """Return points in equal shares; where these are no whole numbers, what matters most gets
-    more.
+def _weight(row: _DraftCriterion, choice: DraftChoice) -> int:
+    """Return how much a criterion counts beside others."""
+    if choice.has_equal_weights:
+        return 1
+    if row.fact.check in _HEAVY:
+        return 3
+    return 1 if row.fact.check in _LIGHT else 2
+
+
+def _shared(shares: Mapping[str, int], groups: Sequence[str], weights: Sequence[int]) -> list[int]:
+    """Return the points of criteria by their weights: those of each group have its share of 100
+    points, or of the least multiple that leaves each criterion one.
     """
-    share, more = divmod(points, len(rows))
-    checks = [row.fact.check for row in rows]
-    order = sorted(
-        range(len(rows)), key=lambda it: (checks[it] not in _HEAVY, checks[it] in _LIGHT)
-    )
-    return [share + (index in order[:more]) for index in range(len(rows))]
+    counts = Counter(groups)
+    multiple = max(-(-counts[group] // share) for group, share in shares.items())
+    points = [0] * len(groups)
+    for group, share in shares.items():
+        places = [place for place, name in enumerate(groups) if name == group]
+        shared = _apportioned(share * multiple, [weights[place] for place in places])
+        for place, number in zip(places, shared, strict=True):
+            points[place] = number
+    return points
+
+
+def _apportioned(points: int, weights: Sequence[int]) -> list[int]:
+    """Return whole points by weights, at least one for each; the rest goes to the largest
+    remainders, of equal ones to the first.
+    """
+    total = sum(weights)
+    exact = [points * weight / total for weight in weights]
+    shares = [max(1, int(number)) for number in exact]
+    order = sorted(range(len(weights)), key=lambda at: shares[at] - exact[at])
+    for at in cycle(order):
+        left = points - sum(shares)
+        if left == 0:
+            break
+        if left > 0:
+            shares[at] += 1
+        elif shares[at] > 1:
+            shares[at] -= 1
+    return shares
 
 
 def _value_lines(

@@ -6,25 +6,39 @@ from collections.abc import Collection, Iterator, Mapping
 from math import isfinite
 from typing import Any
 
+from grader.base.text import enumerated
 from grader.lab.authoring.facts import CarriedFact, Fact, Facts, Omission, Solution, are_joints_free
 from grader.ros.build.places import is_of_one_machine
 from grader.ros.package.robot_file import Read, read_as_ros
-from grader.ros.package.trees import is_path
+from grader.ros.package.trees import is_path, steps_of
 from grader.ros.python.budget import Budget
 from grader.ros.urdf.link_tree import JOINT_OF
 from grader.ros.workspace.controllers import needed_interfaces
 from grader.ros.workspace.reading import read_agreement
-from grader.ros.xml.elements import attributes_of, foreign_elements, name_of, readable, text_in
+from grader.ros.xml.elements import (
+    attributes_of,
+    foreign_elements,
+    name_of,
+    readable,
+    text_in,
+    xml_text,
+)
 from grader.ros.xml.parsing import Element
 
 _MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-_CONDITION = re.compile(r"\[@[^=]+='([^']*)'\]")
-_REFERENCE = re.compile(r"\[@reference='([^']*)'\]")
+_CONDITION = re.compile(r"\[[^\]=]*@[^=]+='([^']*)'\]")
+_REFERENCE = re.compile(r"\[(@reference|joint/@name)='([^']*)'\]")
 _JOINT_KEY = re.compile(r"(?:^|[/_])joints?$|joint_names?$|(?:^|/)joint/@name$")
 _TRUTH = {"true": True, "false": False}
+_FILE = re.compile(r"/[\w.-]+\.(ya?ml|xml|xacro|urdf|sdf|srdf|world|rviz|config)$")
+_SMALL = 0.05  # below it, the usual tolerance of numbers is too large
+_SHARE = 0.01  # of a small number: its tolerance
+_MAX_TITLE = 100  # characters
+_SUBJECTS = ("@reference", "@name", "joint/@name")
 _INTERFACE = "command_interface/@name"
 _NAMED_BY = ("reference", "name", "filename", "type")
+_NAMED_FREELY = ("ros2_control", "transmission")
 _OF_ARGUMENTS = ("urdf_loads", "files names_agree", "arguments names_agree")
 _Values = dict[str, Any]
 
@@ -44,12 +58,17 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
         if joint.name not in links and "'" not in joint.child:
             selectors[joint.name] = f"{JOINT_OF}{joint.child}"
     joints.update(selectors.values())
-    are_compared = read_agreement(solution.submission.workspace).holds("topics")
+    found = read_agreement(solution.submission.workspace)
 
     def asked(it: Fact | Omission) -> Fact | Omission:
         if isinstance(it, Omission):
             return it
-        return _by_links(_without_topics(it) if are_compared else it, selectors)
+        if found.holds("topics"):
+            it = _without_topics(it)
+        if found.holds("files"):
+            it = _without_files(it)
+        it = _by_links(it, selectors)
+        return it._replace(title=_title(it))
 
     without_launch = _root_without_launch_files(solution)
     without = None if without_launch is None else [*map(asked, _entries(without_launch, covered))]
@@ -79,13 +98,25 @@ def _without_topics(fact: Fact) -> Fact:
     return fact._replace(arguments=_entry(fact.arguments["at"], values))
 
 
+def _without_files(fact: Fact) -> Fact:
+    """Return a fact without the paths of files, whose names are free: a build has to install
+    them.
+    """
+    values = {
+        path: value
+        for path, value in fact.arguments.get("values", {}).items()
+        if not (isinstance(value, str) and _FILE.search(value))
+    }
+    return fact._replace(arguments=_entry(fact.arguments["at"], values))
+
+
 def _by_links(fact: Fact, selectors: Mapping[str, str]) -> Fact:
     """Return a fact with joints named by the links that they hold; `selectors` has these by the
     names of joints.
     """
     at, values = fact.arguments["at"], fact.arguments.get("values", {})
     is_joint, is_of_system = at.endswith("/joint"), at.startswith("ros2_control")
-    at = _REFERENCE.sub(lambda found: f"[@reference='{selectors.get(found[1], found[1])}']", at)
+    at = _REFERENCE.sub(lambda it: f"[{it[1]}='{selectors.get(it[2], it[2])}']", at)
 
     def named(key: str, value: Any) -> Any:
         if not (is_of_system or _JOINT_KEY.search(key) or (is_joint and key == "@name")):
@@ -155,8 +186,66 @@ def _names_any(value: Any, names: Collection[str]) -> bool:
 
 
 def _entry(at: str, values: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the arguments of entry_is."""
-    return {"at": at, **({"values": values} if values else {})}
+    """Return the arguments of entry_is, with a tolerance for numbers that are small."""
+    if not values:
+        return {"at": at}
+    numbers = []
+    for value in values.values():
+        items = value if isinstance(value, list) else [value]
+        numbers += [abs(item) for item in items if isinstance(item, float) and item]
+    least = min(numbers, default=_SMALL)
+    if least < _SMALL:
+        return {"at": at, "values": values, "tolerance": float(f"{least * _SHARE:.1g}")}
+    return {"at": at, "values": values}
+
+
+def _title(fact: Fact) -> str:
+    """Return what a criterion asks of an element, in a sentence that names its joint or link."""
+    steps = steps_of(fact.arguments["at"], is_xml=True)
+    values = dict(fact.arguments.get("values", {}))
+    outer = f"<{steps[0].name}>"
+    subjects = [value for key, value in steps[0].conditions if key in _SUBJECTS]
+    if subjects:
+        outer += f" of {_subject_text(subjects[0])}"
+    inner = f"<{steps[-1].name}>"
+    if "@name" in values and steps[-1].name == "joint":
+        inner = _joint_text(str(values.pop("@name")))
+    elif "@name" in values:
+        inner += f" {values.pop('@name')!r}"
+    details = [f"{_key_text(key)} {_value_words(value)}" for key, value in values.items()]
+    start = f"in {outer}, {inner}" if len(steps) > 1 else outer
+    if not details:
+        return f"there is {inner} in {outer}" if len(steps) > 1 else f"there is {outer}"
+    for most in range(len(details), 0, -1):
+        title = f"{start} has {enumerated(details, most)}"
+        if len(title) <= _MAX_TITLE:
+            return title
+    return f"{start} is as in the reference"
+
+
+def _joint_text(name: str) -> str:
+    if name.startswith(JOINT_OF):
+        return f"the joint of {name.removeprefix(JOINT_OF)!r}"
+    return f"the joint {name!r}"
+
+
+def _subject_text(name: str) -> str:
+    if name.startswith(JOINT_OF):
+        return f"the joint of {name.removeprefix(JOINT_OF)!r}"
+    return repr(name)
+
+
+def _key_text(key: str) -> str:
+    """Return the path of a value in words: command interface for command_interface/@name."""
+    words = key.replace("/@name", "").replace("@", "").replace("/", " ").replace("_", " ")
+    return " ".join(words.split())
+
+
+def _value_words(value: Any) -> str:
+    if isinstance(value, list):
+        return enumerated([*map(_value_words, value)])
+    text = xml_text(value)
+    return _subject_text(text) if text.startswith(JOINT_OF) else text
 
 
 def _entries(root: Element, covered: Collection[str]) -> Facts:
@@ -170,15 +259,40 @@ def _entries(root: Element, covered: Collection[str]) -> Facts:
                 _label(element), f"it has more than {_MAX_VALUES} elements and attributes"
             )
             continue
-        conditions = "".join(f"[@{key}='{value}']" for key, value in attributes_of(element))
+        conditions = _conditions(element)
         for label, path, values in _element_values(element):
             at = f"{name_of(element)}{conditions}{f'/{path}' if path else ''}"
+            _drop_free(values, name_of(element))
             if (name_of(element), path) == ("ros2_control", "joint"):
                 _drop_covered(values, covered)
             if is_path(at):
                 yield Fact(about, "entry_is", _entry(at, values), label)
             else:
                 yield Omission(label, "a path cannot name it")
+
+
+def _conditions(element: Element) -> str:
+    """Return what tells an element from others like it, as conditions of a path.
+
+    The names of <ros2_control> and <transmission> are free: a transmission is that of its joint.
+    """
+    tag = name_of(element)
+    given = [(key, value) for key, value in attributes_of(element)]
+    if tag in _NAMED_FREELY:
+        given = [(key, value) for key, value in given if key != "name"]
+    texts = [f"[@{key}='{value}']" for key, value in given]
+    joints = element.findall("joint") if tag == "transmission" else []
+    if len(joints) == 1 and joints[0].get("name"):
+        texts.append(f"[joint/@name='{joints[0].get('name')}']")
+    return "".join(texts)
+
+
+def _drop_free(values: _Values, tag: str) -> None:
+    """Remove the names of actuators, which nothing refers to."""
+    if tag == "transmission":
+        values.pop("@name", None)
+        for key in [key for key in values if key.endswith("actuator/@name")]:
+            del values[key]
 
 
 def _drop_covered(values: _Values, covered: Collection[str]) -> None:
@@ -256,8 +370,7 @@ def _children(element: Element) -> list[Element]:
 
 
 def _label(element: Element) -> str:
-    """Return the tag and the name of an element."""
-    return (
-        f"{name_of(element)} "
-        f"{next((str(element.get(key)) for key in _NAMED_BY if element.get(key)), '')}"
-    )
+    """Return the tag and the name of an element, if that is not free."""
+    tag = name_of(element)
+    keys = () if tag in _NAMED_FREELY else _NAMED_BY
+    return f"{tag} {next((str(element.get(key)) for key in keys if element.get(key)), '')}"

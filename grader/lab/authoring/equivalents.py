@@ -14,6 +14,7 @@ from lxml import etree
 from grader.base.transforms import Transform, rotation_from_rpy, unit
 from grader.lab.authoring.trees import (
     XACRO,
+    attribute_text,
     copied,
     end,
     move_frame,
@@ -170,6 +171,32 @@ def _rename(tree: Element, rules: RewritingRules, tag: str) -> bool:
     return bool(chosen)
 
 
+def _turn_mimic_joints(tree: Element, rules: RewritingRules) -> bool:
+    """Turn the axes of joints that follow others, and their numbers: they move as before.
+
+    Wheels stay, and joints that something outside of the file refers to, or that others follow.
+    """
+    followed = {mimic.get("joint") for mimic in own_elements(tree, "mimic")}
+    turned = False
+    for joint in tree.iterchildren("joint"):
+        mimic, axis = joint.find("mimic"), joint.find("axis")
+        name = joint.get("name", "")
+        is_free = name not in rules.named and name not in followed
+        if mimic is None or not is_free or joint.get("type") not in ("revolute", "prismatic"):
+            continue
+        if axis is None:
+            axis = etree.SubElement(joint, "axis")
+        axis.set("xyz", attribute_text(-value for value in vector_of(axis, "xyz", "1 0 0")))
+        for key, default in (("multiplier", "1"), ("offset", "0")):
+            mimic.set(key, attribute_text([-float(mimic.get(key, default))]))
+        for limit in joint.iterchildren("limit"):
+            ends = [-float(limit.get(key, "0")) for key in ("upper", "lower")]
+            for key, value in zip(("lower", "upper"), ends, strict=True):
+                limit.set(key, attribute_text([value]))
+        turned = True
+    return turned
+
+
 def _change_layout(tree: Element, _: RewritingRules) -> bool:
     """Reverse the order of attributes, and add comments; `text_of` changes the white space."""
     for index, element in enumerate([*own_elements(tree, "*")]):
@@ -231,6 +258,7 @@ _ALL = (
     _move_frames,
     _rename_links,
     _rename_joints,
+    _turn_mimic_joints,
     _change_layout,
     _use_properties,
     _use_macro,

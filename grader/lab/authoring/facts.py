@@ -11,14 +11,24 @@ from math import degrees, isfinite
 from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.text import enumerated
+from grader.base.text import counted, enumerated
 from grader.base.transforms import rotation_from_rpy
 from grader.lab.checks.outcome import point
 from grader.lab.checks.visuals import MAX_SHAPES
 from grader.lab.submission.submission import Submission
 from grader.ros.package.mesh_files import mesh_file
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Box, Collision, Cylinder, Joint, Link, Mesh, Sphere, Visual
+from grader.ros.urdf.model import (
+    Box,
+    Collision,
+    Cylinder,
+    Joint,
+    Link,
+    Mesh,
+    Mimic,
+    Sphere,
+    Visual,
+)
 from grader.ros.urdf.reader import Reading
 from grader.ros.workspace.reading import read_agreement
 from grader.ros.xml.elements import words_of_foreign
@@ -32,6 +42,7 @@ _MASS_TOLERANCE = 0.001  # kg; of a small mass, a share of it
 _MASS_SHARE = 0.01
 _LOOSE_INERTIA = 5.0  # percent, for a solution with rounded numbers
 _MAX_TIPS = 20
+_MAX_TIPS_IN_TITLE = 2
 
 
 class Solution(NamedTuple):
@@ -144,7 +155,7 @@ def _visual_facts(link: Link) -> Facts:
                 )
             if not is_mesh:
                 xyz = _rounded(visual.origin.xyz)
-                yield _link_fact(
+                centre = _link_fact(
                     link.name,
                     "centre_at",
                     **selected,
@@ -152,9 +163,20 @@ def _visual_facts(link: Link) -> Facts:
                     xyz=xyz,
                     **_axis(visual),
                 )
+                yield centre._replace(title=_centre_title(link.name, visual, centre))
     for kind in (kind for kind, number in kinds.items() if number > 1):
         reason = "a check examines one shape of a kind"
         yield Omission(f"place and colour of each {kind.__name__.lower()} of {link.name}", reason)
+
+
+def _centre_title(link: str, visual: Visual, centre: Fact) -> str:
+    """Return where the centre of a shape is, and along what its axis lies if it is a cylinder."""
+    xyz, shape = centre.arguments["xyz"], type(visual.geometry).__name__.lower()
+    where = f"at {point((*xyz,))} m in its frame" if any(xyz) else "in its frame"
+    along = ""
+    if "axis" in centre.arguments:
+        along = f" and lies along {point((*centre.arguments['axis'],))}"
+    return f"the {shape} of {link!r} is centred {where}{along}"
 
 
 def _size(link: str, visual: Visual) -> Fact:
@@ -214,7 +236,9 @@ def _body_facts(link: Link) -> Facts:
             for it in shapes
             if only and it.check == "collides_as"
         ]
-        match = _link_fact(link.name, "collision_matches_visual")
+        shown = "shape" if len(shapes) == 1 else "shapes"
+        title = f"{link.name!r} collides with the {shown} that it shows"
+        match = _link_fact(link.name, "collision_matches_visual")._replace(title=title)
         yield match._replace(otherwise=shapes if only else (), carried=tuple(known))
 
 
@@ -229,7 +253,22 @@ def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Fac
         case _:
             return _link_fact(link, "collision_matches_visual")
     xyz, rpy = _rounded(collision.origin.xyz), _rounded(collision.origin.rpy, 4)
-    return _link_fact(link, "collides_as", **shape, xyz=xyz, rpy=rpy, **only)
+    rotated = ", rotated" if any(rpy) else ""
+    title = f"{link!r} collides as {_shape_text(collision)} at {point((*xyz,))} m{rotated}"
+    fact = _link_fact(link, "collides_as", **shape, xyz=xyz, rpy=rpy, **only)
+    return fact._replace(title=title)
+
+
+def _shape_text(collision: Collision) -> str:
+    """Return the shape of a collision with its size."""
+    match collision.geometry:
+        case Box(size=(x, y, z)):
+            return f"a box of {x:g} x {y:g} x {z:g} m"
+        case Cylinder(radius=radius, length=length):
+            return f"a cylinder of radius {radius:g} and length {length:g} m"
+        case Sphere(radius=radius):
+            return f"a sphere of radius {radius:g} m"
+    return "a mesh"
 
 
 def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
@@ -254,33 +293,60 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
         (f"{link} held_by",), "frame_at", frame.arguments
     )  # a joint of another type has no such range
     if joint.limit is not None and joint.type in ("revolute", "prismatic"):
-        yield _range_fact(joint)._replace(carried=(of_type,))
+        limits = _range_fact(joint)
+        if joint.mimic is not None:
+            opposite = _rounded(pose.rotate(robot.axis(joint)), 2)
+            directed = {**limits.arguments, "relative_to": parent, "direction": opposite}
+            limits = limits._replace(arguments=directed)
+        yield limits._replace(carried=(of_type,))
     if joint.dynamics is not None and joint.type != "fixed":
         friction, damping = joint.dynamics.friction, joint.dynamics.damping
         title = f"the joint that moves {link!r} has friction {friction:g} and damping {damping:g}"
         yield _link_fact(link, "joint_dynamics", friction=friction, damping=damping)._replace(
             title=title
         )
-    mimic = joint.mimic
-    if mimic is not None and joint.type != "fixed" and robot.robot.has_joint(mimic.joint):
-        leader = robot.joint(mimic.joint).child
-        yield _link_fact(
-            link, "mimics", leader=leader, multiplier=mimic.multiplier, offset=mimic.offset
-        )
-    if joint.type in _WITH_AXIS:
-        own = robot.axis(joint)
-        direction = _rounded(pose.rotate(own), 2)
-        title = (
-            f"the axis of the joint that moves {link!r} points along {point((*direction,))} in "
-            f"{parent!r}"
-        )
-        axis = _link_fact(link, "joint_axis", relative_to=parent, direction=direction)._replace(
-            title=title
-        )
-        in_own_frame = {"link": link, "relative_to": link, "direction": _rounded(own, 2)}
-        yield axis._replace(
-            carried=(CarriedFact((f"{link} frame_at",), "joint_axis", in_own_frame),)
-        )
+    if joint.type not in _WITH_AXIS:
+        return
+    own = robot.axis(joint)
+    direction = _rounded(pose.rotate(own), 2)
+    follows = joint.mimic is not None and robot.robot.has_joint(joint.mimic.joint)
+    if joint.mimic is not None and follows:
+        yield _mimic_fact(robot, joint, joint.mimic, direction)
+    lies = "is parallel to" if follows else "points along"
+    title = f"the axis of the joint that moves {link!r} {lies} {point((*direction,))} in {parent!r}"
+    either_way = {"either_way": True} if follows else {}
+    axis = _link_fact(
+        link, "joint_axis", relative_to=parent, direction=direction, **either_way
+    )._replace(title=title)
+    in_own_frame = {
+        "link": link,
+        "relative_to": link,
+        "direction": _rounded(own, 2),
+        **either_way,
+    }
+    yield axis._replace(carried=(CarriedFact((f"{link} frame_at",), "joint_axis", in_own_frame),))
+
+
+def _mimic_fact(
+    robot: Configuration, joint: Joint, mimic: Mimic, direction: Sequence[float]
+) -> Fact:
+    """Return how a joint follows another one: by its motion, as the opposite axis with the opposite
+    multiplier is the same.
+    """
+    link, leader = joint.child, robot.joint(mimic.joint).child
+    moves = f"the joint that moves {link!r} follows the one that moves {leader!r}"
+    times = "" if mimic.multiplier == 1 else f", {mimic.multiplier:g} times"
+    plus = "" if mimic.offset == 0 else f", plus {mimic.offset:g}"
+    fact = _link_fact(
+        link,
+        "mimics",
+        leader=leader,
+        multiplier=mimic.multiplier,
+        offset=mimic.offset,
+        relative_to=joint.parent,
+        direction=[*direction],
+    )
+    return fact._replace(title=f"{moves}{times}{plus}")
 
 
 def _range_fact(joint: Joint) -> Fact:
@@ -319,15 +385,34 @@ def _tree_facts(solution: Solution) -> Iterator[Fact]:
     numbers = {"moving": sum(joint.mimic is None for joint in moving)}
     for joint_type in _COUNTED:
         numbers[joint_type] = types[joint_type]
-    yield _robot_fact("counts", **numbers)._replace(carried=(if_types_differ,))
+    counts = _robot_fact("counts", **numbers)
+    yield counts._replace(title=_joints_in_words(moving), carried=(if_types_differ,))
     tips = _moving_tips(robot)[:_MAX_TIPS]
     if tips:
         verb = "moves" if len(tips) == 1 else "move"
-        title = f"{enumerated([repr(tip) for tip in tips])} {verb} as in the reference solution"
+        names = enumerated([repr(tip) for tip in tips], _MAX_TIPS_IN_TITLE)
+        title = f"{names} {verb} as in the reference solution"
         about_poses = _words_of_joints(joints, "frame_at", "joint_axis", "mimics")
         if_poses_differ = CarriedFact(about_poses, "counts", numbers)
         motion = _robot_fact("kinematics_match_reference", links=tips, match="order")
         yield motion._replace(title=title, carried=(if_poses_differ, if_types_differ))
+
+
+def _joints_in_words(moving: Sequence[Joint]) -> str:
+    """Return how many joints move, of which types, and how many of these follow another joint."""
+    if not moving:
+        return "no joint moves"
+    leaders = Counter(joint.type for joint in moving if joint.mimic is None)
+    followers = Counter(joint.type for joint in moving if joint.mimic is not None)
+    if len(leaders) == 1 and not followers:
+        [(joint_type, count)] = leaders.items()
+        verb = "moves" if count == 1 else "move"
+        return f"{counted(count, f'{joint_type} joint')} {verb}, and no other joint does"
+    kinds = [f"{count} {joint_type}" for joint_type, count in leaders.items()]
+    for joint_type, count in followers.items():
+        verb = "follows" if count == 1 else "follow"
+        kinds.append(f"{count} {joint_type} that {verb} another joint")
+    return f"the robot has {counted(len(moving), 'moving joint')}: {enumerated(kinds)}"
 
 
 def _words_of_joints(joints: Iterable[Joint], *checks: str) -> tuple[str, ...]:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator
 
 from grader.base.source import Edit, Source
-from grader.lab.authoring.mutants import MAX_LABEL, MutantEdit, misspelt
+from grader.lab.authoring.mutants import MAX_LABEL, MutantEdit, misspelt, mutants
 from grader.lab.hints.name_edits import correction_edits
 from grader.lab.submission.submission import Submission
 from grader.ros.config.yaml_nodes import YamlNode, yaml_root
@@ -18,6 +18,10 @@ _YAML = (".yaml", ".yml")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 _INSTALL = re.compile(r"(?im)^[ \t]*install[ \t]*\([^()]*\)")
 _DEPENDENCY = re.compile(r"<((?:build_|build_export_|exec_)?depend)\b[^>]*>\s*([\w-]+)\s*</\1>")
+_WORLDS = (".sdf", ".world")
+_OF_WORLDS = ("plugin", "sensor", "topic")
+_WORLD_FAMILIES = ("element deleted", "text misspelt", "attribute deleted")
+_DIRECTIONS = {"GZ_TO_ROS": "ROS_TO_GZ", "ROS_TO_GZ": "GZ_TO_ROS"}
 _REVERSED = {"true": "false", "false": "true", "True": "False", "False": "True"}
 
 
@@ -52,6 +56,8 @@ def name_changes(
             )
     elif name.endswith(_YAML):
         yield from _yaml_changes(source, label)
+    elif name.endswith(_WORLDS) and "topics" in families:
+        yield from _world_changes(source, label)
     for fact, edit in names:
         if edit.path == source.path:
             start = source.offset(edit.line, edit.column)
@@ -59,9 +65,47 @@ def name_changes(
             yield MutantEdit(family, f"{label} {edit.old}", start, start + len(edit.old), edit.new)
 
 
+def _world_changes(source: Source, label: str) -> Iterator[MutantEdit]:
+    """Yield that a system or sensor of a world is missing, or another one."""
+    for mutant in mutants(source.text):
+        place = mutant.id.partition(": ")[2]
+        element = place.rpartition("/")[2].partition(" ")[0]
+        if element in _OF_WORLDS and mutant.family in _WORLD_FAMILIES:
+            family = f"world {mutant.family}"
+            yield MutantEdit(family, f"{label} {place}", mutant.start, mutant.end, mutant.new)
+
+
+def _bridge_changes(source: Source, label: str, root: YamlNode) -> Iterator[MutantEdit]:
+    """Yield that a row of a bridge is missing, or has the other direction."""
+    rows = [row for row in root.items if isinstance(row.value, dict) and row.value]
+    starts = [_start_of_item(source, row) for row in rows]
+    if not rows:
+        return
+    for row, start, end in zip(rows, starts, [*starts[1:], len(source.text)], strict=True):
+        topic = row.get("ros_topic_name") or row.get("topic_name")
+        if topic is None or not topic.text:
+            continue
+        place = f"{label} {topic.text}"
+        if start is not None and end is not None:
+            yield MutantEdit("bridge row removed", place, start, end, "")
+        direction = row.get("direction")
+        if direction is not None and direction.text in _DIRECTIONS:
+            other = _DIRECTIONS[direction.text]
+            yield MutantEdit("bridge direction reversed", place, *direction.span, other)
+
+
+def _start_of_item(source: Source, row: YamlNode) -> int | None:
+    """Return the offset of the dash before a table in a list; None if it is written in braces."""
+    at = row.key_location(str(next(iter(row.value))))
+    first = source.offset(at.line, at.column)
+    dash = source.text.rfind("-", 0, first)
+    return dash if dash >= 0 and not source.text[dash + 1 : first].strip() else None
+
+
 def _yaml_changes(source: Source, label: str) -> Iterator[MutantEdit]:
     root = yaml_root(source)
     if root is not None:
+        yield from _bridge_changes(source, label, root)
         yield from _node_changes(source, f"{label} ", root, set())
 
 
@@ -101,5 +145,8 @@ def _scalar_changes(source: Source, label: str, node: YamlNode) -> Iterator[Muta
         larger = f"{float(text) * 10:.12g}"
         is_short = not text.lstrip("+-").isdigit() and larger.lstrip("-").isdigit()
         yield MutantEdit("number x10", label, start, end, f"{larger}.0" if is_short else larger)
+        if is_short:
+            whole = str(round(float(text)))
+            yield MutantEdit("value type changed", label, start, end, whole)
     elif text:
         yield MutantEdit("text misspelt", label, start, end, misspelt(source.text[start:end]))

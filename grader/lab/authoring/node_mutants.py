@@ -1,4 +1,4 @@
-"""Mutants of the code of nodes, and of messages, services and actions."""
+"""Mutants of the code of nodes in Python and C++, and of messages, services and actions."""
 
 import ast
 import re
@@ -7,12 +7,26 @@ from collections.abc import Collection, Iterator
 from grader.base.source import Location, Source
 from grader.lab.authoring.mutants import MAX_LABEL, MutantEdit, misspelt
 from grader.lab.submission.submission import Submission
+from grader.ros.package.package import CMAKE
 from grader.ros.python.python_file import PythonFile
 from grader.ros.workspace.names import Family
 
 _INTERFACES = (".msg", ".srv", ".action")
 _FIELD = re.compile(r"(?m)^[\w/<=\[\]]+[ \t]+([a-z]\w*)[ \t]*(?=$|#| )")
 _SEPARATOR = re.compile(r"(?m)^---$\n?")
+_TYPE = re.compile(
+    r"(?m)^((?:bool|byte|char|string|u?int(?:8|16|32|64)|float(?:32|64)))[ \t]+([a-z]\w*)"
+)
+_CPP = (".cpp", ".cc", ".cxx", ".hpp", ".h")
+_CPP_STATEMENTS = {
+    "spin removed": re.compile(r"(?m)^[ \t]*(?:rclcpp::spin|\w+\.spin)\([^;{}]*;"),
+    "init removed": re.compile(r"(?m)^[ \t]*rclcpp::init\([^;{}]*;"),
+    "declaration removed": re.compile(
+        r"(?m)^[ \t]*(?:this->)?declare_parameter(?:<[^;{}]*>)?\([^;{}]*;"
+    ),
+}
+_GENERATED = re.compile(r"\"?\b((?:msg|srv|action)/\w+\.(?:msg|srv|action))\b\"?")
+_BEST_EFFORT = "qos_profile_sensor_data"  # where a file imports it
 _CALLBACKS = {"create_timer": 1, "create_subscription": 2, "create_service": 2, "ActionServer": 3}
 _ANSWERING = ("create_service", "ActionServer")
 
@@ -21,8 +35,10 @@ def node_changes(
     submission: Submission, source: Source, label: str, families: Collection[Family]
 ) -> Iterator[MutantEdit]:
     """Yield the changes of a file that a criterion about interfaces, or about code, should find."""
-    if source.path.endswith(_INTERFACES) and "interfaces" in families:
+    if "interfaces" in families:
         yield from _interface_changes(source, label)
+    if source.path.endswith(_CPP) and "code" in families and "rclcpp" in source.text:
+        yield from _cpp_changes(source, label)
     if not source.path.endswith(".py"):
         return
     if "interfaces" in families:
@@ -37,10 +53,30 @@ def node_changes(
         yield from _code_changes(PythonFile(source), label)
 
 
+def _cpp_changes(source: Source, label: str) -> Iterator[MutantEdit]:
+    """Yield that rclcpp is not initialised, or nothing spins, a parameter is not declared, a
+    callback returns too early.
+    """
+    for family, pattern in _CPP_STATEMENTS.items():
+        for found in pattern.finditer(source.text):
+            place = f"{label} {' '.join(found[0].split())[:MAX_LABEL]}"
+            yield MutantEdit(family, place, *found.span(), "")
+
+
 def _interface_changes(source: Source, label: str) -> Iterator[MutantEdit]:
-    """Yield that each field is misspelt, and each separator removed."""
+    """Yield that each field is misspelt or of another type, each separator removed, and each
+    interface not generated.
+    """
+    if source.path.endswith(CMAKE):
+        for named in _GENERATED.finditer(source.text):
+            yield MutantEdit("interface not generated", f"{label} {named[1]}", *named.span(1), "")
+    if not source.path.endswith(_INTERFACES):
+        return
     for found in _FIELD.finditer(source.text):
         yield MutantEdit("field renamed", f"{label} {found[1]}", *found.span(1), misspelt(found[1]))
+    for found in _TYPE.finditer(source.text):
+        other = "string" if found[1] != "string" else "int32"
+        yield MutantEdit("field type changed", f"{label} {found[2]}", *found.span(1), other)
     for found in _SEPARATOR.finditer(source.text):
         yield MutantEdit("separator removed", label, *found.span(), "")
 
@@ -74,9 +110,52 @@ def _code_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
                         )
                     if isinstance(callback, ast.Attribute) and name in _ANSWERING:
                         answering.add(callback.attr)
+    yield from _call_changes(file, label)
     for node in file.nodes:
         if isinstance(node, ast.FunctionDef) and node.name in answering:
             last = node.body[-1]
             if isinstance(last, ast.Return):
                 place = f"{label} {node.name}"
                 yield MutantEdit("response not returned", place, *file.span(last), "pass")
+
+
+def _call_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+    """Yield that rclpy is not initialised, the constructor of Node or a declaration is missing, a
+    quality of service is another one, or a call of a service waits.
+    """
+    for node in file.nodes:
+        match node:
+            case ast.Expr(value=ast.Call(func=ast.Attribute(attr="init"))):
+                yield _removed(file, label, "init removed", node)
+            case ast.Expr(
+                value=ast.Call(
+                    func=ast.Attribute(value=ast.Call(func=ast.Name(id="super")), attr="__init__")
+                )
+            ):
+                yield _removed(file, label, "constructor removed", node)
+            case ast.Expr(value=ast.Call(func=ast.Attribute(attr="declare_parameter"))):
+                yield _removed(file, label, "declaration removed", node)
+            case ast.Call(func=ast.Attribute(attr="create_publisher"), args=[_, _, quality]):
+                if isinstance(quality, ast.Constant) and _BEST_EFFORT in file.text:
+                    yield _requalified(file, label, node, quality, _BEST_EFFORT)
+            case ast.Call(func=ast.Attribute(attr="create_subscription"), args=[*_, quality]):
+                if not isinstance(quality, ast.Constant):
+                    yield _requalified(file, label, node, quality, "10")
+            case ast.Attribute(attr="call_async"):
+                _, end = file.span(node)
+                place = f"{label} {file.segment(node)[:MAX_LABEL]}"
+                yield MutantEdit("call awaited", place, end - len("call_async"), end, "call")
+
+
+def _removed(file: PythonFile, label: str, family: str, node: ast.Expr) -> MutantEdit:
+    """Return that a statement is missing."""
+    place = f"{label} {file.segment(node)[:MAX_LABEL]}"
+    return MutantEdit(family, place, *file.span(node), "pass")
+
+
+def _requalified(
+    file: PythonFile, label: str, call: ast.Call, quality: ast.expr, new: str
+) -> MutantEdit:
+    """Return that a publisher or subscription has another quality of service."""
+    place = f"{label} {file.segment(call)[:MAX_LABEL]}"
+    return MutantEdit("quality of service changed", place, *file.span(quality), new)

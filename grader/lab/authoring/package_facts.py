@@ -10,7 +10,14 @@ from typing import Any
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import counted, enumerated
-from grader.lab.authoring.facts import CarriedFact, Fact, Facts, Omission, Solution
+from grader.lab.authoring.facts import (
+    CarriedFact,
+    Fact,
+    Facts,
+    Omission,
+    Solution,
+    are_joints_free,
+)
 from grader.lab.checks.parameters import measures
 from grader.lab.rubric.toml_file import toml_literal
 from grader.lab.submission.submission import Submission
@@ -19,6 +26,7 @@ from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.link_tree import JOINT_OF
 from grader.ros.workspace.endpoints import opened_by
 from grader.ros.workspace.names import FAMILIES, Family
 from grader.ros.workspace.reading import read_agreement, wrong_names
@@ -57,10 +65,12 @@ _ODD: Mapping[Family, tuple[str, str]] = {
 }
 _WHEEL = re.compile("wheel|axle|tire|tyre")
 _DISTANCE = re.compile("separation|wheel_?base|wheel_?track|track_?width")
+_NAMING = re.compile("joint|link|frame|wheel")
 _EXACT = 1e-6
 # What keeps launch files from starting, and nodes from their parameters.
 _STOPPING = ("files names_agree", "arguments names_agree", "programs names_agree")
 _OF_PARAMETERS = (*_STOPPING, "controllers names_agree", "parameters names_agree")
+_OF_NAMING = (*_OF_PARAMETERS, "frames names_agree", "values names_agree")
 _OF_CODE = ("code names_agree", "interfaces names_agree")
 # What of the nodes of a lab is seen from outside, by what they open.
 _OPENING = {"publisher": "publishes", "service": "serves", "action server": "serves"}
@@ -70,6 +80,7 @@ _OF_BUILDS: tuple[Family, ...] = ("files", "programs")
 _MEASURING = ("shows_cylinder", "shows_sphere", "frame_at")
 _MOTION = "kinematics_match_reference"
 _MAX_TEXT = 80  # characters of a value
+_MAX_TITLE, _MAX_IN_TITLE = 95, 3  # characters; names
 
 
 def package_facts(submission: Submission) -> Facts:
@@ -101,7 +112,7 @@ def words_of_launches(
     for package, prefix in _packages(submission):
         for name in map(posixpath.basename, package.launch_files):
             if wanted is None or name in wanted:
-                for check in ("node_runs", "launch_finds_files"):
+                for check in ("node_runs", "launch_complete"):
                     yield f"{prefix}{name} {check}"
 
 
@@ -119,9 +130,9 @@ def _facts_of(
     """
     path = submission.path or ""
     yield _package_fact("package_found", name=package.name)
-    # Nodes in Python may be built in either way, and interfaces by CMake only.
-    if submission.path and package.manifest is not None and package.manifest.build_type:
-        yield _package_fact("package_type", build_type=package.manifest.build_type)
+    if package.manifest is not None:
+        of_type = _package_fact("package_type")
+        yield of_type._replace(title="the build type in package.xml is that of the package's files")
     yield _package_fact("setup_imports")._replace(title="`colcon build` of the package succeeds")
     yield from _installs(
         package, path.removeprefix(package.path("")) if package.holds(path) else "", named
@@ -155,6 +166,43 @@ def measure_facts(solution: Solution) -> Iterator[Fact]:
             )
             title = f"the parameter {name} of {node} is the {measure} of {of} in the robot"
             yield fact._replace(title=title, carried=(*fact.carried, same))
+
+
+def naming_facts(solution: Solution) -> Iterator[Fact]:
+    """Yield the parameters of nodes that name joints or links of the robot.
+
+    A node without the parameter passes, as a node may have another name, or a default.
+    """
+    robot = solution.robot.robot
+    links = {link.name for link in robot.links}
+    names = {name: name for name in links}
+    for joint in robot.joints:
+        is_by_link = are_joints_free(solution) and joint.name not in links
+        names.setdefault(joint.name, f"{JOINT_OF}{joint.child}" if is_by_link else joint.name)
+    for node, name, value in _given(solution.submission):
+        items = value if isinstance(value, list) else [value]
+        is_naming = _NAMING.search(name.rpartition(".")[2]) is not None
+        if not items or not is_naming or any(it not in names for it in items if _is_text(it)):
+            continue
+        if not all(map(_is_text, items)):
+            continue
+        meant = [names[it] for it in items]
+        asked = {"has": meant} if isinstance(value, list) else {"value": meant[0]}
+        shown = enumerated([repr(it) for it in items], _MAX_IN_TITLE)
+        fact = _parameter_fact(node, name, **asked, where_given=True)
+        elsewhere = CarriedFact(_OF_NAMING, "package_found", {"name": _main_name(solution)})
+        title = f"the parameter {name} of {node} names {shown}"
+        yield fact._replace(title=title, carried=(elsewhere,))
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str)
+
+
+def _main_name(solution: Solution) -> str:
+    """Return the name of the package that is graded."""
+    package = solution.submission.package
+    return package.name if package is not None else ""
 
 
 def value_facts(submission: Submission) -> Iterator[Fact]:
@@ -255,9 +303,7 @@ def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:
 
 
 def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[Fact]:
-    """Yield that a build installs the URDF, the launch and RViz files, and a file of each other
-    folder.
-    """
+    """Yield that a build installs the URDF, the RViz files, and a file of each other ending."""
     installed = []
     elsewhere = set()  # what other facts are about
     for target, path in package.installed.items():
@@ -266,28 +312,36 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
         if any(f"{target}/".startswith(f"{folder}/") for folder in named):
             elsewhere.add(path)
         installed.append(path)
-    installed = [path for path in installed if path not in elsewhere]
-    launches = [
-        path for path in package.launch_files if path in installed or not path.startswith("test/")
-    ]
-    kinds = {"urdf": [urdf] if urdf else [], "launch": launches, "rviz": package.rviz_files}
+    rest = [path for path in installed if path not in elsewhere]
+    kinds = {"urdf": [urdf] if urdf in rest else [], "rviz": package.rviz_files}
     for kind, paths in kinds.items():
         for path in paths:
             if path not in elsewhere:
                 name = posixpath.basename(path)
                 yield _package_fact(
                     "build_installs", name, kind=kind, name=name, despite_errors=True
-                )
-    patterns: dict[str, None] = {}
-    for path in installed:
-        folder, ending = posixpath.dirname(path), posixpath.splitext(path)[1]
+                )._replace(title=f"a build installs {name}")
+    yield from _install_facts(package, rest, {posixpath.splitext(it)[1] for it in elsewhere})
+
+
+def _install_facts(
+    package: Package, paths: Sequence[str], known: Collection[str]
+) -> Iterator[Fact]:
+    """Yield that a build installs a file of each ending, from whatever folder; not of the `known`
+    endings, of which others are installed anyway.
+    """
+    endings: dict[str, None] = {}
+    for path in paths:
+        ending = posixpath.splitext(path)[1]
         is_own_kind = path in package.launch_files or path.endswith(_OWN_KINDS)
-        if folder not in ("", "resource") and not is_own_kind:
-            patterns[f"{folder}/*{ending}"] = None
+        if posixpath.dirname(path) not in ("", "resource") and not is_own_kind and ending:
+            endings[ending] = None
     with_named = (CarriedFact(("files names_agree",), "package_found", {"name": package.name}),)
-    for pattern in patterns:
-        fact = _package_fact("installs_files", pattern, files=[pattern], despite_errors=True)
-        yield fact._replace(carried=with_named)
+    for ending in endings:
+        if ending not in known:
+            pattern = f"*{ending}"
+            fact = _package_fact("installs_files", pattern, files=[pattern], despite_errors=True)
+            yield fact._replace(title=f"a build installs a {ending} file", carried=with_named)
 
 
 def _launch_facts(
@@ -297,22 +351,54 @@ def _launch_facts(
     mistake of others.
     """
     name, launch = posixpath.basename(path), package.launch(path)
-    yield _package_fact("launch_found", name, name=name)
     included = {posixpath.basename(it.path) for it in launch.passed} - {name}
     causes = (*_builds(submission), *_STOPPING, *words_of_launches(submission, included))
-    found = CarriedFact(causes, "launch_found", {"name": name})
-    after = found._replace(causes=(*found.causes, f"{prefix}{name} node_runs"))
+    installed = {"kind": "launch", "name": name, "despite_errors": True}
+    there = CarriedFact(causes, "build_installs", installed)
+    after = there._replace(causes=(*there.causes, f"{prefix}{name} node_runs"))
+    yield _complete_fact(launch, name, _launch_text(package, name))._replace(
+        carried=(after._replace(causes=(*after.causes, "parameters names_agree")),)
+    )
     nodes = _nodes_that_start(launch)
     if nodes:
-        yield _package_fact("node_runs", name, launch=name, nodes=nodes)._replace(carried=(found,))
+        title = _title_of_nodes(_launch_text(package, name), nodes)
+        fact = _package_fact("node_runs", name, launch=name, nodes=nodes)
+        yield fact._replace(title=title, carried=(there,))
     unrun = after._replace(causes=(*after.causes, *_OF_CODE))
     for fact in _opened_facts(submission, launch, name):
         yield fact._replace(carried=(unrun,))
     for fact in _turned_facts(package, path):
         yield fact._replace(carried=(after,))
-    if launch.named("urdf", "rviz", "include"):
-        unread = after._replace(causes=(*after.causes, "parameters names_agree"))
-        yield _package_fact("launch_finds_files", name, name=name)._replace(carried=(unread,))
+
+
+def _complete_fact(launch: Launch, name: str, shown: str) -> Fact:
+    """Return that a launch file is there, installed, and finds the files that it names; of one of
+    which not all are known, that none is in a wrong place.
+    """
+    fact = _package_fact("launch_complete", name, name=name)
+    title = f"a build installs {shown}"
+    if launch.named("urdf", "rviz", "include", "read"):
+        title += ", which finds the files that it names"
+    as_known = _package_fact("launch_complete", name, name=name, started=False)
+    return fact._replace(title=title, otherwise=(as_known._replace(title=title),))
+
+
+def _title_of_nodes(shown: str, nodes: Sequence[str]) -> str:
+    """Return which nodes a launch file starts, as many as a title has room for."""
+    names = []
+    for node in nodes:
+        names.append(node.partition(" or ")[0].rpartition("/")[2])
+    for most in range(len(names), 0, -1):
+        title = f"{shown} starts {enumerated(names, most)}"
+        if len(title) <= _MAX_TITLE:
+            return title
+    return f"{shown} starts its {counted(len(nodes), 'node')}"
+
+
+def _launch_text(package: Package, name: str) -> str:
+    """Return what a title calls a launch file: by its name, if there are several."""
+    launches = [it for it in package.launch_files if not it.startswith("test/")]
+    return "the launch file" if len(launches) == 1 else f"the launch file {name}"
 
 
 def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator[Fact]:
@@ -330,7 +416,7 @@ def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator
         if names:
             fact = _package_fact("node_runs", f"{name} {verb}", launch=name, **{verb: names})
             done = "publish" if verb == "publishes" else "serve"
-            yield fact._replace(title=f"the nodes {done} {enumerated([*names])}")
+            yield fact._replace(title=f"the nodes {done} {enumerated([*names], _MAX_IN_TITLE)}")
 
 
 def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
@@ -351,13 +437,13 @@ def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
         starts = ""
         if absent:
             given["not"] = absent
-            starts = f"does not start {enumerated(absent)}"
+            starts = f"does not start {enumerated(absent, _MAX_IN_TITLE)}"
         if nodes:
             given = {"nodes": nodes, **given}
-            starts = f"starts {enumerated(nodes)}"
+            starts = f"starts {enumerated(nodes, _MAX_IN_TITLE)}"
         if given:
             fact = _package_fact("node_runs", f"{name} {argument}", launch=name, **given)
-            title = f"with {argument}:={text}, the launch file {starts}"
+            title = f"with {argument}:={text}, {_launch_text(package, name)} {starts}"
             yield fact._replace(args={argument: turned}, title=title)
 
 
@@ -390,16 +476,24 @@ def _rviz_facts(package: Package) -> Iterator[Fact]:
         of = {"name": name}
         if path in opened:
             of["launch"] = opened[path]
-        yield _package_fact("rviz_found", name, **of)
+        found = _package_fact("rviz_found", name, **of)
+        is_opened = "launch" in of
+        shown = (
+            "the launch file opens an RViz file" if is_opened else f"there is an RViz file {name}"
+        )
+        yield found._replace(title=shown)
         if rviz.fixed_frame:
-            yield _package_fact("rviz_fixed_frame", name, **of, frame=rviz.fixed_frame)
+            fixed = _package_fact("rviz_fixed_frame", name, **of, frame=rviz.fixed_frame)
+            yield fixed._replace(title=f"the Fixed Frame of RViz is {rviz.fixed_frame!r}")
         displays = dict.fromkeys(
             (display.package, display.kind) for display in rviz.displays if display.enabled
         )
         for owner, kind in displays:
             if kind == "RobotModel":
-                yield _package_fact("rviz_shows_robot", name, **of)
+                robot_shown = _package_fact("rviz_shows_robot", name, **of)
+                yield robot_shown._replace(title="a RobotModel display shows the robot")
             else:
-                yield _package_fact(
+                on = _package_fact(
                     "rviz_display_on", f"{name} {kind}", **of, kind=f"{owner}/{kind}"
                 )
+                yield on._replace(title=f"RViz shows a {kind} display")

@@ -9,13 +9,14 @@ from math import degrees, inf, pi, radians
 from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.names import did_you_mean
 from grader.base.text import counted, enumerated
 from grader.lab.checks.outcome import Outcome, point
 from grader.lab.grading.deciding import decide
 from grader.lab.grading.grade import grade
 from grader.lab.grading.subjects import check_selectors, joints_at
 from grader.lab.rubric.criterion import Criterion
-from grader.lab.rubric.rubric import Rubric, load_rubric, shipped_rubrics
+from grader.lab.rubric.rubric import Rubric, load_rubric, shipped_rubrics, unknown_causes
 from grader.lab.rubric.toml_file import TomlPath, one_line_each
 
 _SIZES = ("size", "box", "cylinder", "sphere", "radius", "length", "mass")
@@ -23,6 +24,7 @@ _PLACES, _NEAR = (
     ("xyz", "height"),
     0.05,
 )  # metres: the origin can be meant, with any usual tolerance
+_MAX_CAUSES = 5  # criteria in the note on those that `carried` names
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 # Of a sentence: with a decimal point, or before a unit. Others count something, or are names: ROS
 # 2.
@@ -138,11 +140,27 @@ def likely_mistakes(rubric: Rubric) -> Sequence[str]:
         found.append(
             (("id",), "the id is still that of the grader's own rubric: give this one another")
         )
+    if note := _unknown_causes_note(rubric):
+        found.append(note)
     everywhere = [number for criterion in rubric.criteria for number in _numbers_given(criterion)]
     for criterion in rubric.criteria:
         for key, message in _warnings_about(rubric, criterion, everywhere):
             found.append((("criterion", criterion.position, key), message))
     return _lines(rubric, found)
+
+
+def _unknown_causes_note(rubric: Rubric) -> tuple[TomlPath, str] | None:
+    """Return one note on all criteria that `carried` names and that do not exist, at the first."""
+    unknown = unknown_causes(rubric)
+    if not unknown:
+        return None
+    names = dict.fromkeys(name for _, name in unknown)
+    known = [criterion.id for criterion in rubric.criteria]
+    guess = did_you_mean(next(iter(names)), known) if len(names) == 1 else ""
+    listed = enumerated([*names], _MAX_CAUSES)
+    what = "a criterion that does" if len(names) == 1 else "criteria that do"
+    message = f"carried names {what} not exist, which has no effect: {listed}{guess}"
+    return unknown[0][0], message
 
 
 def _is_changed_copy(rubric: Rubric) -> bool:

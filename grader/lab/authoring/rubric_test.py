@@ -13,7 +13,6 @@ from fnmatch import fnmatchcase
 from functools import cached_property, lru_cache
 from itertools import chain
 from pathlib import Path
-from random import Random
 from typing import Any, NamedTuple
 
 from grader.base.errors import InputError
@@ -21,9 +20,11 @@ from grader.base.source import Edit, Source
 from grader.files.reading import URDF_LIMIT
 from grader.lab.authoring.equivalents import Equivalent, RewritingRules, equivalents, is_same_robot
 from grader.lab.authoring.file_equivalents import EVERY_NODE, file_equivalents
+from grader.lab.authoring.mutant_kinds import KindScore, draw, scores_by_kind, why_right
 from grader.lab.authoring.mutants import Mutant, MutantEdit, mutants, package_mutants
 from grader.lab.authoring.name_mutants import compared_names, name_changes
 from grader.lab.authoring.node_mutants import node_changes
+from grader.lab.authoring.package_equivalents import BUILT_BY_CMAKE, package_equivalents
 from grader.lab.authoring.samples import Loss, Sample, SampleResults, tested_samples
 from grader.lab.checks.manual import MANUAL_CHECKS
 from grader.lab.grading.deciding import decide
@@ -63,9 +64,11 @@ _NO_PART_OF_LAB = re.compile(
     r"(?i)(^|/)(tests?|docs?)/|(^|/)(license|readme|changelog|contributing)[^/]*$|\.(md|pdf|docx|png|jpe?g|gif|svg)$"
 )
 _MAX_EMPTIED = 100  # files
-_MAX_MUTANTS = 5000  # of larger robots a sample is graded
+_MAX_MUTANTS = 600  # by default; of more, a sample over all kinds is graded
+_SCORED_EACH = 25  # mutants after which the scores by kind are computed again
 _CONTEXT = 2  # lines around a change
-_Progress = Callable[[int, int], None]  # how many submissions of how many are graded
+# How many submissions of how many are graded, and the scores by kind so far.
+_Progress = Callable[[int, int, Sequence[KindScore]], None]
 
 
 class MutantOutcome(NamedTuple):
@@ -262,16 +265,21 @@ class Trial:
         urdf = self.reference.urdf
         if isinstance(urdf, Read) and urdf.loaded.verdict == "clean":
             yield from self._robot_equivalents(urdf)
-        for family, texts in file_equivalents(self.reference):
-            criteria = self.tested
-            if family == EVERY_NODE:
-                # A path of entry_is names one of several nodes, which are other ones then.
-                criteria = [it for it in criteria if it.check.name != "entry_is"]
-            names = [criterion.id for criterion in criteria]
-            files = {path: text.encode() for path, text in texts.items()}
-            lost = self._lost(with_files(self.reference, files), names)
-            diffs = (_text_diff(path, self.text(path), text) for path, text in texts.items())
-            yield Loss(family, lost, "\n".join(diffs))
+        names = set(_names_in(self.rubric))
+        rewritten = package_equivalents(self.reference, names, self.robot_files)
+        for family, texts in chain(file_equivalents(self.reference), rewritten):
+            yield self._file_equivalent(family, texts)
+
+    def _file_equivalent(self, family: str, texts: Mapping[str, str | None]) -> Loss:
+        """Return what other texts of files lose; None for a file that is not there any more."""
+        criteria = [it for it in self.tested if not _is_of_writing(it, family)]
+        files: dict[str, bytes | None] = {}
+        diffs = []
+        for path, text in texts.items():
+            files[path] = None if text is None else text.encode("utf-8", "surrogateescape")
+            diffs.append(_text_diff(path, self.text(path), text or ""))
+        changed = with_files(self.reference, files)
+        return Loss(family, self._lost(changed, [it.id for it in criteria]), "\n".join(diffs))
 
     def _robot_equivalents(self, urdf: Read) -> Iterator[Loss]:
         root = urdf.reading.root
@@ -301,6 +309,15 @@ class Trial:
         others = ("package", "submission") if submission.is_single else ("package",)
         asked = (it for it in self.tested if it.check.subject not in others)
         return [it.id for it in asked if family not in it.check.about.breaks_under(it.arguments)]
+
+
+def _is_of_writing(criterion: Criterion, family: str) -> bool:
+    """Return whether a criterion asks for what a family of equivalents of files changes."""
+    check, arguments = criterion.check.name, criterion.arguments
+    if check == "entry_is":
+        # A path names one of several nodes, or an entry of a file that is written anew.
+        return family == EVERY_NODE or "file" in arguments
+    return family == BUILT_BY_CMAKE and check == "package_type" and bool(arguments["build_type"])
 
 
 def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Submission:
@@ -370,6 +387,7 @@ class RubricTest(NamedTuple):
     equivalents: tuple[str, ...]  # the families that were tried
     losses: tuple[Loss, ...]  # equivalents that lose points
     samples: SampleResults | None = None  # None where no folder was given
+    kinds: tuple[KindScore, ...] = ()  # without mutants that are ignored or right
     # by Ctrl-C: then the rest of the mutants, the equivalents and the files are not tried
     is_interrupted: bool = False
 
@@ -404,27 +422,37 @@ class RubricTest(NamedTuple):
 
 
 def run_rubric_test(
-    rubric: Rubric, samples: list[Sample] | None, progress: _Progress, grade_all: _GradeAll
+    rubric: Rubric,
+    samples: list[Sample] | None,
+    progress: _Progress,
+    grade_all: _GradeAll,
+    *,
+    most: int = _MAX_MUTANTS,
+    seed: int = 0,
 ) -> RubricTest:
     """Return the test of a rubric. Raises InputError without a readable reference, RubricError for
     wrong samples.
 
-    `grade_all` grades mutants elsewhere, as `mutant_outcomes` does.
+    `grade_all` grades mutants elsewhere, as `mutant_outcomes` does: all of at most `most`, else a
+    sample that the seed draws.
     """
     trial = Trial(rubric)
     every = [*trial.mutants()]
-    chosen = every if len(every) <= _MAX_MUTANTS else Random(0).sample(every, _MAX_MUTANTS)
+    chosen = draw(every, most, seed)
     total = len(chosen) + len(samples or ())
     if samples is not None:
-        of_samples = tested_samples(rubric, samples, lambda done: progress(done, total))
+        of_samples = tested_samples(rubric, samples, lambda done: progress(done, total, ()))
     else:
         of_samples = None
     outcomes: list[MutantOutcome] = []
+    scores: list[KindScore] = []
     rest = None
     try:
         for outcome in grade_all(chosen):
             outcomes.append(outcome)
-            progress(len(samples or ()) + len(outcomes), total)
+            if len(outcomes) % _SCORED_EACH == 1:
+                scores = scores_by_kind((it.mutant.family, it.fate) for it in outcomes)
+            progress(len(samples or ()) + len(outcomes), total, scores)
         rest = _Rest([*trial.equivalents()], *trial.unexamined())
     except KeyboardInterrupt:
         if not outcomes:
@@ -459,11 +487,15 @@ def _counted(
     ignored: list[_Survivor] = []
     faults: list[Loss] = []
     failed: set[str] = set()
+    scored: list[tuple[str, str]] = []
     for outcome in graded:
         mutant = outcome.mutant
         failed.update(outcome.failed)
+        if outcome.fate == "caught":
+            scored.append((mutant.family, "caught"))
         if outcome.fate == "survived":
             survivor = _survivor(trial, mutant)
+            scored.append((mutant.family, "ignored" if survivor.reason else "survived"))
             if survivor.reason:
                 ignored.append(survivor)
             else:
@@ -491,6 +523,7 @@ def _counted(
         equivalents=tuple(names),
         losses=tuple(losses),
         samples=samples,
+        kinds=tuple(scores_by_kind(scored)),
         is_interrupted=is_interrupted,
     )
 
@@ -508,8 +541,10 @@ def _unused_patterns(rubric: Rubric, mutants: Sequence[Mutant]) -> tuple[str, ..
 
 
 def _survivor(trial: Trial, mutant: Mutant) -> _Survivor:
-    """Return a mutant that loses nothing, with the reason for which the rubric ignores it."""
-    reason = ""
+    """Return a mutant that loses nothing, with the reason for which the rubric ignores it, or for
+    which it is right.
+    """
+    reason = why_right(mutant)
     for row in trial.rubric.ignored:
         if any(_matches(mutant, pattern) for pattern in row.mutants):
             reason = row.reason

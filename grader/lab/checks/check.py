@@ -16,12 +16,14 @@ from grader.lab.checks.toml_types import TomlType, toml_type
 
 # The ways in which the text of a robot is rewritten to an equal robot, in the order in which they
 # are tried.
+MIMIC_TURNED = "mimic joints with the other sign"
 EQUIVALENTS = (
     "order of elements",
     "fixed joints split",
     "frames moved",
     "links renamed",
     "joints renamed",
+    MIMIC_TURNED,
     "layout of the text",
     "xacro properties",
     "xacro macro",

@@ -9,7 +9,7 @@ from grader.base.names import similar_there
 from grader.base.pairing import most_pairs
 from grader.base.source import LazyLocation
 from grader.base.text import MAX_NAMED, enumerated, first_lines, quoted
-from grader.lab.checks.check import About
+from grader.lab.checks.check import MIMIC_TURNED, About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.checks.toml_types import Constraint, Content, NonNegative, Scalar
 from grader.lab.submission.submission import Submission
@@ -45,7 +45,7 @@ def _breaks_under(arguments: Mapping[str, Any]) -> Collection[str]:
     is_read = (
         arguments.get("file", _ROBOT) == _ROBOT and bool(steps) and steps[0].name in _READ_BY_ROS
     )
-    return (*frames, "links renamed", "joints renamed") if is_read else ()
+    return (*frames, "links renamed", "joints renamed", MIMIC_TURNED) if is_read else ()
 
 
 def entry_is(

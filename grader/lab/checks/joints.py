@@ -4,15 +4,15 @@ mimic, dynamics.
 The numbers of an element of a joint are compared with the expected ones together, in one outcome.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from math import degrees, hypot, isfinite
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement
 from grader.base.names import did_you_mean
 from grader.base.source import LazyLocation
 from grader.base.transforms import FULL_TURN, Vector, cross, degrees_between, minus, unit
-from grader.lab.checks.check import About
+from grader.lab.checks.check import MIMIC_TURNED, About
 from grader.lab.checks.outcome import (
     SLACK,
     Outcome,
@@ -30,13 +30,24 @@ from grader.lab.checks.visuals import axis_place
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Dynamics, Joint
 
+
+def _breaks_without_direction(arguments: Mapping[str, Any]) -> Collection[str]:
+    """Numbers for one direction of an axis, which a mimic joint may have the other way round."""
+    return () if arguments.get("direction") is not None else (MIMIC_TURNED,)
+
+
+def _breaks_one_way(arguments: Mapping[str, Any]) -> Collection[str]:
+    return () if arguments.get("either_way") else (MIMIC_TURNED,)
+
+
 ABOUT = {
-    "joint_limits": About(("limit",)),
-    "joint_axis": About(("axis",)),
-    "mimics": About(("mimic",)),
+    "joint_limits": About(("limit",), breaks_under=_breaks_without_direction),
+    "joint_axis": About(("axis",), breaks_under=_breaks_one_way),
+    "mimics": About(("mimic",), breaks_under=_breaks_without_direction),
     "joint_dynamics": About(("dynamics",)),
 }
 _EXACT = 1e-6  # for numbers that a URDF states as they are expected
+_RIGHT_ANGLE = 90.0  # degrees
 
 
 def joint_limits(
@@ -48,12 +59,15 @@ def joint_limits(
     tolerance: NonNegative,
     effort: float | None = None,
     velocity: float | None = None,
+    relative_to: str | None = None,
+    direction: Direction | None = None,
 ) -> Outcome:
     """The joint that moves a link has the given limits.
 
     A continuous, planar or floating joint has no limits. Effort and velocity may be off by 1e-6. If
     the limits are the expected ones, but in metres instead of degrees or the other way round, the
-    joint has the wrong type.
+    joint has the wrong type. With `direction`, limits of the opposite sign pass for the opposite
+    axis, as a joint that mimics another one may have.
 
     Args:
         link: The link that the joint moves.
@@ -62,9 +76,13 @@ def joint_limits(
         tolerance: How far each of the two limits may be off, in degrees or metres.
         effort: The maximum effort, in N m for a revolute joint, in N for a prismatic joint.
         velocity: The maximum velocity, in rad/s or m/s.
+        relative_to: The link in whose frame the direction is given; default: the joint's parent.
+        direction: The direction of the axis for which the limits are given.
     """
     joint = robot.moving_joint(link)
     detail = _joint_detail(joint)
+    if direction is not None and _is_reversed(robot, joint, relative_to, direction):
+        lower, upper = -upper, -lower
     if joint.type not in ("revolute", "prismatic"):
         message = (
             f"the joint that moves {link!r} is {joint.type}, so it has no limits; "
@@ -156,10 +174,14 @@ def mimics(
     multiplier: float | None = None,
     offset: float | None = None,
     tolerance: NonNegative = _EXACT,
+    relative_to: str | None = None,
+    direction: Direction | None = None,
 ) -> Outcome:
     """The joint that moves a link mimics the joint that moves another link.
 
-    It may do so through other mimic joints: then the multipliers and offsets are composed.
+    It may do so through other mimic joints: then the multipliers and offsets are composed. With
+    `direction`, the motion counts: the opposite axis with the opposite multiplier and offset
+    passes.
 
     Args:
         link: The link whose joint follows.
@@ -167,6 +189,9 @@ def mimics(
         multiplier: The ratio of the position of the following joint to that of the other.
         offset: The position of the following joint where the other is at 0, in radians or metres.
         tolerance: How far multiplier and offset may be off, in their units.
+        relative_to: The link in whose frame the direction is given; default: the joint's parent.
+        direction: The direction of the following joint's axis for which multiplier and offset are
+            given.
     """
     joint, leading = robot.moving_joint(link), robot.moving_joint(leader)
     followed = _mimic_chain(robot, joint, link)
@@ -184,6 +209,9 @@ def mimics(
         return failed(message, at, detail=detail)
     ratio, shift = followed[leading.name]
     message = f"the joint that moves {link!r} mimics the joint that moves {leader!r}"
+    if direction is not None and _is_reversed(robot, joint, relative_to, direction):
+        multiplier = None if multiplier is None else -multiplier
+        offset = None if offset is None else -offset
     numbers = _expected_numbers(
         {"multiplier": (ratio, multiplier), "offset": (shift, offset)}, tolerance
     )
@@ -218,6 +246,19 @@ def joint_dynamics(
     if given is None and not numbers:
         return failed(f"{message}; it should have one", joint.location, detail=_joint_detail(joint))
     return _compare_numbers(message, numbers, joint, given.location if given else joint.location)
+
+
+def _is_reversed(
+    robot: Configuration, joint: Joint, relative_to: str | None, direction: Vector
+) -> bool:
+    """Return whether the axis of a joint points rather against a direction than along it.
+
+    Raises MissingElement where no joints connect the links, and for an axis of length zero.
+    """
+    frame = relative_to or joint.parent
+    robot.between(frame, joint.child)
+    axis = robot.pose(joint.child, relative_to=frame).rotate(robot.axis(joint))
+    return degrees_between(axis, unit(direction) or direction) > _RIGHT_ANGLE
 
 
 def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:

@@ -10,6 +10,7 @@ from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.lab.checks.check import About
+from grader.lab.checks.installed_files import INSTALLING, files_of_kind, require_installed
 from grader.lab.checks.outcome import Outcome, failed, judged, passed
 from grader.lab.checks.started_nodes import Fault, Wanted, find_faults
 from grader.lab.submission.submission import Submission
@@ -20,11 +21,19 @@ from grader.ros.package.file_places import FilePlace, find_places
 from grader.ros.package.package import CMAKE, SETUP, Package
 
 if TYPE_CHECKING:
-    from grader.ros.launch.launch_model import Launch
+    from grader.ros.launch.launch_model import Launch, Purpose
 
 
 # What the edits for hints may change.
 _STOPS = {"stops": "ros2 launch stops at an error in the launch file, or at a file that it reads"}
+_LOOKING = {
+    **_STOPS,
+    "local": "a path exists on one machine only, or is relative to the working folder",
+    "name": "a file or package of another name is looked for",
+    "needs": "a build does not install a file that the robot needs, such as a mesh",
+    "encoding": "a file that is read as text is not UTF-8",
+    "given": "a node or an action is not given a file as it needs it",
+}
 ABOUT = {
     "launch_found": About(("launch",)),
     "node_runs": About(
@@ -37,17 +46,8 @@ ABOUT = {
             "program": "an entry point in setup.py names no function",
         },
     ),
-    "launch_finds_files": About(
-        ("launch",),
-        causes={
-            **_STOPS,
-            "local": "a path exists on one machine only, or is relative to the working folder",
-            "name": "a file or package of another name is looked for",
-            "needs": "a build does not install a file that the robot needs, such as a mesh",
-            "encoding": "a file that is read as text is not UTF-8",
-            "given": "a node or an action is not given a file as it needs it",
-        },
-    ),
+    "launch_finds_files": About(("launch",), causes=_LOOKING),
+    "launch_complete": About(("launch", SETUP, "file"), causes={**INSTALLING, **_LOOKING}),
 }
 _UNKNOWN_FILES = "cannot determine statically which files it names"
 _ON_ONE_MACHINE = "the launch file looks for files at paths that exist on one machine only"
@@ -240,10 +240,23 @@ def launch_finds_files(
         started: Whether ros2 launch starts the file; if not, only a file in a wrong place counts,
             as far as it is read.
     """
+    return _look_for_files(package, name, built=built, started=started, needs_robot=True)
+
+
+def _look_for_files(
+    package: Package, name: str, *, built: bool, started: bool, needs_robot: bool
+) -> Outcome:
+    """Return whether a launch file looks for files where they are.
+
+    Where it `needs_robot`, one that names neither a URDF nor an RViz file fails.
+    """
     if not started and package.launch(_path_of(package, name)).syntax is not None:
         return passed("the launch file cannot be read, so it looks for no file")
     launch = _launch_of(package, name)
-    places = find_places(package, launch, "urdf", "rviz", "include", "read", built=built)
+    purposes: list[Purpose] = ["urdf", "include", "read"]
+    if needs_robot or package.rviz_files:  # else RViz may start without a file
+        purposes.append("rviz")
+    places = find_places(package, launch, *purposes, built=built)
     if built:
         places = [it.with_parts(package) for it in places]
     wrong = [it for it in places if it.state == "wrong"]
@@ -255,13 +268,34 @@ def launch_finds_files(
     names_none = not any(it.is_of_robot for it in places)
     if launch.faults and (unknown or names_none):
         raise _fault_that_stops(package, name, launch)
-    if names_none:
+    if names_none and needs_robot:
         raise _no_files(launch)
     if unknown is not None:
         raise NotDecided(unknown.text, _UNKNOWN_FILES)
     if not launch.faults:
         _check_starts(launch)
     return _pass_places(places)
+
+
+def launch_complete(package: Package, *, name: str, started: bool = True) -> Outcome:
+    """The package has a launch file, a build installs it, and the files that it names are where
+    it looks.
+
+    The name of the launch file does not matter, nor does an error that stops the build. A launch
+    file that names no file passes.
+
+    Args:
+        name: The file's name, which decides if the package has several launch files.
+        started: Whether ros2 launch starts the file; if not, only a file in a wrong place counts,
+            as far as it is read.
+    """
+    files = files_of_kind(package, "launch", name)
+    if not files:
+        raise package.missing("launch")
+    installed = require_installed(package, files, "launch", despite_errors=True)
+    if installed.status != "passed":
+        return installed
+    return _look_for_files(package, name, built=True, started=started, needs_robot=False)
 
 
 def _check_starts(launch: "Launch") -> None:
@@ -336,6 +370,8 @@ def _pass_places(places: Sequence[FilePlace]) -> Outcome:
     if any(it.state == "missing" for it in places):
         return passed("the launch file looks for files of the package")
     found = dict.fromkeys(it.text for it in places if it.text)
+    if not found:
+        return passed("the launch file names no file")
     return passed(f"a build installs {enumerated(found)}, where the launch file looks")
 
 

@@ -2,31 +2,28 @@
 Nothing is run.
 """
 
-import posixpath
-from collections.abc import Sequence
 from fnmatch import fnmatch
-from typing import Literal
 
-from grader.base.errors import MissingElement, NotDecided
-from grader.base.names import MAX_GUESSES, closest
-from grader.base.text import enumerated, first_lines
+from grader.base.errors import MissingElement
+from grader.base.text import enumerated
 from grader.lab.checks.check import About
+from grader.lab.checks.installed_files import (
+    INSTALLING,
+    FileKind,
+    build_error,
+    files_of_kind,
+    require_installed,
+)
 from grader.lab.checks.outcome import Outcome, failed, judged, passed
 from grader.lab.submission.submission import Submission
-from grader.ros.package.package import MANIFEST, RESOURCE_INDEX, SETUP, Package
+from grader.ros.package.package import CMAKE, MANIFEST, RESOURCE_INDEX, SETUP, Package
 
-_FileKind = Literal["urdf", "launch", "rviz"]
-_INSTALLS = {
-    "fails": "a build fails",
-    "pattern": "a pattern matches no file",
-    "elsewhere": "a build installs the file elsewhere",
-}
 ABOUT = {
     "package_found": About(
         (MANIFEST, SETUP), causes={"refused": "the tools of ROS 2 refuse package.xml"}
     ),
     "package_type": About((MANIFEST,)),
-    "build_installs": About((SETUP, "file"), causes=_INSTALLS),
+    "build_installs": About((SETUP, "file"), causes=INSTALLING),
     "setup_imports": About(
         (SETUP,),
         causes={
@@ -34,9 +31,10 @@ ABOUT = {
             "files": "a file or folder that is listed does not exist, or is of another kind",
         },
     ),
-    "installs_files": About((SETUP, "file"), causes=_INSTALLS),
+    "installs_files": About((SETUP, "file"), causes=INSTALLING),
 }
-_ENDINGS: dict[_FileKind, tuple[str, ...]] = {"urdf": (".urdf", ".xacro"), "rviz": (".rviz",)}
+# The file that colcon needs for a build type.
+_BUILT_BY = {"ament_python": SETUP, "ament_cmake": CMAKE, "cmake": CMAKE}
 
 
 def package_found(submission: Submission, *, name: str) -> Outcome:
@@ -68,14 +66,18 @@ def package_found(submission: Submission, *, name: str) -> Outcome:
     return judged(fine, message, manifest.name, name, at=manifest.name_location)
 
 
-def package_type(package: Package, *, build_type: str) -> Outcome:
+def package_type(package: Package, *, build_type: str = "") -> Outcome:
     """The package is of a build type, such as ament_python.
 
     Args:
-        build_type: The build type, such as ament_python.
+        build_type: The build type, such as ament_python; default: one whose file the package has,
+            setup.py or CMakeLists.txt.
     """
     manifest = package.needed_manifest()
     actual = manifest.build_type
+    if not build_type:
+        fitting = [kind for kind, name in _BUILT_BY.items() if name in package.tree.files]
+        build_type = actual if actual in fitting else next(iter(fitting), "ament_cmake")
     fine = actual == build_type
     message = f"the build type is {actual!r}" if actual else "<build_type> in package.xml is empty"
     if not fine:
@@ -89,7 +91,7 @@ def build_installs(
     package: Package,
     submission: Submission,
     *,
-    kind: _FileKind,
+    kind: FileKind,
     name: str,
     despite_errors: bool = False,
 ) -> Outcome:
@@ -104,13 +106,13 @@ def build_installs(
         despite_errors: Whether an error that stops the build is ignored, which `setup_imports`
             reports.
     """
-    files = _files_of(package, kind, name)
+    files = files_of_kind(package, kind, name)
     graded = submission.path
     if kind == "urdf" and graded is not None and package.holds(graded):  # whatever its name ends in
         files = [graded.removeprefix(package.path("")), *files]
     if not files:
         raise package.missing(kind)
-    return _require_installed(package, files, kind, despite_errors=despite_errors)
+    return require_installed(package, files, kind, despite_errors=despite_errors)
 
 
 def installs_files(package: Package, *, files: list[str], despite_errors: bool = False) -> Outcome:
@@ -133,7 +135,7 @@ def installs_files(package: Package, *, files: list[str], despite_errors: bool =
         raise MissingElement(
             "file", files[0], message=f"the package has no file that matches {patterns}"
         )
-    return _require_installed(package, matching, None, despite_errors=despite_errors)
+    return require_installed(package, matching, None, despite_errors=despite_errors)
 
 
 def setup_imports(package: Package, *, where_there: bool = False) -> Outcome:
@@ -144,179 +146,4 @@ def setup_imports(package: Package, *, where_there: bool = False) -> Outcome:
         where_there: Whether what is to be installed and does not exist is no error, for `carried`.
     """
     setup = package.needed_installation()
-    return _build_error(package, where_there=where_there) or passed(f"{setup.file} builds")
-
-
-def _build_error(package: Package, *, where_there: bool = False) -> Outcome | None:
-    """Return why a build of the package fails; None if it succeeds. Raises NotDecided."""
-    setup = package.needed_installation()
-    if package.ignored_by:
-        message = f"colcon does not build the package, because there is a file {package.ignored_by}"
-        return failed(message, problem=message)
-    stops = [stop for stop in setup.stops if stop.path != MANIFEST or package.manifest is not None]
-    errors = [(fault.message, "", fault.at) for fault in setup.faults]
-    there = package.tree.files.keys() | package.tree.folders
-    errors += [
-        (stop.message, stop.hint, stop.at)
-        for stop in stops
-        if not where_there or not stop.path or stop.path.rstrip("/") in there
-    ]
-    if errors:
-        messages = list(dict.fromkeys(message for message, _, _ in errors))
-        _, hint, at = errors[0]
-        message, problem = "; ".join(first_lines(messages, 3)), messages[0] + hint
-        cause = "files"
-        if setup.faults:
-            cause = "name" if setup.faults[0].name else ""
-        return failed(
-            message,
-            setup.location(at),
-            detail=hint if len(messages) == 1 else "",
-            problem=problem,
-            cause=cause,
-        )
-    if not setup.is_called:
-        message = "setup.py does not call setup()"
-        return failed(message, setup.location(setup.called_at), problem=message)
-    if setup.doubt is not None:
-        reason = f"{setup.doubt.reason} (line {setup.doubt.at.line} of {setup.file})"
-        cause = f"cannot determine statically whether {setup.file} builds"
-        raise NotDecided(f"{cause}: {reason}", cause)
-    return None
-
-
-def _files_of(package: Package, kind: _FileKind, name: str) -> Sequence[str]:
-    """Return the file of a package that has this name, else all of the kind that are no part of
-    another one.
-    """
-    if kind == "launch":
-        chosen = package.launch_file(name)
-        return [chosen] if chosen is not None else []
-    endings = _ENDINGS[kind]
-    paths = [path for path in package.tree.files if path.lower().endswith(endings)]
-    named = [path for path in paths if posixpath.basename(path) == name]
-    if named or kind != "urdf":
-        return named or paths
-    from grader.ros.package.robots import (  # late: the URDF usually has the lab's name
-        find_robots,
-        parts_of,
-    )
-
-    parts = parts_of(find_robots(package.tree))
-    return [path for path in paths if path not in parts] or paths
-
-
-def _require_installed(
-    package: Package, files: Sequence[str], kind: _FileKind | None, *, despite_errors: bool
-) -> Outcome:
-    setup = package.needed_installation()
-    error = _build_error(package)
-    if error is not None and not despite_errors:
-        return error._replace(message=f"a build fails: {error.message}", cause="fails")
-    if error is not None and _stops_at(package, files, kind):
-        return passed(f"{setup.file} has an entry for {files[0]}")
-    copies = [copy for copy in setup.copies if copy.source in files]
-    inside = [copy for copy in copies if copy.target.startswith(package.share)]
-    twice = sorted(
-        {
-            copy.target
-            for copy in inside
-            if posixpath.basename(copy.target) == posixpath.basename(files[0])
-        }
-    )
-    if kind == "launch" and len(twice) > 1:
-        message = (
-            f"a build installs {files[0]} as {' and as '.join(twice)}; ros2 launch needs "
-            "exactly one"
-        )
-        return failed(
-            message, setup.location(inside[-1].at), mistake="a build installs the launch file twice"
-        )
-    if inside and setup.misspelt is not None:
-        raise package.without_data_files(setup.misspelt.message)
-    if inside:
-        return passed(f"a build installs {inside[0].source} as {inside[0].target}")
-    if despite_errors and setup.is_unknown_after_error:
-        return passed(f"what {setup.file} installs is not known because of an error in it")
-    if setup.unknown:
-        reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of {setup.file})"
-        message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
-        raise NotDecided(message, f"cannot determine statically what {setup.file} installs")
-    if copies:
-        message = f"a build installs {copies[0].source} as {copies[0].target}"
-        message += f"; ROS 2 looks for the package's files below {package.share}"
-        mistake = f"a build installs the file outside of {package.share}"
-        return failed(message, setup.location(copies[0].at), mistake=mistake, cause="elsewhere")
-    raise _why_not_installed(package, files, kind)
-
-
-def _stops_at(package: Package, files: Sequence[str], kind: _FileKind | None) -> bool:
-    """Return whether a build stops at the entry for these files, so that it is there."""
-    setup = package.needed_installation()
-    folders = {posixpath.dirname(path) for path in files}
-    paths = [stop.path for stop in setup.stops if stop.path]
-    if setup.is_cmake and any(
-        closest(path, folders) for path in paths[:MAX_GUESSES]
-    ):  # install(DIRECTORY lunch ...)
-        return True
-    kinds = _kinds_by_folder(package)
-    for path in paths:
-        folder = posixpath.dirname(path)
-        if folder in folders or (_kind_by_ending(path) or kinds.get(folder)) == kind:
-            return True
-    return False
-
-
-def _why_not_installed(
-    package: Package, files: Sequence[str], kind: _FileKind | None
-) -> MissingElement:
-    """Return why a build does not install files: no entry, or a pattern without a match."""
-    setup = package.needed_installation()
-    what, message = f"installed {kind or files[0]}", f"a build does not install {files[0]}"
-    empty = setup.empty_for(files, kind)
-    if empty is None:
-        message += f": {'no' if setup.is_cmake else 'no entry of'} {setup.entries} names it"
-        return MissingElement(
-            what,
-            package.folder,
-            message=message,
-            location=setup.location(setup.files_at),
-            cause="",
-        )
-    problem = f"the pattern {empty.pattern!r} in {setup.file} matches no file"
-    # Late: a URDF on its own needs none of what reads a package.
-    from grader.ros.package.found_problems import why_no_match
-
-    detail, at = why_no_match(package, empty.pattern), setup.location(empty.at)
-    message += f": {problem}"
-    return MissingElement(
-        what,
-        package.folder,
-        message=message,
-        detail=detail,
-        location=at,
-        problem=problem + detail,
-        cause="pattern",
-    )
-
-
-def _kind_by_ending(path: str) -> _FileKind | None:
-    """Return the kind of file that an entry is about, by its ending."""
-    if ".launch." in path or path.endswith("_launch.py"):
-        return "launch"
-    for kind, endings in _ENDINGS.items():
-        if path.lower().endswith(endings):
-            return kind
-    return None
-
-
-def _kinds_by_folder(package: Package) -> dict[str, _FileKind]:
-    """Return the kind of the files of each folder that has files of one kind."""
-    kinds: dict[str, set[_FileKind | None]] = {}
-    endings = (*_ENDINGS["urdf"], *_ENDINGS["rviz"])
-    for path in package.tree.files:
-        folder = posixpath.dirname(path)
-        if folder and (path.endswith(endings) or ".launch." in path):
-            kinds.setdefault(folder, set()).add(_kind_by_ending(path))
-    of_one_kind = [(folder, found.pop()) for folder, found in kinds.items() if len(found) == 1]
-    return {folder: kind for folder, kind in of_one_kind if kind is not None}
+    return build_error(package, where_there=where_there) or passed(f"{setup.file} builds")

@@ -62,6 +62,7 @@ CHECKS = (
     "launch.launch_found",
     "launch.node_runs",
     "launch.launch_finds_files",
+    "launch.launch_complete",
     "rviz.rviz_found",
     "rviz.rviz_fixed_frame",
     "rviz.rviz_shows_robot",

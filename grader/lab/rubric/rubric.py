@@ -4,6 +4,7 @@ reported at once.
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from copy import deepcopy
 from dataclasses import dataclass, field
 from decimal import Decimal
 from functools import cache, cached_property, lru_cache
@@ -283,11 +284,18 @@ def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
     RubricError.
     """
     valid = _validate(data, path)
+    return _made_rubric(valid, data, path, range(len(valid.criteria)), answers=answers)
+
+
+def _made_rubric(
+    valid: Validation, data: bytes, path: Path, positions: Sequence[int], *, answers: bool
+) -> Rubric:
+    """Return the rubric of validated rows, which are at these positions in the file."""
     rubric = valid.rubric
     adjusted = {name: Adjustment(**row) for name, row in valid.adjusted.items()}
     criteria = []
-    rows = zip(valid.criteria, valid.bound, valid.carried, strict=True)
-    for position, (row, bound, carried) in enumerate(rows):
+    rows = zip(positions, valid.criteria, valid.bound, valid.carried, strict=True)
+    for position, row, bound, carried in rows:
         criterion = _make_criterion(position, row, bound, carried, answers=answers)
         criteria.append(_adjust(criterion, adjusted))
     parts = [Part(row["id"], row["title"], row.get("needs", "urdf")) for row in valid.parts]
@@ -330,6 +338,38 @@ def _validate(data: bytes, path: Path) -> Validation:
     valid = Validation(table)
     complain_of(valid.complaints, text, path)
     return valid
+
+
+def unknown_causes(rubric: Rubric) -> list[tuple[TomlPath, str]]:
+    """Return the places of `carried` tables that name criteria which do not exist, and the names:
+    they are ignored.
+    """
+    return Validation(read_toml(rubric.data, rubric.path)[1]).unknown_causes
+
+
+def read_correct_rows(data: bytes, path: Path) -> Rubric | None:
+    """Return a rubric without the criteria in which there are mistakes, and without its totals;
+    None if there are other mistakes in it.
+    """
+    table = read_toml(data, path)[1]
+    rows = table.get("criterion")
+    if not isinstance(rows, list):
+        return None
+    table.pop("points", None)
+    for part in table.get("part", ()):
+        if isinstance(part, dict):
+            part.pop("points", None)
+    positions = [*range(len(rows))]
+    while positions:
+        table["criterion"] = [rows[position] for position in positions]
+        valid = Validation(deepcopy(table))
+        wrong = {place[1] for place, _ in valid.complaints if place[:1] == ("criterion",)}
+        if not valid.complaints:
+            return _made_rubric(valid, data, path, positions, answers=False)
+        if not wrong or any(place[:1] != ("criterion",) for place, _ in valid.complaints):
+            return None
+        positions = [it for index, it in enumerate(positions) if index not in wrong]
+    return None
 
 
 def _links_named(bound: Iterable[BoundCheck]) -> Iterator[str]:

@@ -39,6 +39,8 @@ class Validation:
         self._complain = self._reader.complain
         self.bound: list[BoundCheck] = []
         self.carried: list[list[BoundCarried]] = []
+        # Causes in `carried` that are no criteria, such as one that was deleted, with their places.
+        self.unknown_causes: list[tuple[TomlPath, str]] = []
         self._find_check, self._check_names = cache(find_check), cache(check_names)
         self.rubric = self._row((), table, keys.RUBRIC)
         self._defaults: TomlRow = {}
@@ -201,29 +203,29 @@ class Validation:
             self._complain((*where, "part"), f"there is no part {part!r}{hint}")
 
     def _check_order(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> None:
-        """Complain of ids in a list of a criterion that are not those of others; of `requires`,
-        of those above it.
+        """Complain of ids in `requires` that are not those of criteria above it, and of `carried`
+        from the criterion itself.
         """
         given: Any = self.rubric  # also of a list with other mistakes in it
         for key in where:
             given = given[key] if isinstance(key, int) else given.get(key, {})
         index, is_required = int(where[1]), where[-1] == "requires"
-        verb = "requires" if is_required else "is carried from"
         if not isinstance(given, list):
             return
         for name in given:
             if not isinstance(name, str) or positions.get(name, index) < index:
                 continue
             if name == row.get("id"):
-                message = f"{verb} itself"
-            elif name in positions and not is_required:
+                message = "requires itself" if is_required else "is carried from itself"
+            elif not is_required:
+                if name not in positions:
+                    self.unknown_causes.append((where, name))
                 continue
             elif name in positions:
-                message = (
-                    f"{verb} {name!r}, which is below: a criterion can only require those above it"
-                )
+                below = "which is below: a criterion can only require those above it"
+                message = f"requires {name!r}, {below}"
             else:
-                message = f"{verb} {name!r}, which does not exist{self._guess(name, positions)}"
+                message = f"requires {name!r}, which does not exist{self._guess(name, positions)}"
             self._complain(where, message)
 
     def _bind_carried(
@@ -232,9 +234,11 @@ class Validation:
         carried = self._row(where, table, keys.CARRIED)
         self._check_order((*where, "from"), row, positions)
         bound = self._bind_check(where, carried)
-        if bound is not None and "from" in carried:
-            return (carried["from"], *bound, carried.get("at", {}))
-        return None
+        if bound is None or "from" not in carried:
+            return None
+        causes = tuple(name for name in carried["from"] if name in positions)
+        # Where all its causes are deleted, nothing is carried.
+        return (causes, *bound, carried.get("at", {})) if causes else None
 
     def _read_adjustments(self, positions: Mapping[str, int]) -> dict[str, TomlRow]:
         """Return the adjustments by criterion."""

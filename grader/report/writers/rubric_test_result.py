@@ -2,6 +2,7 @@
 
 import re
 import textwrap
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from os.path import commonprefix
 
@@ -72,11 +73,23 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
     if test.is_interrupted:
         left = test.total - test.tried
         lines += ["", f"Interrupted: {counted(left, 'mutant')} and the equivalents are left."]
+    lines += _kind_lines(test)
     percent = int(test.score * 10) / 10  # rounded down: 100 only where nothing survived
     so_far = " so far" if test.is_interrupted else ""
     lines += ["", f"Mutation score{so_far}: {percent:g} %"]
     text = "\n".join(folded for line in lines for folded in _fold(printable(line), width))
     return without_commands(f"{text}\n")
+
+
+def _kind_lines(test: RubricTest) -> Iterator[str]:
+    """Yield the score of each kind, if there are several, and why mutants may survive."""
+    if len(test.kinds) > 1:
+        shown = [f"{it.kind} {it.caught}/{it.graded}" for it in test.kinds]
+        yield from ("", f"By kind: {', '.join(shown)}")
+    given = {row.reason for row in test.reference.rubric.ignored}
+    reasons = Counter(it.reason for it in test.ignored if it.reason not in given)
+    for reason, count in reasons.items():
+        yield from ("", f"{counted(count, 'mutant')} may survive: {reason}.")
 
 
 def unexamined_line(paths: Sequence[str], count: int) -> str:
@@ -125,7 +138,7 @@ def _count_lines(test: RubricTest) -> Iterator[str]:
     if test.same:
         line += f", {test.same} {'is' if test.same == 1 else 'are'} the same robot"
     if test.ignored:
-        line += f", {len(test.ignored)} ignored by the rubric"
+        line += f", {len(test.ignored)} ignored"
     yield f"{line}, {_count_or_none(len(test.survivors), 'survives', 'survive')}"
 
 
@@ -202,6 +215,10 @@ _SURVIVOR = JsonObject(
 _MUTANTS = JsonObject(
     {
         **each(TOTAL, "total tried caught"),
+        "kinds": (
+            Many(JsonObject({"kind": TEXT, **each(TOTAL, "caught graded")})),
+            lambda test: test.kinds,
+        ),
         "same_robot": (TOTAL, "same"),
         "ignored": (TOTAL, lambda test: len(test.ignored)),
         "survived": (TOTAL, lambda test: len(test.survivors)),

@@ -11,7 +11,7 @@ def code_facts(workspace: Workspace) -> Iterator[Fact]:
     for package, nodes in workspace.nodes_by_package.items():
         if nodes.has_more_faults:
             yield Undecided("code", f"the code of {package!r} is too long to search")
-        if nodes.nodes:
+        if nodes.nodes or nodes.programs:  # a script may use rclpy without a node of its own
             yield Compared("code")
         for program in nodes.programs:
             if program.syntax is not None:

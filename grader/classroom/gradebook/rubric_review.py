@@ -1,0 +1,86 @@
+"""What a rubric did to a class, before grades go out: criteria that all students pass or fail, that
+need manual grading, and equal robots with different points.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from grader.classroom.gradebook.gradebook import Gradebook
+from grader.classroom.gradebook.statistics import ClassStatistics, CriterionFigures, statistics
+from grader.classroom.gradebook.student_grade import StudentGrade
+from grader.lab.checks.manual import MANUAL_CHECKS
+
+_MIN_DECIDED = 3  # of fewer submissions nothing is said
+_SAME_ROBOT = ("the same file", "the same robot")
+
+
+class UnlikeGrades(NamedTuple):
+    """Students with equal robots, their automatic points of the robot, and the criteria that
+    differ.
+    """
+
+    students: tuple[str, ...]
+    equal: str  # what is equal: "the same file"
+    criteria: tuple[str, ...]
+
+
+class RubricReview(NamedTuple):
+    """What an instructor should look at before grades go out.
+
+    `figures` has those of the class, for how many passed, failed or are open.
+    """
+
+    figures: ClassStatistics
+    submissions: int  # that were graded
+    all_pass: Sequence[CriterionFigures]
+    all_fail: Sequence[CriterionFigures]
+    errored: Sequence[CriterionFigures]
+    undecided: Sequence[CriterionFigures]  # those that need manual grading most first
+    unlike: Sequence[UnlikeGrades]
+
+
+def review_rubric(book: Gradebook) -> RubricReview:
+    """Return what stands out in the results of a class."""
+    grades = [grade for grade in book if grade.stored is not None and not grade.is_gone]
+    figures = statistics(book, grades)
+    automatic = [
+        row
+        for row in figures.criteria
+        if row.criterion.check.function not in MANUAL_CHECKS and row.criterion.adjustment is None
+    ]
+    decided = [row for row in automatic if row.counts["decided"] >= _MIN_DECIDED]
+    failing = [row for row in decided if not row.counts["passed"] and row.counts["failed"]]
+    undecided = [row for row in automatic if row.counts["pending"]]
+    return RubricReview(
+        figures=figures,
+        submissions=len(grades),
+        all_pass=[row for row in decided if row.counts["passed"] == row.counts["decided"]],
+        all_fail=failing,
+        errored=[row for row in automatic if row.counts["errored"]],
+        undecided=sorted(undecided, key=lambda row: -row.counts["pending"]),
+        unlike=_unlike_grades(book, figures, grades),
+    )
+
+
+def _unlike_grades(
+    book: Gradebook, figures: ClassStatistics, grades: Sequence[StudentGrade]
+) -> list[UnlikeGrades]:
+    """Return the groups of students whose robots are equal, and whose criteria of the robot are
+    not.
+    """
+    of_robot = [row.id for row in book.criteria if row.check.subject in ("robot", "urdf")]
+    by_key = {grade.student.key: grade for grade in grades}
+    unlike = []
+    for work in figures.equal:
+        if work.equal not in _SAME_ROBOT:
+            continue
+        stored = [by_key[key].stored for key in work.students if key in by_key]
+        results = [one.results for one in stored if one is not None]
+        different = []
+        for name in of_robot:
+            statuses = {one[name][1] for one in results if name in one}
+            if len(statuses) > 1:
+                different.append(name)
+        if different:
+            unlike.append(UnlikeGrades(work.students, work.equal, tuple(different)))
+    return unlike

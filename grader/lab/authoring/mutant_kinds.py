@@ -1,0 +1,103 @@
+"""The kinds of mutants: for the score of each, to draw a sample over all of them, and why some may
+survive.
+"""
+
+import re
+from collections.abc import Iterable, Sequence
+from itertools import chain, zip_longest
+from random import Random
+from typing import NamedTuple
+
+from grader.lab.authoring.mutants import Mutant
+
+# The kinds, by how the families of their mutants begin; the first that fits counts.
+_KINDS = {
+    "numbers": ("number", "value type changed"),
+    "code": (
+        "spin",
+        "callback",
+        "response",
+        "init",
+        "constructor",
+        "declaration",
+        "quality of service",
+        "call awaited",
+    ),
+    "interfaces": ("field", "separator", "interface"),
+    "bridges": ("bridge",),
+    "worlds": ("world",),
+    "builds": ("data_files", "install", "dependency", "import"),
+    "files": ("file",),
+    "launch": ("action",),
+    "RViz": ("display", "fixed frame"),
+    "elements": ("element", "attribute", "visual", "type"),
+    "names": ("name", "definition", "text", "string", "parameter", "boolean"),
+}
+_OTHER = "others"
+_FREE_NAMES = re.compile(r"(?:^|/)(ros2_control|transmission) [^/]*name$")
+
+
+class KindScore(NamedTuple):
+    """How many mutants of a kind lose points, of how many that were graded."""
+
+    kind: str
+    caught: int
+    graded: int
+
+
+def kind_of(family: str) -> str:
+    """Return the kind of a family of mutants.
+
+    >>> kind_of("number x10")
+    'numbers'
+    """
+    for kind, starts in _KINDS.items():
+        if family.startswith(starts):
+            return kind
+    return _OTHER
+
+
+def draw(mutants: Sequence[Mutant], most: int, seed: int) -> list[Mutant]:
+    """Return at most so many mutants, in their order: of each family as many, as far as there are
+    so many, drawn by the seed.
+    """
+    if len(mutants) <= most:
+        return [*mutants]
+    families: dict[str, list[Mutant]] = {}
+    for mutant in mutants:
+        families.setdefault(mutant.family, []).append(mutant)
+    random = Random(seed)
+    shuffled = [random.sample(found, len(found)) for found in families.values()]
+    in_turn = chain.from_iterable(zip_longest(*shuffled))
+    drawn = [mutant for mutant in in_turn if mutant is not None][:most]
+    chosen = set(drawn)
+    return [mutant for mutant in mutants if mutant in chosen]
+
+
+def scores_by_kind(outcomes: Iterable[tuple[str, str]]) -> list[KindScore]:
+    """Return the score of each kind; `outcomes` are the families of mutants with what became of
+    them: caught, survived, or what counts for neither.
+    """
+    caught: dict[str, int] = {}
+    counts: dict[str, int] = {}
+    for family, fate in outcomes:
+        if fate in ("caught", "survived"):
+            kind = kind_of(family)
+            counts[kind] = counts.get(kind, 0) + 1
+            caught[kind] = caught.get(kind, 0) + (fate == "caught")
+    order = [*_KINDS, _OTHER]
+    return [KindScore(kind, caught[kind], counts[kind]) for kind in order if kind in counts]
+
+
+def why_right(mutant: Mutant) -> str:
+    """Return why ROS 2 does the same with a mutant that survives; empty where nothing says so."""
+    place = mutant.id.partition(": ")[2]
+    if mutant.family == "file renamed" and ".launch." in mutant.path:
+        return "ROS 2 starts a launch file of any name"
+    if mutant.family in ("name misspelt", "name exchanged"):
+        found = _FREE_NAMES.search(place.partition(" -> ")[0])
+        if found is not None:
+            return f"nothing refers to the name of <{found[1]}>"
+    if mutant.family == "string misspelt" and place.endswith((" output", " screen", " log")):
+        return "it says only where a node prints"
+    return ""

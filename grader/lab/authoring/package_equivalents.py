@@ -1,0 +1,337 @@
+"""Equivalents of packages: other files that build and start the same. Each must keep full marks.
+
+A file is rewritten only where this certainly changes nothing: a launch file whose nodes are all
+known, a setup.py that installs data only, a file that nothing names in another way.
+"""
+
+import ast
+import json
+import posixpath
+import re
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+from grader.base.source import Source
+from grader.lab.submission.edited import content
+from grader.lab.submission.submission import Submission
+from grader.ros.build.places import PREFIX
+from grader.ros.launch.launch_model import GivenParameters, Launch, StartedNode
+from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
+from grader.ros.python.python_file import PythonFile, argument
+
+LAUNCH_IN_XML, LAUNCH_IN_YAML = "launch file in XML", "launch file in YAML"
+BUILT_BY_CMAKE = "package built by CMake"
+_UNNAMED, _LATER = "nodes without the name of their program", "spawners after an event"
+_RENAMED, _SYSTEM_RENAMED = "files renamed", "<ros2_control> renamed"
+_Files = Mapping[str, str | None]  # the new texts of files by their paths; None for one that goes
+_TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".txt", ".cfg", ".sdf", ".launch")
+_FREE_FILES = re.compile(r"(^|/)(config|params|worlds?|parameters)/[^/]+\.(ya?ml|sdf|world)$")
+_SHARE = re.compile(rf"^{re.escape(PREFIX)}/share/([^/]+)/(.+)$")
+_SYSTEM = re.compile(r"<ros2_control\s[^>]*?\bname=(['\"])([\w-]+)\1")
+_PROGRAMS = re.compile("console_scripts|scripts *=|gui_scripts")
+_IMPORTS = (
+    "from launch.actions import RegisterEventHandler as _Handler, TimerAction as _Timer\n"
+    "from launch.event_handlers import OnProcessStart as _OnStart\n"
+)
+_CMAKE_TEXT = """cmake_minimum_required(VERSION 3.8)
+project({name})
+find_package(ament_cmake REQUIRED)
+{installs}
+ament_package()
+"""
+
+
+def package_equivalents(
+    submission: Submission, named: Collection[str], robot_files: Sequence[str]
+) -> Iterator[tuple[str, _Files]]:
+    """Yield each family with the files that it changes; `named` are the texts of the rubric."""
+    packages = [*submission.lab_packages.values()]
+    for language in (LAUNCH_IN_XML, LAUNCH_IN_YAML):
+        yield from _as_family(
+            language, (_in_other_language(submission, it, language) for it in packages)
+        )
+    yield from _as_family(BUILT_BY_CMAKE, (_built_by_cmake(submission, it) for it in packages))
+    yield from _as_family(_UNNAMED, (_without_names(submission, it) for it in packages))
+    yield from _as_family(_LATER, (_with_later_spawners(submission, it) for it in packages))
+    yield from _as_family(_RENAMED, (_with_renamed_files(submission, it, named) for it in packages))
+    yield from _as_family(_SYSTEM_RENAMED, (_with_renamed_system(submission, named, robot_files),))
+
+
+def _as_family(
+    family: str, changes: Iterator[_Files] | tuple[_Files]
+) -> Iterator[tuple[str, _Files]]:
+    """Yield a family with all its changes, if there are some."""
+    files: dict[str, str | None] = {}
+    for change in changes:
+        files.update(change)
+    if files:
+        yield family, files
+
+
+def _text(submission: Submission, path: str) -> str:
+    return (content(submission, path) or b"").decode("utf-8", "surrogateescape")
+
+
+# --- Launch files in another language
+
+
+def _in_other_language(submission: Submission, package: Package, language: str) -> _Files:
+    """Return the one launch file of a package in another language, and the build file that installs
+    it; nothing where not all of it is known, or where another file names it.
+    """
+    paths = [path for path in package.launch_files if not path.startswith("test/")]
+    if len(paths) != 1 or not paths[0].endswith(".launch.py"):
+        return {}
+    launch = package.launch(paths[0])
+    if not _is_plain(launch):
+        return {}
+    nodes = [_node_table(node) for node in launch.nodes]
+    known = [node for node in nodes if node is not None]
+    if len(known) < len(nodes) or not known:
+        return {}
+    ending = ".xml" if language == LAUNCH_IN_XML else ".yaml"
+    path = package.path(paths[0])
+    name = posixpath.basename(path)
+    build = package.path(CMAKE if package.is_cmake else SETUP)
+    for other in submission.whole_tree.files:
+        is_text = other.endswith(_TEXTS) and other not in (path, build)
+        if is_text and name in _text(submission, other):
+            return {}
+    text = _launch_xml(known) if language == LAUNCH_IN_XML else _launch_yaml(known)
+    built = _text(submission, build).replace(".launch.py", f".launch{ending}")
+    return {path: None, f"{path.removesuffix('.py')}{ending}": text, build: built}
+
+
+def _is_plain(launch: Launch) -> bool:
+    """Return whether a launch file is known to start nodes only, always the same."""
+    is_known = launch.syntax is None and not launch.unread
+    open_parts = launch.faults or launch.unknown or launch.doubts or launch.passed
+    return is_known and not (open_parts or launch.values or launch.declared)
+
+
+def _node_table(node: StartedNode) -> dict[str, Any] | None:
+    """Return a node as a table of a launch file; None where not all of it is known."""
+    if not node.when or node.included_by or None in (node.node_name, node.namespace, node.remaps):
+        return None
+    if node.arguments is None or None in node.arguments or node.parameters is None:
+        return None
+    table: dict[str, Any] = {"pkg": node.package, "exec": node.executable}
+    if node.node_name:
+        table["name"] = node.node_name
+    if node.namespace:
+        table["namespace"] = node.namespace
+    words = [_installed_text(str(word)) for word in node.arguments]
+    if any(" " in word.partition("$(")[0] for word in words):
+        return None
+    if words:
+        table["args"] = " ".join(words)
+    given = [_parameter_rows(one) for one in node.parameters]
+    if None in given:
+        return None
+    rows = [row for one in given if one is not None for row in one]
+    if rows:
+        table["param"] = rows
+    if node.remaps:
+        table["remap"] = [{"from": old, "to": new} for old, new in node.remaps]
+    return table
+
+
+def _parameter_rows(given: GivenParameters) -> list[dict[str, Any]] | None:
+    """Return parameters as rows of a launch file; None where not all of them are plain."""
+    if given.unknown or not given.is_plain or given.node:
+        return None
+    if given.path:
+        text = _installed_text(given.path)
+        return [{"from": text}] if text != given.path else None
+    rows = []
+    for name, parameter in given.values.items():
+        if type(parameter.value) not in (bool, int, float):
+            return None  # launch reads the text of another value as YAML
+        rows.append({"name": name, "value": parameter.value})
+    return rows
+
+
+def _installed_text(path: str) -> str:
+    """Return a path below the prefix as a launch file finds it."""
+    return _SHARE.sub(r"$(find-pkg-share \1)/\2", path)
+
+
+def _launch_xml(nodes: Sequence[Mapping[str, Any]]) -> str:
+    lines = ["<launch>"]
+    for node in nodes:
+        plain = {key: value for key, value in node.items() if not isinstance(value, list)}
+        attributes = "".join(f" {key}={quoteattr(str(value))}" for key, value in plain.items())
+        lines.append(f"  <node{attributes}>")
+        for tag in ("param", "remap"):
+            for row in node.get(tag, ()):
+                inner = "".join(f" {key}={quoteattr(_xml_value(row[key]))}" for key in row)
+                lines.append(f"    <{tag}{inner}/>")
+        lines.append("  </node>")
+    return "\n".join([*lines, "</launch>", ""])
+
+
+def _xml_value(value: Any) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _launch_yaml(nodes: Sequence[Mapping[str, Any]]) -> str:
+    """Return nodes in JSON, which is YAML."""
+    return json.dumps({"launch": [{"node": dict(node)} for node in nodes]}, indent=2)
+
+
+# --- Other builds
+
+
+def _built_by_cmake(submission: Submission, package: Package) -> _Files:
+    """Return the files of a package that CMake builds in place of setup.py; nothing where it has
+    programs or modules, or is no package of Python.
+    """
+    setup = package.path(SETUP)
+    manifest = package.manifest
+    is_python = manifest is not None and manifest.build_type == "ament_python"
+    if not is_python or package.is_cmake or package.installation is None:
+        return {}
+    if _PROGRAMS.search(_text(submission, setup)) or package.installation.unknown:
+        return {}
+    installs = []
+    share = f"{package.share.rstrip('/')}/"
+    for target, path in package.installed.items():
+        if not target.startswith(share) or path == MANIFEST:
+            continue
+        inside = target.removeprefix(share)
+        folder, name = posixpath.split(inside)
+        renamed = f" RENAME {name}" if name != posixpath.basename(path) else ""
+        where = f"share/${{PROJECT_NAME}}/{folder}".rstrip("/")
+        installs.append(f"install(FILES {path} DESTINATION {where}{renamed})")
+    text = _CMAKE_TEXT.format(name=package.name, installs="\n".join(installs))
+    described = _text(submission, package.path(MANIFEST)).replace("ament_python", "ament_cmake")
+    depends = "<buildtool_depend>ament_cmake</buildtool_depend>"
+    described = re.sub(r"(</license>)", rf"\1\n  {depends}", described, count=1)
+    return {setup: None, package.path(CMAKE): text, package.path(MANIFEST): described}
+
+
+# --- The same launch files, written differently
+
+
+def _python_launches(submission: Submission, package: Package) -> Iterator[tuple[str, PythonFile]]:
+    for path in package.launch_files:
+        if path.endswith(".py") and not path.startswith("test/"):
+            full = package.path(path)
+            file = PythonFile(Source(full, _text(submission, full)))
+            if file.fault is None:
+                yield full, file
+
+
+def _constant(call: ast.Call, name: str) -> str:
+    """Return an argument that is written as a text; empty for any other one."""
+    given = argument(call, name)
+    if given is None or not isinstance(given.value, ast.Constant):
+        return ""
+    return str(given.value.value)
+
+
+def _without_names(submission: Submission, package: Package) -> _Files:
+    """Return launch files without the names of nodes that their programs have anyway."""
+    files: dict[str, str | None] = {}
+    for path, file in _python_launches(submission, package):
+        nodes = package.launch(path.removeprefix(package.path(""))).nodes
+        spans = []
+        for call in file.calls("Node"):
+            given = argument(call, "name")
+            name, executable = _constant(call, "name"), _constant(call, "executable")
+            own = [it for it in nodes if it.executable == executable and it.node_name == name]
+            if given is None or not name or not own:
+                continue
+            if submission.workspace.name_of(own[0]._replace(node_name="")) == name:
+                spans.append(file.span(given))
+        text = file.text
+        for start, end in sorted(spans, reverse=True):
+            after = re.compile(r"\s*,?").match(text, end)
+            text = text[:start] + text[after.end() if after else end :]
+        if spans:
+            files[path] = text
+    return files
+
+
+def _with_later_spawners(submission: Submission, package: Package) -> _Files:
+    """Return launch files whose spawners start after another node, or after some seconds."""
+    files: dict[str, str | None] = {}
+    for path, file in _python_launches(submission, package):
+        entries = []
+        for call in file.calls("LaunchDescription"):
+            if call.args and isinstance(call.args[0], ast.List):
+                entries += call.args[0].elts
+        spawners = [it for it in entries if _is_spawner(file, it)]
+        others = [it for it in entries if isinstance(it, ast.Name) and _is_node(file, it)]
+        first = next((it.id for it in others if it not in spawners), "")
+        text = file.text
+        for entry in sorted(spawners, key=lambda it: file.span(it)[0], reverse=True):
+            start, end = file.span(entry)
+            action = text[start:end]
+            later = f"_Timer(period=3.0, actions=[{action}])"
+            if first:
+                later = f"_Handler(_OnStart(target_action={first}, on_start=[{action}]))"
+            text = text[:start] + later + text[end:]
+        imports = file.imports
+        if spawners and imports:
+            start, _ = file.span(imports[0])
+            files[path] = text[:start] + _IMPORTS + text[start:]
+    return files
+
+
+def _is_node(file: PythonFile, entry: ast.expr) -> bool:
+    meant = file.meant(entry)
+    return isinstance(meant, ast.Call) and file.segment(meant.func) == "Node"
+
+
+def _is_spawner(file: PythonFile, entry: ast.expr) -> bool:
+    meant = file.meant(entry)
+    if not isinstance(meant, ast.Call) or file.segment(meant.func) != "Node":
+        return False
+    return _constant(meant, "executable").removesuffix(".py") == "spawner"
+
+
+# --- Names that are free
+
+
+def _with_renamed_files(submission: Submission, package: Package, named: Collection[str]) -> _Files:
+    """Return the files of parameters and worlds under other names, with all files that name
+    them.
+    """
+    files: dict[str, str | None] = {}
+    texts: dict[str, str] = {}
+    for path in package.tree.files:
+        name = posixpath.basename(path)
+        stem, ending = posixpath.splitext(name)
+        is_asked = any(name in text or f"/{stem}" in text for text in named)
+        if not _FREE_FILES.search(path) or is_asked or "*" in name:
+            continue
+        word = re.compile(rf"(?<![\w.-]){re.escape(name)}(?![\w.-])")
+        uses = {}
+        for other in submission.whole_tree.files:
+            if other.endswith(_TEXTS):
+                text = texts.get(other, _text(submission, other))
+                if word.search(text):
+                    uses[other] = word.sub(f"{stem}_2x{ending}", text)
+        old = package.path(path)
+        if uses and old not in uses:
+            texts.update(uses)
+            files[old] = None
+            files[old.removesuffix(ending) + f"_2x{ending}"] = _text(submission, old)
+    return {**texts, **files}
+
+
+def _with_renamed_system(
+    submission: Submission, named: Collection[str], robot_files: Sequence[str]
+) -> _Files:
+    """Return the files of a robot in which <ros2_control> has another name, if nothing names it."""
+    files: dict[str, str | None] = {}
+    for path in robot_files:
+        text = _text(submission, path)
+        for found in reversed([*_SYSTEM.finditer(text)]):
+            if not any(found[2] in it for it in named):
+                start, end = found.span(2)
+                text = f"{text[:start]}{found[2]}_2x{text[end:]}"
+                files[path] = text
+    return files
