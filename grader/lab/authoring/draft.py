@@ -86,7 +86,7 @@ _LIGHT = (
 )
 _EVERYTHING = DraftChoice()
 _MAX_COMMENT = 10_000  # columns
-_MAX_VALUES = 40  # of a node, that are written as comments
+_MAX_VALUES = 20  # of a node, that are written as comments
 _MAX_ID = 60
 _MAX_TITLE = 100
 
@@ -385,7 +385,8 @@ def _value_lines(
     )
     for node, rows in values.items():
         for row in rows[:_MAX_VALUES]:
-            lines = layout.criterion(layout.ids[row.fact.words], row, 0, _MAX_COMMENT)
+            plain = row._replace(fact=row.fact._replace(about=""))
+            lines = layout.criterion(layout.ids[row.fact.words], plain, 0, _MAX_COMMENT)
             for line in lines:
                 yield f"# {line}" if line else ""
         if len(rows) > _MAX_VALUES:
@@ -457,7 +458,8 @@ class _Layout(NamedTuple):
             yield assignment("part", _PACKAGE)
         if fact.package:
             yield assignment("package", fact.package)
-        yield assignment("about", printable(fact.about))
+        if fact.about:
+            yield assignment("about", printable(fact.about))
         if points != self.points:
             yield assignment("points", points)
         yield assignment("title", printable(row.title))
@@ -503,13 +505,17 @@ def _with_lines(table: str, arguments: Mapping[str, Any], width: int = _WIDTH) -
 
 
 def _toml_lines(key: str, value: Any) -> Iterator[str]:
-    """Yield a line that sets a key, or, of a list that is too long for one, a line for each
-    item.
-    """
+    """Yield a line that sets a key, or, of a list that is too long for one, lines of items."""
     line = assignment(key, value)
     if len(line) <= _WIDTH or not isinstance(value, list):
         yield line
         return
     yield f"{line.partition(' = ')[0]} = ["
-    yield from (f"    {toml_literal(item)}," for item in value)
-    yield "]"
+    row = ""
+    for item in value:
+        text = f"{toml_literal(item)},"
+        if row and len(f"{row} {text}") > _WIDTH:
+            yield row
+            row = ""
+        row = f"{row} {text}" if row else f"    {text}"
+    yield from (row, "]")
