@@ -14,7 +14,7 @@ _MIN_DECIDED = 3  # of fewer submissions nothing is said
 _SAME_ROBOT = ("the same file", "the same robot")
 
 
-class UnlikeGrades(NamedTuple):
+class _UnlikeGrades(NamedTuple):
     """Students with equal robots, their automatic points of the robot, and the criteria that
     differ.
     """
@@ -36,27 +36,42 @@ class RubricReview(NamedTuple):
     all_fail: Sequence[CriterionFigures]
     errored: Sequence[CriterionFigures]
     undecided: Sequence[CriterionFigures]  # those that need manual grading most first
-    unlike: Sequence[UnlikeGrades]
+    unlike: Sequence[_UnlikeGrades]
+
+
+def _automatic(figures: ClassStatistics) -> list[CriterionFigures]:
+    """Return the criteria that a program decides, and that are not adjusted."""
+    rows = []
+    for row in figures.criteria:
+        is_manual = row.criterion.check.function in MANUAL_CHECKS
+        if not is_manual and row.criterion.adjustment is None:
+            rows.append(row)
+    return rows
 
 
 def review_rubric(book: Gradebook) -> RubricReview:
     """Return what stands out in the results of a class."""
     grades = [grade for grade in book if grade.stored is not None and not grade.is_gone]
     figures = statistics(book, grades)
-    automatic = [
-        row
-        for row in figures.criteria
-        if row.criterion.check.function not in MANUAL_CHECKS and row.criterion.adjustment is None
-    ]
-    decided = [row for row in automatic if row.counts["decided"] >= _MIN_DECIDED]
-    failing = [row for row in decided if not row.counts["passed"] and row.counts["failed"]]
+    automatic = _automatic(figures)
+    passing: list[CriterionFigures] = []
+    failing: list[CriterionFigures] = []
+    for row in automatic:
+        counts = row.counts
+        if counts["decided"] < _MIN_DECIDED:
+            continue
+        if counts["passed"] == counts["decided"]:
+            passing.append(row)
+        elif counts["failed"] and not counts["passed"]:
+            failing.append(row)
     undecided = [row for row in automatic if row.counts["pending"]]
+    errored = [row for row in automatic if row.counts["errored"]]
     return RubricReview(
         figures=figures,
         submissions=len(grades),
-        all_pass=[row for row in decided if row.counts["passed"] == row.counts["decided"]],
+        all_pass=passing,
         all_fail=failing,
-        errored=[row for row in automatic if row.counts["errored"]],
+        errored=errored,
         undecided=sorted(undecided, key=lambda row: -row.counts["pending"]),
         unlike=_unlike_grades(book, figures, grades),
     )
@@ -64,7 +79,7 @@ def review_rubric(book: Gradebook) -> RubricReview:
 
 def _unlike_grades(
     book: Gradebook, figures: ClassStatistics, grades: Sequence[StudentGrade]
-) -> list[UnlikeGrades]:
+) -> list[_UnlikeGrades]:
     """Return the groups of students whose robots are equal, and whose criteria of the robot are
     not.
     """
@@ -82,5 +97,5 @@ def _unlike_grades(
             if len(statuses) > 1:
                 different.append(name)
         if different:
-            unlike.append(UnlikeGrades(work.students, work.equal, tuple(different)))
+            unlike.append(_UnlikeGrades(work.students, work.equal, tuple(different)))
     return unlike

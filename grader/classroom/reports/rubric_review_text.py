@@ -24,11 +24,7 @@ def render_rubric_review(review: RubricReview, width: int) -> str:
 
 
 def _finding_lines(review: RubricReview) -> Iterator[str]:
-    if review.all_fail:
-        yield from ("", "All submissions fail. Is the criterion right, and the handout clear?")
-        for row in review.all_fail[:_MAX_LISTED]:
-            yield f"  {row.criterion.id}: {_first_mistake(review, row)}"
-        yield from _more(review.all_fail)
+    yield from _failing_lines(review)
     if review.errored:
         yield from ("", f"A check is faulty: {_names(review.errored)}")
     if review.undecided:
@@ -51,6 +47,16 @@ def _finding_lines(review: RubricReview) -> Iterator[str]:
         yield f"  {_names(review.all_pass)}"
 
 
+def _failing_lines(review: RubricReview) -> Iterator[str]:
+    """Yield the criteria that all submissions fail, each with its most common mistake."""
+    if review.all_fail:
+        yield from ("", "All submissions fail. Is the criterion right, and the handout clear?")
+        for row in review.all_fail[:_MAX_LISTED]:
+            yield f"  {row.criterion.id}: {_first_mistake(review, row)}"
+        if len(review.all_fail) > _MAX_LISTED:
+            yield f"  and {len(review.all_fail) - _MAX_LISTED} more"
+
+
 def _first_mistake(review: RubricReview, row: CriterionFigures) -> str:
     """Return the most common mistake in a criterion, with the number of its students."""
     for mistake in review.figures.common_mistakes:
@@ -61,8 +67,3 @@ def _first_mistake(review: RubricReview, row: CriterionFigures) -> str:
 
 def _names(rows: Sequence[CriterionFigures]) -> str:
     return enumerated([row.criterion.id for row in rows], _MAX_LISTED)
-
-
-def _more(rows: Sequence[CriterionFigures]) -> Iterator[str]:
-    if len(rows) > _MAX_LISTED:
-        yield f"  and {len(rows) - _MAX_LISTED} more"

@@ -13,7 +13,7 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.workspace.names import FAMILIES
 
 # What --without takes besides the families of names: words for the checks of a draft.
-KINDS: Mapping[str, tuple[str, ...]] = {
+_KINDS: Mapping[str, tuple[str, ...]] = {
     "shapes": ("shows_box", "shows_cylinder", "shows_sphere", "shows_mesh", "centre_at"),
     "colours": ("shows_colour",),
     "masses": ("mass_is",),
@@ -29,7 +29,7 @@ KINDS: Mapping[str, tuple[str, ...]] = {
     "installs": ("build_installs", "installs_files"),
     "measures": ("parameter_is",),
 }
-WITHOUT = (*KINDS, *FAMILIES)
+WITHOUT = (*_KINDS, *FAMILIES)
 # Without these, names cannot be compared.
 _OF_NAMES = ("urdf_loads", "package_found", "setup_imports", "launch_complete", "names_agree")
 # Checks that name one thing, with the argument; launch files may have any name anyway.
@@ -60,7 +60,7 @@ class DraftChoice(NamedTuple):
             return False
         if fact.check == "names_agree":
             return fact.arguments["of"] not in self.without
-        return not any(fact.check in KINDS.get(word, ()) for word in self.without)
+        return not any(fact.check in _KINDS.get(word, ()) for word in self.without)
 
     def freed(self, fact: Fact, robot: Configuration | None) -> Fact | Omission | None:
         """Return a fact that asks for none of the free names; None if nothing is left of it, and

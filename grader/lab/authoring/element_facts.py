@@ -209,7 +209,8 @@ def _title(fact: Fact) -> str:
         outer += f" of {_subject_text(subjects[0])}"
     inner = f"<{steps[-1].name}>"
     if "@name" in values and steps[-1].name == "joint":
-        inner = _joint_text(str(values.pop("@name")))
+        name = str(values.pop("@name"))
+        inner = _subject_text(name) if name.startswith(JOINT_OF) else f"the joint {name!r}"
     elif "@name" in values:
         inner += f" {values.pop('@name')!r}"
     details = [f"{_key_text(key)} {_value_words(value)}" for key, value in values.items()]
@@ -221,12 +222,6 @@ def _title(fact: Fact) -> str:
         if len(title) <= _MAX_TITLE:
             return title
     return f"{start} is as in the reference"
-
-
-def _joint_text(name: str) -> str:
-    if name.startswith(JOINT_OF):
-        return f"the joint of {name.removeprefix(JOINT_OF)!r}"
-    return f"the joint {name!r}"
 
 
 def _subject_text(name: str) -> str:

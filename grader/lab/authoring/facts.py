@@ -25,7 +25,6 @@ from grader.ros.urdf.model import (
     Joint,
     Link,
     Mesh,
-    Mimic,
     Sphere,
     Visual,
 )
@@ -310,8 +309,8 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
     own = robot.axis(joint)
     direction = _rounded(pose.rotate(own), 2)
     follows = joint.mimic is not None and robot.robot.has_joint(joint.mimic.joint)
-    if joint.mimic is not None and follows:
-        yield _mimic_fact(robot, joint, joint.mimic, direction)
+    if follows:
+        yield _mimic_fact(robot, joint, direction)
     lies = "is parallel to" if follows else "points along"
     title = f"the axis of the joint that moves {link!r} {lies} {point((*direction,))} in {parent!r}"
     either_way = {"either_way": True} if follows else {}
@@ -327,12 +326,12 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
     yield axis._replace(carried=(CarriedFact((f"{link} frame_at",), "joint_axis", in_own_frame),))
 
 
-def _mimic_fact(
-    robot: Configuration, joint: Joint, mimic: Mimic, direction: Sequence[float]
-) -> Fact:
+def _mimic_fact(robot: Configuration, joint: Joint, direction: Sequence[float]) -> Fact:
     """Return how a joint follows another one: by its motion, as the opposite axis with the opposite
     multiplier is the same.
     """
+    mimic = joint.mimic
+    assert mimic is not None
     link, leader = joint.child, robot.joint(mimic.joint).child
     moves = f"the joint that moves {link!r} follows the one that moves {leader!r}"
     times = "" if mimic.multiplier == 1 else f", {mimic.multiplier:g} times"

@@ -26,6 +26,8 @@ _CPP_STATEMENTS = {
     ),
 }
 _GENERATED = re.compile(r"\"?\b((?:msg|srv|action)/\w+\.(?:msg|srv|action))\b\"?")
+# Statements of rclpy without which a node does not work, and what each is.
+_STATEMENTS = {"init": "init", "__init__": "constructor", "declare_parameter": "declaration"}
 _BEST_EFFORT = "qos_profile_sensor_data"  # where a file imports it
 _CALLBACKS = {"create_timer": 1, "create_subscription": 2, "create_service": 2, "ActionServer": 3}
 _ANSWERING = ("create_service", "ActionServer")
@@ -120,27 +122,15 @@ def _code_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
 
 
 def _call_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
-    """Yield that rclpy is not initialised, the constructor of Node or a declaration is missing, a
-    quality of service is another one, or a call of a service waits.
+    """Yield that a statement of rclpy is missing, a quality of service is another one, or a call of
+    a service waits.
     """
     for node in file.nodes:
         match node:
-            case ast.Expr(value=ast.Call(func=ast.Attribute(attr="init"))):
-                yield _removed(file, label, "init removed", node)
-            case ast.Expr(
-                value=ast.Call(
-                    func=ast.Attribute(value=ast.Call(func=ast.Name(id="super")), attr="__init__")
-                )
-            ):
-                yield _removed(file, label, "constructor removed", node)
-            case ast.Expr(value=ast.Call(func=ast.Attribute(attr="declare_parameter"))):
-                yield _removed(file, label, "declaration removed", node)
-            case ast.Call(func=ast.Attribute(attr="create_publisher"), args=[_, _, quality]):
-                if isinstance(quality, ast.Constant) and _BEST_EFFORT in file.text:
-                    yield _requalified(file, label, node, quality, _BEST_EFFORT)
-            case ast.Call(func=ast.Attribute(attr="create_subscription"), args=[*_, quality]):
-                if not isinstance(quality, ast.Constant):
-                    yield _requalified(file, label, node, quality, "10")
+            case ast.Expr(value=ast.Call(func=ast.Attribute(attr=name))) if name in _STATEMENTS:
+                yield _removed(file, label, f"{_STATEMENTS[name]} removed", node)
+            case ast.Call(func=ast.Attribute(attr=name), args=[_, _, *_, quality]):
+                yield from _requalified(file, label, node, quality, name)
             case ast.Attribute(attr="call_async"):
                 _, end = file.span(node)
                 place = f"{label} {file.segment(node)[:MAX_LABEL]}"
@@ -154,8 +144,14 @@ def _removed(file: PythonFile, label: str, family: str, node: ast.Expr) -> Mutan
 
 
 def _requalified(
-    file: PythonFile, label: str, call: ast.Call, quality: ast.expr, new: str
-) -> MutantEdit:
-    """Return that a publisher or subscription has another quality of service."""
-    place = f"{label} {file.segment(call)[:MAX_LABEL]}"
-    return MutantEdit("quality of service changed", place, *file.span(quality), new)
+    file: PythonFile, label: str, call: ast.Call, quality: ast.expr, name: str
+) -> Iterator[MutantEdit]:
+    """Yield that a publisher is best effort, or a subscription to one is reliable."""
+    is_depth, new = isinstance(quality, ast.Constant), ""
+    if name == "create_publisher" and is_depth and _BEST_EFFORT in file.text:
+        new = _BEST_EFFORT
+    elif name == "create_subscription" and not is_depth:
+        new = "10"
+    if new:
+        place = f"{label} {file.segment(call)[:MAX_LABEL]}"
+        yield MutantEdit("quality of service changed", place, *file.span(quality), new)

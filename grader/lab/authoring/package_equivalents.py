@@ -16,11 +16,11 @@ from grader.base.source import Source
 from grader.lab.submission.edited import content
 from grader.lab.submission.submission import Submission
 from grader.ros.build.places import PREFIX
-from grader.ros.launch.launch_model import GivenParameters, Launch, StartedNode
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
 from grader.ros.python.python_file import PythonFile, argument
 
-LAUNCH_IN_XML, LAUNCH_IN_YAML = "launch file in XML", "launch file in YAML"
+_LAUNCH_IN_XML, _LAUNCH_IN_YAML = "launch file in XML", "launch file in YAML"
 BUILT_BY_CMAKE = "package built by CMake"
 _UNNAMED, _LATER = "nodes without the name of their program", "spawners after an event"
 _RENAMED, _SYSTEM_RENAMED = "files renamed", "<ros2_control> renamed"
@@ -47,7 +47,7 @@ def package_equivalents(
 ) -> Iterator[tuple[str, _Files]]:
     """Yield each family with the files that it changes; `named` are the texts of the rubric."""
     packages = [*submission.lab_packages.values()]
-    for language in (LAUNCH_IN_XML, LAUNCH_IN_YAML):
+    for language in (_LAUNCH_IN_XML, _LAUNCH_IN_YAML):
         yield from _as_family(
             language, (_in_other_language(submission, it, language) for it in packages)
         )
@@ -90,7 +90,7 @@ def _in_other_language(submission: Submission, package: Package, language: str) 
     known = [node for node in nodes if node is not None]
     if len(known) < len(nodes) or not known:
         return {}
-    ending = ".xml" if language == LAUNCH_IN_XML else ".yaml"
+    ending = ".xml" if language == _LAUNCH_IN_XML else ".yaml"
     path = package.path(paths[0])
     name = posixpath.basename(path)
     build = package.path(CMAKE if package.is_cmake else SETUP)
@@ -98,7 +98,9 @@ def _in_other_language(submission: Submission, package: Package, language: str) 
         is_text = other.endswith(_TEXTS) and other not in (path, build)
         if is_text and name in _text(submission, other):
             return {}
-    text = _launch_xml(known) if language == LAUNCH_IN_XML else _launch_yaml(known)
+    text = _launch_xml(known)
+    if language == _LAUNCH_IN_YAML:  # JSON is YAML
+        text = json.dumps({"launch": [{"node": node} for node in known]}, indent=2)
     built = _text(submission, build).replace(".launch.py", f".launch{ending}")
     return {path: None, f"{path.removesuffix('.py')}{ending}": text, build: built}
 
@@ -126,10 +128,9 @@ def _node_table(node: StartedNode) -> dict[str, Any] | None:
         return None
     if words:
         table["args"] = " ".join(words)
-    given = [_parameter_rows(one) for one in node.parameters]
-    if None in given:
+    rows = _parameter_rows(node)
+    if rows is None:
         return None
-    rows = [row for one in given if one is not None for row in one]
     if rows:
         table["param"] = rows
     if node.remaps:
@@ -137,18 +138,22 @@ def _node_table(node: StartedNode) -> dict[str, Any] | None:
     return table
 
 
-def _parameter_rows(given: GivenParameters) -> list[dict[str, Any]] | None:
-    """Return parameters as rows of a launch file; None where not all of them are plain."""
-    if given.unknown or not given.is_plain or given.node:
-        return None
-    if given.path:
+def _parameter_rows(node: StartedNode) -> list[dict[str, Any]] | None:
+    """Return the parameters of a node as rows of a launch file; None where not all of them are
+    plain.
+    """
+    rows: list[dict[str, Any]] = []
+    for given in node.parameters or ():
         text = _installed_text(given.path)
-        return [{"from": text}] if text != given.path else None
-    rows = []
-    for name, parameter in given.values.items():
-        if type(parameter.value) not in (bool, int, float):
-            return None  # launch reads the text of another value as YAML
-        rows.append({"name": name, "value": parameter.value})
+        is_found = not given.path or text != given.path
+        if given.unknown or not given.is_plain or given.node or not is_found:
+            return None
+        if given.path:
+            rows.append({"from": text})
+        for name, parameter in given.values.items():
+            if type(parameter.value) not in (bool, int, float):
+                return None  # launch reads the text of another value as YAML
+            rows.append({"name": name, "value": parameter.value})
     return rows
 
 
@@ -165,19 +170,13 @@ def _launch_xml(nodes: Sequence[Mapping[str, Any]]) -> str:
         lines.append(f"  <node{attributes}>")
         for tag in ("param", "remap"):
             for row in node.get(tag, ()):
-                inner = "".join(f" {key}={quoteattr(_xml_value(row[key]))}" for key in row)
+                inner = ""
+                for key, value in row.items():
+                    text = str(value).lower() if isinstance(value, bool) else str(value)
+                    inner += f" {key}={quoteattr(text)}"
                 lines.append(f"    <{tag}{inner}/>")
         lines.append("  </node>")
     return "\n".join([*lines, "</launch>", ""])
-
-
-def _xml_value(value: Any) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)
-
-
-def _launch_yaml(nodes: Sequence[Mapping[str, Any]]) -> str:
-    """Return nodes in JSON, which is YAML."""
-    return json.dumps({"launch": [{"node": dict(node)} for node in nodes]}, indent=2)
 
 
 # --- Other builds

@@ -173,7 +173,8 @@ def naming_facts(solution: Solution) -> Iterator[Fact]:
 
     A node without the parameter passes, as a node may have another name, or a default.
     """
-    robot = solution.robot.robot
+    robot, package = solution.robot.robot, solution.submission.package
+    main = package.name if package is not None else ""
     links = {link.name for link in robot.links}
     names = {name: name for name in links}
     for joint in robot.joints:
@@ -190,19 +191,13 @@ def naming_facts(solution: Solution) -> Iterator[Fact]:
         asked = {"has": meant} if isinstance(value, list) else {"value": meant[0]}
         shown = enumerated([repr(it) for it in items], _MAX_IN_TITLE)
         fact = _parameter_fact(node, name, **asked, where_given=True)
-        elsewhere = CarriedFact(_OF_NAMING, "package_found", {"name": _main_name(solution)})
+        elsewhere = CarriedFact(_OF_NAMING, "package_found", {"name": main})
         title = f"the parameter {name} of {node} names {shown}"
         yield fact._replace(title=title, carried=(elsewhere,))
 
 
 def _is_text(value: Any) -> bool:
     return isinstance(value, str)
-
-
-def _main_name(solution: Solution) -> str:
-    """Return the name of the package that is graded."""
-    package = solution.submission.package
-    return package.name if package is not None else ""
 
 
 def value_facts(submission: Submission) -> Iterator[Fact]:

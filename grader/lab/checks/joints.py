@@ -36,13 +36,11 @@ def _breaks_without_direction(arguments: Mapping[str, Any]) -> Collection[str]:
     return () if arguments.get("direction") is not None else (MIMIC_TURNED,)
 
 
-def _breaks_one_way(arguments: Mapping[str, Any]) -> Collection[str]:
-    return () if arguments.get("either_way") else (MIMIC_TURNED,)
-
-
 ABOUT = {
     "joint_limits": About(("limit",), breaks_under=_breaks_without_direction),
-    "joint_axis": About(("axis",), breaks_under=_breaks_one_way),
+    "joint_axis": About(
+        ("axis",), breaks_under=lambda it: () if it.get("either_way") else (MIMIC_TURNED,)
+    ),
     "mimics": About(("mimic",), breaks_under=_breaks_without_direction),
     "joint_dynamics": About(("dynamics",)),
 }

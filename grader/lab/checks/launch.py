@@ -21,7 +21,7 @@ from grader.ros.package.file_places import FilePlace, find_places
 from grader.ros.package.package import CMAKE, SETUP, Package
 
 if TYPE_CHECKING:
-    from grader.ros.launch.launch_model import Launch, Purpose
+    from grader.ros.launch.launch_model import Launch
 
 
 # What the edits for hints may change.
@@ -253,10 +253,9 @@ def _look_for_files(
     if not started and package.launch(_path_of(package, name)).syntax is not None:
         return passed("the launch file cannot be read, so it looks for no file")
     launch = _launch_of(package, name)
-    purposes: list[Purpose] = ["urdf", "include", "read"]
-    if needs_robot or package.rviz_files:  # else RViz may start without a file
-        purposes.append("rviz")
-    places = find_places(package, launch, *purposes, built=built)
+    places = find_places(package, launch, "urdf", "rviz", "include", "read", built=built)
+    if not (needs_robot or package.rviz_files):  # then RViz may start without a file
+        places = [it for it in places if it.file.purpose != "rviz"]
     if built:
         places = [it.with_parts(package) for it in places]
     wrong = [it for it in places if it.state == "wrong"]
