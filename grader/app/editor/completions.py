@@ -7,6 +7,7 @@ from typing import NamedTuple
 from lsprotocol import types as lsp
 
 from grader.app.editor.look import Look
+from grader.app.editor.parameter_keys import parameter_key
 from grader.app.editor.places import TextPlace
 
 _MAX_BEFORE = 2_000  # characters, in which it is searched what is asked for
@@ -80,9 +81,6 @@ _CONTEXTS: Sequence[_Context] = (
     _context(_PYTHON, rf"\bfrom\s+{_PACKAGE}\.srv\s+import\s+(?:\w+\s*,\s*)*", "service"),
     _context(_PYTHON, rf"\bfrom\s+{_PACKAGE}\.action\s+import\s+(?:\w+\s*,\s*)*", "action"),
 )
-# Above a line of YAML that a key begins: the sections that it is in.
-_KEY = re.compile(r"(?P<indent> *)(?P<key>[\w/*.-]+):")
-_PARAMETERS = "ros__parameters"
 
 
 def completions(look: Look, place: TextPlace) -> list[lsp.CompletionItem]:
@@ -97,30 +95,11 @@ def completions(look: Look, place: TextPlace) -> list[lsp.CompletionItem]:
                 names += look.names.offered(kind, owner)
             return _items(names, context.kinds[0])
     if place.path.endswith(_YAML):
-        node = _node_around(before)
-        if node:
-            return _items(look.names.offered("parameter", node), "parameter")
+        *above, line = before.split("\n")
+        key = parameter_key(above, line)
+        if key is not None and re.fullmatch(r" *[\w.]*", line):
+            return _items(look.names.offered("parameter", key.node), "parameter")
     return []
-
-
-def _node_around(before: str) -> str:
-    """Return the node whose parameters are written where a line of YAML begins; empty where none
-    are.
-    """
-    *above, line = before.split("\n")
-    if not re.fullmatch(r" *[\w.]*", line):
-        return ""
-    indent = len(line) - len(line.lstrip(" "))
-    is_parameters = False
-    for text in reversed(above):
-        key = _KEY.match(text)
-        if key is None or len(key["indent"]) >= indent:
-            continue
-        indent = len(key["indent"])
-        if is_parameters:
-            return key["key"].rpartition("/")[2]
-        is_parameters = key["key"] == _PARAMETERS
-    return ""
 
 
 def _items(names: Iterable[str], kind: str) -> list[lsp.CompletionItem]:
