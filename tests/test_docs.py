@@ -310,4 +310,4 @@ def test_the_pages_stay_short() -> None:
         for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
     }
     assert words[ROOT / "README.md"] <= 650
-    assert sum(words[page] for page in words if page.name not in generated) <= 28_300
+    assert sum(words[page] for page in words if page.name not in generated) <= 28_800

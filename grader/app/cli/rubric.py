@@ -123,7 +123,7 @@ def new_rubric(
 
       grader rubric new my_lab.toml --from solution.urdf --force
 
-      grader rubric new my_lab.toml --from my_lab --without colours,masses --free lidar
+      grader rubric new my_lab.toml --from my_lab --without colours,masses
     """
     from grader.app.commands.rubric_making import draft_choice, write_rubric
 
