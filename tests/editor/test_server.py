@@ -169,6 +169,26 @@ def test_says_what_a_name_is(diffdrive: Path) -> None:
     _edit(diffdrive, act)
 
 
+def test_says_what_a_parameter_is(diffdrive: Path) -> None:
+    async def act(one: Editor) -> None:
+        at, document = one.position(_CONTROLLERS, "wheel_radius"), one.document(_CONTROLLERS)
+        hover = await one.client.text_document_hover_async(lsp.HoverParams(document, at))
+        assert hover is not None
+        assert isinstance(hover.contents, lsp.MarkupContent)
+        assert "type: double" in hover.contents.value
+        await one.open(_CONTROLLERS)
+        await one.type(_CONTROLLERS, one.text(_CONTROLLERS).replace("wheel_radius:", "whe"))
+        rows = one.text(_CONTROLLERS).split("\n")
+        row = next(number for number, line in enumerate(rows) if "wheel_radius:" in line)
+        end = rows[row].index("wheel_radius") + len("whe")
+        asked = lsp.CompletionParams(document, lsp.Position(row, end))
+        found = await one.client.text_document_completion_async(asked)
+        assert isinstance(found, list | tuple)
+        assert {"wheel_radius", "wheel_separation"} <= {item.label for item in found}
+
+    _edit(diffdrive, act)
+
+
 def test_finds_definitions_and_uses(diffdrive: Path) -> None:
     async def act(one: Editor) -> None:
         at, document = one.position(_CONTROLLERS, "left_wheel_joint"), one.document(_CONTROLLERS)

@@ -9,6 +9,7 @@ from lsprotocol import types as lsp
 from grader.app.editor.look import Look
 from grader.app.editor.parameter_keys import parameter_key
 from grader.app.editor.places import TextPlace
+from grader.files.tree import overlaid
 
 _MAX_BEFORE = 2_000  # characters, in which it is searched what is asked for
 _MAX_OFFERED = 500
@@ -98,8 +99,17 @@ def completions(look: Look, place: TextPlace) -> list[lsp.CompletionItem]:
         *above, line = before.split("\n")
         key = parameter_key(above, line)
         if key is not None and re.fullmatch(r" *[\w.]*", line):
-            return _items(look.names.offered("parameter", key.node), "parameter")
+            whole = _without_line(look, place)
+            return _items(whole.names.parameters_below(key.node, key.prefix), "parameter")
     return []
+
+
+def _without_line(look: Look, place: TextPlace) -> Look:
+    """Return a look at the files without a line: while a key is typed, its file is no YAML."""
+    lines = place.lines.text.split("\n")
+    lines[place.line - 1] = ""
+    data = "\n".join(lines).encode("utf-8", "surrogatepass")
+    return look.again(overlaid(look.tree, {place.path: data}))
 
 
 def _items(names: Iterable[str], kind: str) -> list[lsp.CompletionItem]:

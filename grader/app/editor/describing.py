@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from lsprotocol import types as lsp
 
 from grader.app.editor.look import Look
+from grader.app.editor.parameter_keys import parameter_key
 from grader.app.editor.places import TextPlace
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import counted, enumerated, printable
@@ -18,7 +19,7 @@ def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
     """Return what is known of the name at a place; None where there is none."""
     found = look.names.at(*place.triple)
     if found is None:
-        return None
+        return _hover_of_parameter(look, place)
     same = look.names.same(found)
     defined = [it.location.file_and_line for it in same if it.role == "definition"]
     where = "defined nowhere in this workspace"
@@ -29,8 +30,28 @@ def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
     rows = [f"**{found.kind}** `{found.name}`: {where}; used {used}"]
     rows += _of_robots(look, found.kind, found.name)
     rows += (f"value: `{value}`" for value in look.names.values(found)[:_MAX_NAMED])
-    markup = lsp.MarkupContent(lsp.MarkupKind.Markdown, "\n\n".join(map(printable, rows)))
-    return lsp.Hover(markup, place.ranges(look).range(found.location))
+    if found.kind == "parameter":
+        rows += _parameter_rows(look, place)
+    return lsp.Hover(_markdown(rows), place.ranges(look).range(found.location))
+
+
+def _hover_of_parameter(look: Look, place: TextPlace) -> lsp.Hover | None:
+    """Return what is known of the parameter whose key is in a line of YAML."""
+    rows = _parameter_rows(look, place)
+    return lsp.Hover(_markdown(rows)) if rows else None
+
+
+def _parameter_rows(look: Look, place: TextPlace) -> list[str]:
+    if not place.path.endswith((".yaml", ".yml")):
+        return []
+    lines = place.lines.text.split("\n")[: place.line]
+    key = parameter_key(lines[:-1], lines[-1])
+    text = look.names.parameter_text(key.node, key.name) if key is not None else ""
+    return [f"**parameter** `{key.name}`", *text.split("\n")] if key is not None and text else []
+
+
+def _markdown(rows: Sequence[str]) -> lsp.MarkupContent:
+    return lsp.MarkupContent(lsp.MarkupKind.Markdown, "\n\n".join(map(printable, rows)))
 
 
 def _of_robots(look: Look, kind: str, name: str) -> Iterator[str]:

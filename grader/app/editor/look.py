@@ -44,8 +44,8 @@ class Look:
     tree: Tree
     opened: OpenedWorkspace
     findings: Sequence[Finding]
-    settings: Settings
     grade: Callable[[Tree], Graded]
+    again: "Callable[[Tree], Look]"  # looks at other files instead
 
     @cached_property
     def names(self) -> NamePlaces:
@@ -80,7 +80,8 @@ def look_at(
     root: Path,
     settings: Settings,
     memory: Memory,
-    grade: Callable[[Tree], Graded] = lambda _: Graded(),
+    grade: Callable[[Tree], Graded],
+    again: Callable[[Tree], Look],
 ) -> Look:
     """Look at the files of a folder as `grader inspect` does.
 
@@ -90,6 +91,7 @@ def look_at(
         settings: What is ignored, and for which release the names are.
         memory: What is kept of the look before.
         grade: Grades the files when it is asked for.
+        again: Looks at other files.
     """
     opened = read_workspace(tree, tree.name, URDF_LIMIT, {}, memory)
     opened = opened.of_release(settings.distro, settings.file.name if settings.file else "")
@@ -104,4 +106,4 @@ def look_at(
     selection = Selection(settings=settings, folder=root)
     shown = without_ignored(inspection, opened.whole_tree, [*tree.files], selection)
     memory.forget_unused()
-    return Look(tree, opened, findings_in_inspection(shown), settings, grade)
+    return Look(tree, opened, findings_in_inspection(shown), grade, again)

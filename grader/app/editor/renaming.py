@@ -7,17 +7,15 @@ from collections.abc import Mapping
 from lsprotocol import types as lsp
 from pygls.exceptions import JsonRpcInvalidParams
 
-from grader.app.editor.look import Look, look_at
+from grader.app.editor.look import Look
 from grader.app.editor.places import TextPlace
 from grader.base.element_edits import edited
-from grader.base.reuse import Memory
 from grader.base.source import Edit, Location
 from grader.base.text import counted
 from grader.files.tree import Tree, overlaid
 from grader.report.findings import Finding
 
 _VALID = re.compile(r"[\w~/.-]+")
-_MOST = 20_000
 
 
 class CannotRenameError(JsonRpcInvalidParams):
@@ -53,7 +51,7 @@ def renamed(look: Look, place: TextPlace, new: str) -> lsp.WorkspaceEdit | None:
         if other.is_made:
             raise CannotRenameError(_made(at, found.name))
         edits[at.path, at.line, at.column] = Edit(at.path, at.line, at.column, found.name, new)
-    after = look_at(_with(look, edits), place.root, look.settings, Memory(_MOST))
+    after = look.again(_with(look, edits))
     _check_problems(look, after)
     left = after.names.named_like(same, found.name)
     if left:

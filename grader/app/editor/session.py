@@ -59,12 +59,20 @@ class EditorSession:
         with self._lock:
             if self._look is None or self._seen != self._version:
                 self._looking = self._version
-                tree, root = self.files.tree(), self.files.root
-                settings = self._read_settings()
-                grade = partial(self._grade, settings)
-                self._look = look_at(tree, root, settings, self._memory, grade)
+                self._look = self._look_at(self.files.tree())
                 self._seen = self._looking
             return self._look
+
+    def _look_again(self, tree: Tree) -> Look:
+        """Return a look at other files, such as these after edits."""
+        with self._lock:
+            self._looking = self._version
+            return self._look_at(tree)
+
+    def _look_at(self, tree: Tree) -> Look:
+        settings = self._read_settings()
+        grade = partial(self._grade, settings)
+        return look_at(tree, self.files.root, settings, self._memory, grade, self._look_again)
 
     def _check(self) -> None:
         if self._looking != self._version:

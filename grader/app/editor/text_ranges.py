@@ -17,6 +17,11 @@ class Lines:
     def __init__(self, source: Source) -> None:
         self._source = source
 
+    @property
+    def text(self) -> str:
+        """The whole text."""
+        return self._source.text
+
     def position(self, line: int, column: int) -> lsp.Position:
         """Return the position of a line and column, which count from 1, columns in characters."""
         text = self._source.line(line)

@@ -28,7 +28,7 @@ def parameter_explanation(name: str) -> str:
         guess = did_you_mean(parameter, {row.name for row in known.rows})
         raise InputError(f"{known.node} has no parameter {parameter!r}{guess}")
     texts = [f"{rows[0].name}: a parameter of {known.node}"]
-    texts += ["\n".join(_row_lines(row)) for row in rows]
+    texts += map(row_text, rows)
     return "\n\n".join([*texts, f"Source: {known.source}"]) + "\n"
 
 
@@ -44,8 +44,12 @@ def _summary(row: ParameterRow) -> str:
     return ", ".join(parts)
 
 
+def row_text(row: ParameterRow) -> str:
+    """Return what is known of a parameter, one fact a line."""
+    return "\n".join(_row_lines(row))
+
+
 def _row_lines(row: ParameterRow) -> Iterator[str]:
-    """Yield what is known of a parameter, one fact a line."""
     yield f"type: {row.type or 'any'}"
     if row.default is not None:
         yield f"default: {_value(row.default)}"

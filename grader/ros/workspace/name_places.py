@@ -6,6 +6,7 @@ from functools import cached_property
 from grader.ros.workspace.all_names import WorkspaceNames
 from grader.ros.workspace.names import Mismatch
 from grader.ros.workspace.offered_names import OFFERED, offered_names
+from grader.ros.workspace.offered_parameters import parameter_text, parameters_below
 from grader.ros.workspace.opened import OpenedWorkspace
 from grader.ros.workspace.reading import read_agreement
 from grader.ros.workspace.written_names import WrittenName
@@ -66,6 +67,14 @@ class NamePlaces:
         """Return the names of a kind that may be written, as `offered_names` does."""
         assert kind in OFFERED
         return offered_names(self._opened.workspace, kind, owner)
+
+    def parameters_below(self, section: str, prefix: str) -> list[str]:
+        """Return the keys that a section of parameters may have, as `parameters_below` does."""
+        return parameters_below(self._opened.workspace, section, prefix)
+
+    def parameter_text(self, section: str, name: str) -> str:
+        """Return what is known of a parameter, as `parameter_text` does."""
+        return parameter_text(self._opened.workspace, section, name)
 
     def values(self, name: WrittenName) -> list[str]:
         """Return the values that an argument has, as far as they are known, each once."""
