@@ -54,7 +54,7 @@ def test_equals_one_from_nothing(folder: str) -> None:
 @pytest.mark.exhaustive
 @pytest.mark.parametrize("folder", _WORKSPACES)
 def test_equals_one_from_nothing_often(folder: str) -> None:
-    _compare(files_of(ROOT / folder), 300, random.Random(f"{folder}!"))
+    _compare(files_of(ROOT / folder), 60, random.Random(f"{folder}!"))
 
 
 def twenty_packages() -> Files:

@@ -19,7 +19,8 @@ def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
     """Return what is known of the name at a place; None where there is none."""
     found = look.names.at(*place.triple)
     if found is None:
-        return _hover_of_parameter(look, place)
+        rows = _parameter_rows(look, place)
+        return lsp.Hover(_markdown(rows)) if rows else None
     same = look.names.same(found)
     defined = [it.location.file_and_line for it in same if it.role == "definition"]
     where = "defined nowhere in this workspace"
@@ -35,13 +36,8 @@ def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
     return lsp.Hover(_markdown(rows), place.ranges(look).range(found.location))
 
 
-def _hover_of_parameter(look: Look, place: TextPlace) -> lsp.Hover | None:
-    """Return what is known of the parameter whose key is in a line of YAML."""
-    rows = _parameter_rows(look, place)
-    return lsp.Hover(_markdown(rows)) if rows else None
-
-
 def _parameter_rows(look: Look, place: TextPlace) -> list[str]:
+    """Return what is known of the parameter whose key is in a line of YAML; nothing elsewhere."""
     if not place.path.endswith((".yaml", ".yml")):
         return []
     lines = place.lines.text.split("\n")[: place.line]
