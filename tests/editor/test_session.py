@@ -92,23 +92,23 @@ def test_equals_an_inspection_often(folder: str, tmp_path: Path) -> None:
 @pytest.mark.exhaustive
 def test_equals_an_inspection_of_twenty_packages(tmp_path: Path) -> None:
     _write(tmp_path / "twenty", twenty_packages())
-    _check_edits(tmp_path / "twenty", tmp_path / "ws", 100)
+    _check_edits(tmp_path / "twenty", tmp_path / "ws", 30)
 
 
 @pytest.mark.exhaustive
 def test_memory_does_not_grow(tmp_path: Path) -> None:
-    """After 2,000 changes, what is kept has grown by less than a fifth."""
+    """After 500 changes, what is kept has grown by less than a fifth."""
     _write(tmp_path / "ws", files_of(ROOT / "rubrics/diffdrive"))
     session = EditorSession(tmp_path / "ws")
     path = "diffdrive_robot/urdf/diffdrive.urdf.xacro"
     text = session.files.text(path)
     tracemalloc.start()
     sizes = []
-    for number in range(2_000):
+    for number in range(500):
         typed = f"{text}<!-- {number} -->\n"
         session.change(partial(EditedFiles.type, path=path, text=typed))
         session.look()
-        if number in (99, 1_999):
+        if number in (99, 499):
             gc.collect()
             sizes.append(tracemalloc.get_traced_memory()[0])
     tracemalloc.stop()
