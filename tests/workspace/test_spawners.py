@@ -110,3 +110,24 @@ def test_a_manager_knows_the_controllers(given: str, more: list[Edit], found: li
 def test_a_controller_that_nothing_starts(more: list[Edit], found: list[str]) -> None:
     """Of those that publish, and of those that move joints, one is started, unless that may be done elsewhere."""
     assert with_manager(GIVEN, *more) == found
+
+
+@pytest.mark.parametrize(
+    ("name", "found"),
+    [
+        ("controller_manager", []),
+        (
+            "controlle_manager",
+            [
+                (
+                    "the controller manager does not read the types below 'controlle_manager'; did you mean"
+                    " 'controller_manager'?"
+                )
+            ],
+        ),
+        ("driver", []),  # a name that a driver may have
+    ],
+)
+def test_a_misspelt_section_of_types(name: str, found: list[str]) -> None:
+    edit = (_CONTROLLERS, "controller_manager:", f"{name}:")
+    assert [it.message for it in sure(agreement_of(edited(edit)))] == found

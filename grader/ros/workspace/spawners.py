@@ -8,7 +8,8 @@ from itertools import pairwise
 
 from grader.base.names import near
 from grader.base.text import enumerated, quoted
-from grader.ros.config.yaml_nodes import YamlFault
+from grader.ros.config.yaml_nodes import YamlFault, YamlNode
+from grader.ros.config.yaml_values import sections_in
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.package.package import Package
@@ -23,6 +24,10 @@ _MAX_CONTROLLERS = 3  # in a message
 def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers that spawners load, and what keeps controllers from being loaded."""
     controllers = list(defined_controllers(workspace))
+    misspelt = list(_misspelt_managers(workspace))
+    if misspelt:
+        yield from misspelt
+        return
     if not controllers:
         yield from _no_controllers(workspace)
         return
@@ -140,6 +145,35 @@ def _controllers_without_type(
             has_type = "type" in own.values or f"{controller.node_name}.type" in given.values
             lacks_type[controller.node_name] = not own.unknown and not has_type
     return manager, {name for name, lacks in lacks_type.items() if lacks}
+
+
+def _misspelt_managers(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the sections of types of controllers that are called nearly as the controller manager,
+    where none is called so.
+    """
+    if not any(_is_spawner(node) for _, node in workspace.nodes):
+        return
+    found = []
+    for _, tree in workspace.trees:
+        for keys, section in sections_in(tree):
+            name = keys[-1].rpartition("/")[2] if keys else ""
+            if name == MANAGER:
+                return
+            if near(name, (MANAGER,)) is not None and _has_types(section):
+                found.append((name, tree.key_location(*keys)))
+    for name, at in found:
+        message = (
+            f"the controller manager does not read the types below {name!r}; did you mean "
+            f"{MANAGER!r}?"
+        )
+        yield Mismatch("controllers", message, at, corrections=corrections(name, at, MANAGER))
+
+
+def _has_types(section: YamlNode) -> bool:
+    """Return whether parameters have the types of controllers."""
+    inner = section.value.values() if isinstance(section.value, dict) else ()
+    types = [kind for node in inner if (kind := node.get("type")) is not None]
+    return any("/" in (kind.text or "") for kind in types)
 
 
 def _no_controllers(workspace: Workspace) -> Iterator[Mismatch]:
