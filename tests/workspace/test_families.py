@@ -1312,6 +1312,37 @@ def generate_launch_description():
     assert sure(agreement_of(texts)) == []
 
 
+@pytest.mark.parametrize(
+    ("file", "found"),
+    [
+        ("online_async_launch.py", []),
+        (
+            "onlin_async_launch.py",
+            [
+                (
+                    "slam_toolbox is not known to have a launch file 'onlin_async_launch.py'; did you mean"
+                    " 'online_async_launch.py'?"
+                )
+            ],
+        ),
+        ("another_launch.py", []),
+    ],
+)
+def test_a_misspelt_launch_file_of_a_well_known_package(file: str, found: list[str]) -> None:
+    include = f"""from launch import LaunchDescription
+from launch.actions import IncludeLaunchDescription
+from launch.substitutions import PathJoinSubstitution
+from launch_ros.substitutions import FindPackageShare
+
+
+def generate_launch_description():
+    share = FindPackageShare("slam_toolbox")
+    return LaunchDescription([IncludeLaunchDescription(PathJoinSubstitution([share, "launch", "{file}"]))])
+"""
+    mismatches = agreement_of({**edited(), "cart_bringup/launch/map.launch.py": include}).mismatches
+    assert [it.message for it in mismatches if it.family == "files"] == found
+
+
 def test_what_is_installed_for_tests_leaves_files_undecided() -> None:
     """BUILD_TESTING is on by default, but not where packages are built for others."""
     texts = edited(

@@ -11,7 +11,7 @@ from grader.base.names import closest, near
 from grader.base.source import Location, Source
 from grader.ros.build.installation import Installation
 from grader.ros.build.places import PREFIX, SHARE, share_parts
-from grader.ros.known.known import known
+from grader.ros.known.known import known, started_by_launch_files
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.installed_files import (
     are_installs_known,
@@ -37,6 +37,7 @@ _FIND = re.compile(
     r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?((?:[^\"'<>\s$,()[\]{}]|,(?=\w))*)(?=[\"'<\s,)\]}])"
 )
 _PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
+_LAUNCH_FOLDER = "launch/"
 _PROPERTY = re.compile(r"<xacro:property\b[^>]*?\bname\s*=\s*[\"'](\w+)[\"']")
 # Files of text that are read, which no download leaves out for their size; and programs.
 _URI = re.compile(r"package://([\w-]+)/([\w./-]+)")  # of a whole text
@@ -175,6 +176,8 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
         if meant is not None and not package.depends_on(name):
             message = f"there is no package {name!r}; did you mean {meant!r}?"
             yield Mismatch("files", message, at, corrections=corrections(name, at, meant))
+        elif rest.startswith(_LAUNCH_FOLDER):
+            yield from _misspelt_launch_file(name, rest.removeprefix(_LAUNCH_FOLDER), at)
         return
     target = f"share/{name}/{rest}"
     if not rest or rest in known()["written"] or target in owner.installed:
@@ -195,6 +198,22 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
     else:
         is_absent = named.is_needed and workspace.is_nowhere(owner, target)
         yield _not_there(owner, target, at, is_output=named.is_output, is_absent=is_absent)
+
+
+def _misspelt_launch_file(package: str, file: str, at: Location) -> Iterator[Mismatch]:
+    """Yield that a well-known package has a launch file of nearly this name, and none of this."""
+    ending = file.partition(".")[2]
+    stems = []
+    for known_file in started_by_launch_files().get(package, ()):
+        if known_file == file:
+            return
+        if known_file.endswith(f".{ending}"):
+            stems.append(known_file.removesuffix(f".{ending}"))
+    stem = near(file.removesuffix(f".{ending}"), stems)
+    if stem is not None:
+        meant = f"{stem}.{ending}"
+        message = f"{package} is not known to have a launch file {file!r}; did you mean {meant!r}?"
+        yield Mismatch("files", message, at, None, False, corrections(file, at, meant))
 
 
 def _not_there(
