@@ -87,9 +87,11 @@ def _physical_location(finding: Finding, base: Base, source_of: SourceOf) -> dic
     path, where = place_in_repository(finding, base)
     place: dict[str, Any] = {"artifactLocation": {"uri": quote(path), "uriBaseId": _ROOT}}
     if where is not None:
-        region = {"startLine": where.line, "startColumn": where.column}
         end = ended(where, source_of)
-        if end[:3] != (where.path, end.end_line, end.end_column):
-            region |= {"endLine": end.end_line, "endColumn": end.end_column}
-        place["region"] = region
+        place["region"] = {
+            "startLine": where.line,
+            "startColumn": where.column,
+            "endLine": end.end_line,
+            "endColumn": end.end_column,
+        }
     return place

@@ -179,8 +179,7 @@ def _compared_rows(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Fac
         if row.direction not in known()["bridge_directions"]:
             yield _no_direction(row)
             continue
-        workspace.charge(cost_of_guess(len(known()["bridge_types"])))
-        yield from _no_type(row)
+        yield from _no_type(workspace, row)
         yield from _conversions(row, {f"gz.msgs.{topic.type}" for topic in same})
         if row.gz in named:
             yield from _contradictions(row, same)
@@ -262,11 +261,14 @@ def _no_direction(row: _BridgeRow) -> Mismatch:
     return Mismatch("topics", message, at, None, row.is_used, either)
 
 
-def _no_type(row: _BridgeRow) -> Iterator[Mismatch]:
+def _no_type(workspace: Workspace, row: _BridgeRow) -> Iterator[Mismatch]:
     """Yield that no bridge has a type like the one of a row in ROS, and which one it may mean."""
     types = [kind.replace(".", "/") for kind in known()["bridge_types"]]
     written = row.ros_type.replace(".", "/")
-    meant = closest(written, types, is_clear=True) if written not in types else None
+    if written in types:
+        return
+    workspace.charge(cost_of_guess(len(types)))
+    meant = closest(written, types, is_clear=True)
     package, _, name = written.partition("/")
     if f"{package}/msg/{name}" in types:
         meant = f"{package}/msg/{name}"
