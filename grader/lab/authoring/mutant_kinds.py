@@ -34,7 +34,8 @@ _KINDS = {
     "names": ("name", "definition", "text", "string", "parameter", "boolean"),
 }
 _OTHER = "others"
-_FREE_NAMES = re.compile(r"(?:^|/)(ros2_control|transmission) [^/]*name$")
+_FREE_NAMES = re.compile(r"(?:^|/)(ros2_control|transmission|actuator) [^/]*name$")
+_FREE_OF_ROBOT = re.compile(r"transmission [^/]*/(actuator) [^/]*name$")  # not in <ros2_control>
 
 
 class KindScore(NamedTuple):
@@ -98,6 +99,8 @@ def why_right(mutant: Mutant) -> str:
         found = _FREE_NAMES.search(place.partition(" -> ")[0])
         if found is not None:
             return f"nothing refers to the name of <{found[1]}>"
+    if mutant.family == "attribute deleted" and _FREE_OF_ROBOT.match(place):
+        return "ROS 2 reads no <transmission> outside of <ros2_control>"
     if mutant.family == "string misspelt" and place.endswith((" output", " screen", " log")):
         return "it says only where a node prints"
     return ""

@@ -317,7 +317,9 @@ def _is_of_writing(criterion: Criterion, family: str) -> bool:
     if check == "entry_is":
         # A path names one of several nodes, or an entry of a file that is written anew.
         return family == EVERY_NODE or "file" in arguments
-    return family == BUILT_BY_CMAKE and check == "package_type" and bool(arguments["build_type"])
+    return (
+        family == BUILT_BY_CMAKE and check == "package_type" and bool(arguments.get("build_type"))
+    )
 
 
 def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Submission:
