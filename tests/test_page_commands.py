@@ -102,6 +102,8 @@ IN_TEXT = {  # commands in the text that are not run here: a test that does, or 
 OTHER_PROGRAMS = {  # commands of other programs in the text of the README and of docs/: a test that runs them, or why none does
     "git clone https://github.com/urdf-grader/urdf-grader": "nothing is published yet",
     "pip install urdf-grader": "nothing is released yet",
+    "pip install 'urdf-grader[editor]'": "nothing is released yet",
+    "python -m tests.parameters.make_known CHECKOUT...": "needs checkouts of ros2_control and ros2_controllers",
     "gh repo edit YOUR-ORG/NAME --template": "needs GitHub",
     "python CHECKOUT/benchmarks/class_generator.py submissions --count 121 --kind mixed --layout canvas --lms canvas.csv": "classroom/test_walkthrough.py",
     "ssh -L 8000:127.0.0.1:8000 host": "needs another machine",

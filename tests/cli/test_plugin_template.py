@@ -110,7 +110,8 @@ def test_a_rubric_uses_it(project: Path) -> None:
         "the distance of 'tip' from 'base' is 0.4243 m; it should be 0.5 m (75.7 mm too small)"
     )
     assert (result["status"], result["message"]) == ("failed", expected)
-    assert result["location"] == {"path": "short.urdf", "line": 4, "column": 3}
+    place = {"path": "short.urdf", "line": 4, "column": 3, "end_line": 4, "end_column": 21}
+    assert result["location"] == place
 
 
 def test_the_page_shows_the_template() -> None:
