@@ -145,14 +145,12 @@ def lists(robot: InspectedRobot | None) -> Iterator[tuple[str, list[tuple[str, s
     links = _tree(robot.configuration)
     yield (
         "Tree",
-        _first_rows(
-            (indent + printable(link), _joint_text(joint)) for indent, link, joint in links
-        ),
+        _first_rows((indent + printable(link), joint_text(joint)) for indent, link, joint in links),
     )
     title = f"Poses in {printable(robot.relative_to)!r} (x y z in m, roll pitch yaw in rad)"
     yield (
         title,
-        _first_rows((printable(link), f"  {_pose_text(pose)}") for link, pose in robot.poses()),
+        _first_rows((printable(link), f"  {pose_text(pose)}") for link, pose in robot.poses()),
     )
 
 
@@ -206,7 +204,7 @@ def _tree(robot: Configuration) -> Iterator[tuple[str, str, Joint | None]]:
         stack += [(indent, joint.child, joint) for joint in reversed(children.get(link[1], ()))]
 
 
-def _joint_text(joint: Joint | None) -> str:
+def joint_text(joint: Joint | None) -> str:
     """Return a joint in words; empty for the parent joint of a root."""
     if joint is None:
         return ""
@@ -224,7 +222,8 @@ def _joint_text(joint: Joint | None) -> str:
     return words
 
 
-def _pose_text(pose: Transform | str) -> str:
+def pose_text(pose: Transform | str) -> str:
+    """Return a pose, x y z in m and roll pitch yaw in rad, or the reason why there is none."""
     if isinstance(pose, str):
         return printable(pose)
     return f"{_numbers(pose.translation)}  rpy {_numbers(pose.rpy)}"

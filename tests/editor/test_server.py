@@ -162,7 +162,8 @@ def test_says_what_a_name_is(diffdrive: Path) -> None:
         hover = await one.client.text_document_hover_async(lsp.HoverParams(document, at))
         assert hover is not None
         assert isinstance(hover.contents, lsp.MarkupContent)
-        assert "continuous joint from `base_link` to `left_wheel`" in hover.contents.value
+        text = "left_wheel_joint: continuous about 0 1 0, from `base_link` to `left_wheel`"
+        assert text in hover.contents.value
         nothing = lsp.HoverParams(document, lsp.Position(0, 0))
         assert await one.client.text_document_hover_async(nothing) is None
 

@@ -2,10 +2,7 @@
 
 from typing import Annotated
 
-import typer
-
-from grader.app.cli.completion import offer_rubrics
-from grader.app.cli.options import RUBRIC_VARIABLE
+from grader.app.cli.options import rubric_option
 from grader.base.errors import GraderError
 
 _RUBRIC = (
@@ -15,16 +12,7 @@ _RUBRIC = (
 
 
 def lsp(
-    rubric: Annotated[
-        str,
-        typer.Option(
-            metavar="ID|FILE",
-            envvar=RUBRIC_VARIABLE,
-            help=_RUBRIC,
-            show_default=False,
-            autocompletion=offer_rubrics,
-        ),
-    ] = "",
+    rubric: Annotated[str, rubric_option(_RUBRIC)] = "",
 ) -> None:
     """Show in an editor, as you type, what inspect and grade find.
 

@@ -21,14 +21,21 @@ PartOption = Annotated[
     ),
 ]
 RUBRIC_VARIABLE = "GRADER_RUBRIC"
-RubricOption = Annotated[
-    str,
-    typer.Option(
+
+
+def rubric_option(text: str, *, shows_default: bool = False) -> Any:
+    """Return the option --rubric with a help text."""
+    return typer.Option(
         metavar="ID|FILE",
         envvar=RUBRIC_VARIABLE,
-        help="The rubric: an id or a .toml file.",
+        help=text,
+        show_default=shows_default,
         autocompletion=offer_rubrics,
-    ),
+    )
+
+
+RubricOption = Annotated[
+    str, rubric_option("The rubric: an id or a .toml file.", shows_default=True)
 ]
 _GRADEBOOK = "The gradebook; default: the only one in the current folder."
 _NOT_NAMED = Path("*")  # no folder is searched for --help

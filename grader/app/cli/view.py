@@ -4,13 +4,12 @@ from typing import Annotated
 
 import typer
 
-from grader.app.cli.completion import offer_rubrics
 from grader.app.cli.options import (
-    RUBRIC_VARIABLE,
     ArgOption,
     MaxSizeOption,
     NoBrowserOption,
     PortOption,
+    rubric_option,
 )
 from grader.app.cli.streams import TERMINAL
 from grader.files.reading import URDF_LIMIT
@@ -23,16 +22,7 @@ def view(
     path: Annotated[
         str, typer.Argument(metavar="[PATH]", help=_PATH, show_default="the current folder")
     ] = ".",
-    rubric: Annotated[
-        str,
-        typer.Option(
-            metavar="ID|FILE",
-            envvar=RUBRIC_VARIABLE,
-            help=_RUBRIC,
-            show_default=False,
-            autocompletion=offer_rubrics,
-        ),
-    ] = "",
+    rubric: Annotated[str, rubric_option(_RUBRIC)] = "",
     arg: ArgOption = None,
     max_size: MaxSizeOption = URDF_LIMIT,
     port: PortOption = 0,

@@ -9,7 +9,7 @@ from grader.app.editor.parameter_keys import parameter_key
 from grader.app.editor.places import TextPlace
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import counted, enumerated, printable
-from grader.report.inspection import main_root
+from grader.report.inspection import joint_text, main_root, pose_text
 from grader.ros.urdf.kinematics import Configuration
 
 _MAX_NAMED = 3  # places
@@ -57,7 +57,9 @@ def _of_robots(look: Look, kind: str, name: str) -> Iterator[str]:
         if kind in ("link", "frame") and model.has_link(name):
             yield f"{_pose(robot, name)} ({path})"
         if kind == "joint" and model.has_joint(name):
-            yield f"{_joint(robot, name)} ({path})"
+            joint = model.joint(name)
+            text = joint_text(joint).strip()
+            yield f"{text}, from `{joint.parent}` to `{joint.child}` ({path})"
 
 
 def _pose(robot: Configuration, link: str) -> str:
@@ -68,18 +70,4 @@ def _pose(robot: Configuration, link: str) -> str:
         pose = robot.pose(link, relative_to=root)
     except (MissingElement, NotDecided) as reason:
         return str(reason)
-    return f"in `{root}`: xyz {_numbers(pose.translation)} m, rpy {_numbers(pose.rpy)} rad"
-
-
-def _joint(robot: Configuration, name: str) -> str:
-    joint = robot.robot.joint(name)
-    text = f"{joint.type} joint from `{joint.parent}` to `{joint.child}`"
-    if joint.type != "fixed" and joint.axis is not None:
-        text += f", axis {_numbers(joint.axis)}"
-    if joint.limit is not None:
-        text += f", limits {_numbers((joint.limit.lower, joint.limit.upper))}"
-    return text
-
-
-def _numbers(values: Sequence[float]) -> str:
-    return " ".join(f"{round(value, 6) + 0.0:.4g}" for value in values)  # no -0
+    return f"pose in `{root}` (x y z in m, roll pitch yaw in rad): {pose_text(pose)}"

@@ -37,11 +37,10 @@ class EditorSession:
         self._memory = Memory(_MOST, self._check)
         self._lock = Lock()
 
-    def change(self, change: Callable[[EditedFiles], None]) -> int:
-        """Change the files, and return the number of their new version."""
+    def change(self, change: Callable[[EditedFiles], None]) -> None:
+        """Change the files: what was seen of them is out of date."""
         change(self.files)
         self._version += 1
-        return self._version
 
     def _read_settings(self) -> Settings:
         """Return the settings of the workspace, none where they cannot be read: `complaint` says

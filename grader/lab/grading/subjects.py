@@ -45,6 +45,7 @@ class Subjects:
         self.robot: Configuration | None = None
         self.source: Source | None = None
         self._known: dict[Subject, object] = {"submission": submission}
+        self._packaged: dict[str, Submission] = {}
         self._posed: dict[tuple[tuple[str, float], ...], Configuration] = {}
         if solution is not None:
             self._known["reference"] = self._with_transforms(solution.robot, solution)
@@ -96,7 +97,7 @@ class Subjects:
         """
         known, at = self._known, criterion.at
         if criterion.package:
-            known = {**known, "submission": self.submission.with_package(criterion.package)}
+            known = {**known, "submission": self._with_package(criterion.package)}
         subjects = [
             known[name] if name in known else self._needed_subject(name, known)
             for name in check.examined
@@ -106,6 +107,14 @@ class Subjects:
                 if isinstance(subject, Configuration) and subject is self.robot:
                     subjects[index] = self._pose_robot(subject, at)
         return subjects
+
+    def _with_package(self, name: str) -> Submission:
+        """Return the submission with another graded package: one for all criteria of the package,
+        so that its names are compared once.
+        """
+        if name not in self._packaged:
+            self._packaged[name] = self.submission.with_package(name)
+        return self._packaged[name]
 
     def pose_text(self, at: Mapping[str, float]) -> str:
         """Return the positions of joints that are there: 'joint_2' at 40 degrees and 'slide' at
