@@ -275,12 +275,12 @@ def _rubric_text(
         checks.add(row.fact.check)
         checks.update(carried.check for carried in row.fact.carried)
     part, usual = (_ROBOT if of_robot else _PACKAGE), Counter(points).most_common(1)[0][0]
-    lines = [*_head_lines(head, sum(points)), *_default_lines(part, usual, checks)]
+    lines = [*_head_lines(head), *_default_lines(part, usual, checks)]
     if of_robot:
-        lines += _part_lines(_ROBOT, "The robot", "urdf", sum(points[: len(of_robot)]))
+        lines += _part_lines(_ROBOT, "The robot", "urdf")
     if of_package:
         title = "The package" if len(head.packages) == 1 else "The packages"
-        lines += _part_lines(_PACKAGE, title, "package", sum(points[len(of_robot) :]))
+        lines += _part_lines(_PACKAGE, title, "package")
     shown = {node: found[:_MAX_VALUES] for node, found in values.items()}
     named = _with_ids([*of_robot, *of_package, *chain.from_iterable(shown.values())])
     ids = {row.fact.words: name for name, row in named.items()}
@@ -408,7 +408,7 @@ def _with_ids(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
     return found
 
 
-def _head_lines(head: Head, points: int) -> Iterator[str]:
+def _head_lines(head: Head) -> Iterator[str]:
     if head.schema:
         yield f"#:schema {head.schema}"
     yield assignment("id", head.id)
@@ -423,7 +423,6 @@ def _head_lines(head: Head, points: int) -> Iterator[str]:
             f"{assignment('packages', list(head.packages))}  # the names of the packages that "
             "are graded"
         )
-    yield assignment("points", points)
 
 
 def _default_lines(part: str, points: int, checks: set[str]) -> Iterator[str]:
@@ -436,9 +435,9 @@ def _default_lines(part: str, points: int, checks: set[str]) -> Iterator[str]:
     )
 
 
-def _part_lines(name: str, title: str, needs: str, points: int) -> Iterator[str]:
+def _part_lines(name: str, title: str, needs: str) -> Iterator[str]:
     yield from ("", "[[part]]", assignment("id", name), assignment("title", title))
-    yield from (assignment("needs", needs), assignment("points", points))
+    yield assignment("needs", needs)
 
 
 class _Layout(NamedTuple):

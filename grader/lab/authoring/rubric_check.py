@@ -9,7 +9,7 @@ from math import degrees, inf, pi, radians
 from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.names import did_you_mean
+from grader.base.names import near
 from grader.base.text import counted, enumerated
 from grader.lab.checks.outcome import Outcome, point
 from grader.lab.grading.deciding import decide
@@ -156,7 +156,9 @@ def _unknown_causes_note(rubric: Rubric) -> tuple[TomlPath, str] | None:
         return None
     names = dict.fromkeys(name for _, name in unknown)
     known = [criterion.id for criterion in rubric.criteria]
-    guess = did_you_mean(next(iter(names)), known) if len(names) == 1 else ""
+    # Of a criterion that was deleted, another one is often similar.
+    meant = near(next(iter(names)), known) if len(names) == 1 else None
+    guess = f"; did you mean {meant!r}?" if meant is not None else ""
     listed = enumerated([*names], _MAX_CAUSES)
     what = "a criterion that does" if len(names) == 1 else "criteria that do"
     message = f"carried names {what} not exist, which has no effect: {listed}{guess}"
