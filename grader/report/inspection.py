@@ -215,8 +215,9 @@ def joint_text(joint: Joint | None) -> str:
             if joint.axis is not None
             else " about an unreadable axis"
         )
-    if joint.limit is not None and isfinite(joint.limit.upper - joint.limit.lower):
-        words += f", {joint.limit.lower:g}..{joint.limit.upper:g}"
+    limit = joint.limit if joint.type in ("revolute", "prismatic") else None
+    if limit is not None and isfinite(limit.upper - limit.lower):
+        words += f", {limit.lower:g}..{limit.upper:g}"
     if joint.mimic is not None:
         words += f", mimics {printable(joint.mimic.joint)}"
     return words

@@ -58,7 +58,7 @@ _CONTEXTS: Sequence[_Context] = (
         rf"\sexec\s*=\s*{_QUOTE}",
         "program",
     ),
-    _context(_YAML, r"\b\w*(?:joints?|wheel_names|wheels?_name)" + _LIST_BEFORE, "joint"),
+    _context(_YAML, rf"\b\w*(?:joints?|(?:joints?|wheels?)_names?){_LIST_BEFORE}", "joint"),
     _context(_YAML, r"\b\w*(?:frames?|frame_id|_link)" + _LIST_BEFORE, "frame"),
     _context(
         _PYTHON,
