@@ -22,7 +22,7 @@ _WORKSPACES = {
     "tests/labs/laundry": (6, 10),
     "tests/labs/twolink": (29, 11),
 }
-_REFUSALS = ("of parts: change it there", "it would be wrong in", "not every place that means")
+_REFUSALS = ("from parts: change it there", "would cause a problem at", "not all places that use")
 
 
 def _place(look: Look, root: Path, name: WrittenName) -> TextPlace:
@@ -106,5 +106,5 @@ def test_refuses_what_is_made_of_parts() -> None:
     look = EditorSession(root).look()
     name = look.names.at("diffdrive_robot/config/controllers.yaml", 13, 30)
     assert name is not None
-    with pytest.raises(CannotRenameError, match="makes the name 'left_wheel_joint' of parts"):
+    with pytest.raises(CannotRenameError, match="builds the name 'left_wheel_joint' from parts"):
         renamed(look, _place(look, root, name), "other_joint")

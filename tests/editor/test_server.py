@@ -298,7 +298,7 @@ def test_refuses_to_rename_what_is_made_of_parts(diffdrive: Path) -> None:
     async def act(one: Editor) -> None:
         at = one.position(_CONTROLLERS, "left_wheel_joint")
         asked = lsp.RenameParams(one.document(_CONTROLLERS), at, "other_joint")
-        with pytest.raises(Exception, match="makes the name 'left_wheel_joint' of parts"):
+        with pytest.raises(Exception, match="builds the name 'left_wheel_joint' from parts"):
             await one.client.text_document_rename_async(asked)
 
     _edit(diffdrive, act)

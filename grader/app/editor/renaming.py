@@ -56,15 +56,15 @@ def renamed(look: Look, place: TextPlace, new: str) -> lsp.WorkspaceEdit | None:
     left = after.names.named_like(same, found.name)
     if left:
         where = left[0].location.file_and_line
-        message = f"{where} would keep the old name, with {counted(len(left), 'place')} in all"
+        message = f"{counted(len(left), 'place')} would keep the old name, the first at {where}"
         raise CannotRenameError(message)
     if len(after.names.named_like(same, new)) != len(same):
-        raise CannotRenameError("not every place that means this name is known")
+        raise CannotRenameError("not all places that use this name are known")
     return place.ranges(look).workspace_edit(edits[key] for key in sorted(edits))
 
 
 def _made(where: Location, name: str) -> str:
-    return f"{where.file_and_line} makes the name {name!r} of parts: change it there"
+    return f"{where.file_and_line} builds the name {name!r} from parts: change it there"
 
 
 def _with(look: Look, edits: Mapping[tuple[str, int, int], Edit]) -> Tree:
@@ -88,7 +88,7 @@ def _check_problems(look: Look, after: Look) -> None:
         before[identity] -= 1
         if before[identity] < 0:
             where = finding.location.file_and_line
-            raise CannotRenameError(f"it would be wrong in {where}: {finding.message}")
+            raise CannotRenameError(f"this would cause a problem at {where}: {finding.message}")
 
 
 def _identity(finding: Finding) -> tuple[str, str, int]:
