@@ -656,3 +656,12 @@ def test_a_robot_with_too_many_parts_is_not_compared() -> None:
     small = (COSTMAP, "robot_radius: 0.25", "robot_radius: 0.1")
     assert problems_of(small) != []
     assert problems_of(small, (ROBOT, "</robot>\n", f"{links}</robot>\n")) == []
+
+
+def test_a_misspelt_joint_hides_no_wrong_number() -> None:
+    """The numbers of wheels are compared with the joint that is meant."""
+    edits = [
+        (CONTROLLERS, "[left_wheel_joint]", "[left_weel_joint]"),
+        (CONTROLLERS, "wheel_separation: 0.3", "wheel_separation: 0.6"),
+    ]
+    assert [it.split()[0] for it in problems_of(*edits)] == ["REF002", "REF017"]

@@ -12,12 +12,14 @@ from math import hypot
 from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.names import closest
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.base.transforms import Y_AXIS, Vector, dot, minus, unit
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.known.known import known
 from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Joint, Robot
 from grader.ros.urdf.numbers import finite_number
 from grader.ros.urdf.rolling import middle_of
 from grader.ros.urdf.wheel_sizes import WheelSize, measure_wheel
@@ -134,9 +136,19 @@ def _controllers(workspace: Workspace) -> Iterator[_Source]:
         source = _Source(controller.name, rows, _reader_of_yaml(section), ())
         keys = {key for row in rows.values() for key in chain(*row["of"])}
         named = [joint.text for joint in source.joints(sorted(keys))]
-        robots = [it for it in workspace.robots if all(map(it.robot.has_joint, named))]
+        robots = []
+        for robot in workspace.robots:
+            if all(robot.robot.has_joint(_meant(robot.robot, name)) for name in named):
+                robots.append(robot)
         if named and robots:
             yield source._replace(robots=robots)
+
+
+def _meant(robot: Robot, name: str) -> str:
+    """Return the joint that a name means; that it is misspelt is another mistake."""
+    if robot.has_joint(name):
+        return name
+    return closest(name, (joint.known.name for joint in robot.joints), is_clear=True) or name
 
 
 def _reader_of_yaml(section: YamlNode) -> _Parameters:
@@ -210,15 +222,19 @@ def _is_corrected(source: _Source, row: Mapping[str, Any]) -> bool:
 def _measured(source: _Source, robot: Configuration, groups: list[list[_Word]]) -> _Wheels:
     """Return the wheels of groups of joints, in the frame of the robot's base."""
     named = [word.text for group in groups for word in group]
-    base = robot.root_of(robot.joint(named[0]).child) if named else ""
+    base = robot.root_of(_joint(robot, named[0]).child) if named else ""
     for frame in source.parameters(_BASE):
         if robot.robot.has_link(frame.text):
             base = frame.text
     measured = []
     for group in groups:
-        joints = [robot.joint(word.text) for word in group]
+        joints = [_joint(robot, word.text) for word in group]
         measured.append(tuple(measure_wheel(robot, joint, base) for joint in joints))
     return _Wheels(base, tuple(measured))
+
+
+def _joint(robot: Configuration, name: str) -> Joint:
+    return robot.joint(_meant(robot.robot, name))
 
 
 def _faults_of_side(wheels: _Wheels, groups: list[list[_Word]], kind: str) -> Iterator[Mismatch]:
