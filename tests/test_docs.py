@@ -303,11 +303,11 @@ def test_every_test_that_the_table_of_attacks_names_exists() -> None:
 
 
 def test_the_pages_stay_short() -> None:
-    """The README has at most 650 words, and all pages that are not generated have at most 28,300."""
+    """The README has at most 700 words, and all pages that are not generated have at most 31,000."""
     generated = ("problems.md", "checks.md", "misconfigurations.md")
     words = {
         page: len(page.read_text(encoding="utf-8").split())
         for page in [ROOT / "README.md", *(ROOT / "docs").glob("*.md")]
     }
-    assert words[ROOT / "README.md"] <= 650
-    assert sum(words[page] for page in words if page.name not in generated) <= 28_800
+    assert words[ROOT / "README.md"] <= 700
+    assert sum(words[page] for page in words if page.name not in generated) <= 31_000

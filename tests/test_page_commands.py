@@ -53,6 +53,7 @@ ELSEWHERE = {  # beginnings of command lines that another test runs
     'grader mark "Anik Tagrigri"': "classroom/test_walkthrough.py",
     "grader mark 100099": "classroom/test_walkthrough.py",
     "grader review --by": "browser/test_review.py",
+    "grader view submissions": "cli/test_view.py",
     "pip install --editable '.[test]'": "cli/test_plugin_template.py",
     "pytest": "cli/test_plugin_template.py",
     "grader explain distance_between": "cli/test_plugin_template.py",
