@@ -13,6 +13,7 @@ from grader.app.commands.view_server import RobotPages, follow_files
 from grader.app.commands.viewed_robots import ViewRequest
 from grader.files.reading import URDF_LIMIT
 from grader.report.local_server import LocalServer
+from tests.command_line import HANG_TIMEOUT
 from tests.review_server import Answer, Review
 
 
@@ -93,7 +94,8 @@ def viewing(path: Path, rubric: str = "", arg: Sequence[str] = ()) -> Iterator[V
             pages.end()
             server.shutdown()
             for thread in (serving, following):
-                thread.join()
+                thread.join(HANG_TIMEOUT)
+                assert not thread.is_alive()
 
 
 def put(text: str, target: Path) -> None:

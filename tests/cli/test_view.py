@@ -8,11 +8,12 @@ import struct
 import subprocess
 import sys
 from pathlib import Path
-from threading import Thread
+from threading import Event, Thread
 from urllib.request import urlopen
 
 import pytest
 
+from grader.app.commands.view_server import RobotPages
 from grader.report.drawing import mesh_data
 from grader.report.local_server import HOST
 from grader.report.open_browser import opened_in_browser
@@ -432,6 +433,29 @@ def test_pages_that_wait_are_told_of_the_end(file: Path) -> None:
         view.pages.end()
         ask.join()
     assert answers == [{"isEnded": True}]
+
+
+def test_what_is_asked_between_two_waits_is_not_lost() -> None:
+    """Whoever waits again and again sees each request, whenever it comes."""
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-6)
+    try:
+        for _ in range(100):
+            pages, is_started = RobotPages(), Event()
+            thread = Thread(target=_wait_until_asked, args=(pages, is_started), daemon=True)
+            thread.start()
+            is_started.wait()
+            pages.end()
+            thread.join(HANG_TIMEOUT)
+            assert not thread.is_alive()
+    finally:
+        sys.setswitchinterval(interval)
+
+
+def _wait_until_asked(pages: RobotPages, is_started: Event) -> None:
+    while not pages.wait(0.0):
+        is_started.set()
+    is_started.set()
 
 
 @pytest.mark.slow

@@ -71,7 +71,8 @@ class RobotPages:
     def wait(self, seconds: float) -> bool:
         """Wait until a page asks to read again, but not for longer; return whether it did."""
         is_asked = self._asked.wait(seconds)
-        self._asked.clear()
+        if is_asked:  # otherwise, what is asked from now on is for the next wait
+            self._asked.clear()
         return is_asked
 
     def end(self) -> None:
