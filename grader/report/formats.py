@@ -9,7 +9,6 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any, Literal, Self
 
 from grader.base.text import without_commands
-from grader.report.json_data import schema_of
 from grader.report.screen import Screen, draw
 
 if TYPE_CHECKING:
@@ -105,6 +104,8 @@ _SCHEMAS = {
 
 def json_schema(name: str) -> dict[str, Any]:
     """Return the schema of a report, an inspection or a rubric test."""
+    from grader.report.json_data import schema_of  # late: most commands need no JSON
+
     title, place = _SCHEMAS[name]
     return schema_of(title, _load(place))
 
