@@ -27,6 +27,7 @@ from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
+from grader.ros.workspace.default_values import default_value
 from grader.ros.workspace.endpoints import opened_by
 from grader.ros.workspace.names import FAMILIES, Family
 from grader.ros.workspace.reading import read_agreement, wrong_names
@@ -201,7 +202,10 @@ def _is_text(value: Any) -> bool:
 
 
 def value_facts(submission: Submission) -> Iterator[Fact]:
-    """Yield the values of parameters that nodes get, as files and launch files write them."""
+    """Yield the values of parameters that nodes get, as files and launch files write them.
+
+    A node without a parameter passes if its default is the same value.
+    """
     for node, name, value in _given(submission):
         texts = [
             it for it in (value if isinstance(value, list) else [value]) if isinstance(it, str)
@@ -211,7 +215,11 @@ def value_facts(submission: Submission) -> Iterator[Fact]:
         ):
             continue
         title = f"the parameter {name} of {node} is {toml_literal(value)}"
-        yield _parameter_fact(node, name, value=value)._replace(about=node, title=title)
+        fact = _parameter_fact(node, name, value=value)._replace(about=node, title=title)
+        default = default_value(submission.workspace, node, name)
+        if default is not None and repr(default.value) == repr(value):
+            fact = fact._replace(arguments={**fact.arguments, "or_default": True})
+        yield fact
 
 
 def _given(submission: Submission) -> Iterator[tuple[str, str, Any]]:

@@ -39,6 +39,7 @@ def parameter_is(
     links: list[str] | None = None,
     tolerance: NonNegative = _EXACT,
     where_given: bool = False,
+    or_default: bool = False,
 ) -> Outcome:
     """A node gets this value of a parameter, wherever it is written, under the criterion's `args`
     if it has some.
@@ -60,11 +61,13 @@ def parameter_is(
         tolerance: How far a number may be off, in the number's own unit.
         where_given: Whether a node that does not get the parameter passes, for `carried`, if no
             parameter file has another value.
+        or_default: Whether the default counts of a node that runs and does not get the parameter:
+            of a node of the submission the value that its code declares, of a well-known node that
+            of the rubric's release. `where_given` is for nodes without a default.
     """
     del package  # without one, there are no parameters
-    said = f"{node} gets"
     try:
-        found = value_of(submission, node, parameter)
+        said, found = _value_or_default(submission, node, parameter, or_default=or_default)
     except MissingElement:
         if not where_given:
             raise
@@ -93,6 +96,25 @@ def parameter_is(
     if measure is not None:
         wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
     return passed(message) if fits else failed(f"{message}; it {wanted}", found.location)
+
+
+def _value_or_default(
+    submission: Submission, node: str, parameter: str, *, or_default: bool
+) -> tuple[str, ParameterValue]:
+    """Return the value that a node gets, or else its default, after the words for that. Raises
+    MissingElement and NotDecided, as `value_of` does.
+    """
+    try:
+        return f"{node} gets", value_of(submission, node, parameter)
+    except MissingElement:
+        if not or_default:
+            raise
+        from grader.ros.workspace.default_values import default_value  # late: few rubrics ask
+
+        default = default_value(submission.workspace, node, parameter)
+        if default is None:
+            raise
+        return f"{node} has by default", default
 
 
 def _measured_if_there(

@@ -444,6 +444,7 @@ class NodeParameters(NamedTuple):
     """
 
     values: Mapping[str, ParameterValue]
+    node: StartedNode  # that is given them
     unknown: str = ""  # why there may be more
 
 
@@ -510,7 +511,7 @@ def parameters_of(
     by_key: dict[str | None, dict[str, ParameterValue]] = {}
     reasons = []
     if node.parameters is None:
-        return NodeParameters({}, "the parameters of the node are not evaluated")
+        return NodeParameters({}, node, "the parameters of the node are not evaluated")
     for given in node.parameters:
         try:
             tables = _read_tables(given, open_file, _full_name(node, ""), read)
@@ -524,7 +525,7 @@ def parameters_of(
             reasons += [unknown.reason for unknown in table.opened.values()]
             _forget_below(table.opened, by_key)
             by_key.setdefault(table.key, {}).update(table.known)
-    return NodeParameters(_select_values(by_key, full), "; ".join(dict.fromkeys(reasons)))
+    return NodeParameters(_select_values(by_key, full), node, "; ".join(dict.fromkeys(reasons)))
 
 
 def _forget_below(

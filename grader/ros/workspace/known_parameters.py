@@ -116,7 +116,7 @@ def _started(workspace: Workspace) -> Iterator[GivenNode]:
     several = frozenset(place for place, count in shared.items() if count > 1)
     files = _places_for_every_node(workspace)
     for it in given:
-        if _is_as_released(workspace, it.node):
+        if is_as_released(workspace, it.node):
             yield it._replace(shared=several | files)
 
 
@@ -153,7 +153,7 @@ def _controllers(workspace: Workspace) -> Iterator[GivenNode]:
     """Yield the controllers that launch files spawn."""
     for controller in defined_controllers(workspace):
         kind = controller.type.text or ""
-        if not _is_as_released(workspace, kind):
+        if not is_as_released(workspace, kind):
             continue
         for given in workspace.parameter_owners.get(controller.name, ()):
             # Another launch file may define another controller of this name.
@@ -190,7 +190,7 @@ def _without_wrong_lists(
     return kept
 
 
-def _is_as_released(workspace: Workspace, node: str) -> bool:
+def is_as_released(workspace: Workspace, node: str) -> bool:
     """Return whether a node or a class is the one of a release: no package of the workspace has it,
     and no file of repositories says that its source is built.
     """
@@ -234,7 +234,7 @@ def _sections_by_name(workspace: Workspace) -> Iterator[GivenNode]:
         for keys, section in sections_in(tree):
             name = keys[-1].rpartition("/")[2] if keys else ""
             known_node = types.get((path, name)) or usual.get(name, "")
-            if known_node and _is_as_released(workspace, known_node):
+            if known_node and is_as_released(workspace, known_node):
                 values = _without_wrong_lists(known_node, _section_values(section))
                 yield GivenNode(known_node, repr(name), values, None)
 

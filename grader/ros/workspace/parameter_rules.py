@@ -13,6 +13,8 @@ from grader.base.text import enumerated, quoted
 from grader.ros.known.parameter_rows import COVERED, ParameterRow, node_rows, rows_of
 from grader.ros.known.releases import RELEASES, Release, other_name
 from grader.ros.launch.launch_model import ParameterValue
+from grader.ros.python.parse import START
+from grader.ros.python.values import Unknown
 from grader.ros.workspace.names import (
     NO_EFFECT,
     OF_OTHER_RELEASE,
@@ -44,6 +46,7 @@ _DECLARED = {
     "double_array": "a list of doubles",
     "string_array": "a list of strings",
 }
+_NOT_KNOWN = Unknown("its default is not known", START)
 _Rule = Literal["type", "bounds", "missing", "unknown", "without effect"]
 
 
@@ -122,6 +125,13 @@ def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismat
             yield mismatch
 
 
+def default_in(given: GivenNode, name: str, release: Release) -> Any:
+    """Return the value that a node has in a release for a parameter that it does not get; Unknown
+    where that is not known, None where it has none.
+    """
+    return _NodeReader(given, release).default(name)
+
+
 def _of_other_release(
     given: GivenNode,
     name: str,
@@ -162,6 +172,21 @@ class _NodeReader:
     def has(self, name: str) -> bool:
         """Return whether there is a parameter of a name."""
         return self._match(name) is not None
+
+    def default(self, name: str) -> Any:
+        """Return the default of a parameter; Unknown where it is not known, None without one."""
+        match = self._match(name)
+        if match is None:
+            may_have_more = self._unread or any(table.is_open for table in self._tables)
+            return _NOT_KNOWN if may_have_more or not self._is_complete else None
+        row = match.row
+        if row.only_with:
+            is_read = match.full_name(row.only_with) in self._values
+        else:
+            is_read = all(self._items(match.table, place) for place in row.places)
+        if row.is_required or (row.only_with and not is_read):
+            return None
+        return row.default if is_read and row.default is not None else _NOT_KNOWN
 
     def findings(self) -> Iterator[_RowFinding]:
         """Yield what is wrong."""

@@ -1,0 +1,89 @@
+"""The values that nodes have for parameters that they do not get: the defaults of own nodes,
+controllers and well-known nodes.
+"""
+
+from collections.abc import Iterator
+
+from grader.ros.known.parameter_rows import COVERED, row_for
+from grader.ros.launch.launch_model import ParameterValue, StartedNode
+from grader.ros.launch.node_parameters import NodeParameters
+from grader.ros.python.parse import START
+from grader.ros.python.values import SCALARS, Unknown, Value
+from grader.ros.workspace.controllers import defined_controllers
+from grader.ros.workspace.known_parameters import is_as_released
+from grader.ros.workspace.parameter_rules import GivenNode, default_in
+from grader.ros.workspace.workspace import SPAWNERS, Workspace
+
+_EVERY_NODE = "rclcpp/node"
+_NOT_KNOWN = Unknown("its default is not known", START)
+
+
+def default_value(workspace: Workspace, node: str, parameter: str) -> ParameterValue | None:
+    """Return the value that a node has for a parameter that it does not get, and where the node
+    declares it or is started. It is Unknown where it is not known; None if there is none.
+
+    Args:
+        workspace: The packages.
+        node: The name of a node or controller that is started, without its namespace.
+        parameter: The name of the parameter.
+    """
+    defaults: dict[str, ParameterValue | None] = {}
+    for given in workspace.parameter_owners.get(node, ()):
+        for default in _defaults(workspace, node, given, parameter):
+            value = default.value if default is not None else None
+            defaults[repr(value)] = default
+    for default in defaults.values():
+        if default is not None and len(defaults) > 1:
+            return default._replace(value=_NOT_KNOWN)
+        return default
+    return None
+
+
+def _defaults(
+    workspace: Workspace, name: str, given: NodeParameters, parameter: str
+) -> Iterator[ParameterValue | None]:
+    """Yield the defaults that a node may have, as it is started: one for each release."""
+    node = given.node
+    if workspace.package_of(node) is not None:
+        yield _own_default(workspace, node, parameter)
+        return
+    kind = f"{node.package}/{node.executable}"
+    if node.executable in SPAWNERS:
+        kinds = {it.type.text or "" for it in defined_controllers(workspace) if it.name == name}
+        kind = kinds.pop() if len(kinds) == 1 else ""
+    if not is_as_released(workspace, kind):
+        yield ParameterValue(_NOT_KNOWN, node.location)
+        return
+    for release in workspace.releases or COVERED:
+        default = default_in(GivenNode(kind, name, given.values, None), parameter, release)
+        yield ParameterValue(default, node.location) if default is not None else None
+
+
+def _own_default(workspace: Workspace, node: StartedNode, parameter: str) -> ParameterValue | None:
+    """Return the value with which a node of the workspace declares a parameter."""
+    unknown = ParameterValue(_NOT_KNOWN, node.location)
+    own_node = workspace.own_node(node)
+    if own_node is None:
+        return unknown
+    for_all = row_for(_EVERY_NODE, parameter)
+    if for_all is not None:
+        return ParameterValue(_scalar_or_list(for_all.default), node.location)
+    same_name = [it for it in own_node.parameters if it.name in (parameter, None)]
+    nodes = workspace.nodes_by_package[node.package]
+    if not same_name and not own_node.doubts and not nodes.has_loose_declarations:
+        return None
+    declarations = [it for it in same_name if it.is_declared and it.name is not None]
+    if len({repr(it.default) for it in declarations}) != 1:
+        return unknown
+    declared = declarations[0]
+    if declared.default is None:
+        return None
+    return ParameterValue(_scalar_or_list(declared.default), declared.location)
+
+
+def _scalar_or_list(value: Value) -> Value:
+    """Return a default as a parameter has it; Unknown where it is not known."""
+    items = [*value] if isinstance(value, list | tuple) else [value]
+    if not all(isinstance(item, SCALARS) for item in items):
+        return _NOT_KNOWN
+    return items if isinstance(value, list | tuple) else value
