@@ -197,10 +197,10 @@ class _NodeReader:
             if match is None:
                 unmatched[name] = value
                 continue
-            switch = self._switch_off(name, match)
+            switch = self._switch_off(match)
             if switch is None:
                 yield from self._value_findings(name, value, match)
-            elif switch.name not in said:
+            elif switch.name not in said and not _is_default(value.value, match.row):
                 said.add(switch.name)
                 yield switch.finding(self._given, name, value)
         # So many may be those of another program of this name, built from its own source.
@@ -296,16 +296,13 @@ class _NodeReader:
                     return True
         return False
 
-    def _switch_off(self, name: str, match: _ParameterMatch) -> "_OffSwitch | None":
+    def _switch_off(self, match: _ParameterMatch) -> "_OffSwitch | None":
         """Return the parameter by whose value another one has no effect; None if it has one."""
         row = match.row
         is_whole = self._given.at is not None
         needed = match.full_name(row.only_with)
         if row.only_with and is_whole and needed not in self._values:
             return _OffSwitch(needed, f" without {needed}")
-        given = self._values[name].value
-        if given == row.default and not isinstance(given, bool):
-            return None  # which says nothing in any case
         for switch, wanted in row.unless.items():
             own_row = match.table.rows.all_rows.get(switch)
             switch_name = match.full_name(switch)
@@ -493,6 +490,11 @@ class _OffSwitch(NamedTuple):
         message = f"{given.said} does not use {given.shown(name)}{self.words}"
         mismatch = Mismatch("parameters", message, at, is_certain=False, rule=NO_EFFECT)
         return _RowFinding("without effect", name, mismatch)
+
+
+def _is_default(value: Any, row: ParameterRow) -> bool:
+    """Return whether a value is the default, as which it says nothing even if it is not read."""
+    return value == row.default and not isinstance(value, bool)
 
 
 @cache
