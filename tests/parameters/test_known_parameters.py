@@ -47,6 +47,17 @@ Values = dict[str, Any]
 NODES = [node for node in known_nodes() if node not in _BASES and rows_of(node)]
 
 
+def _last_releases(node: str) -> Iterator[tuple[str, Release]]:
+    """Yield a node with the last release of each of its rows."""
+    known = node_rows(node)
+    assert known is not None
+    last = {min(row.until, known.until, key=RELEASES.index) for row in known.rows}
+    yield from ((node, release) for release in sorted(last, key=RELEASES.index))
+
+
+_CASES = [case for node in NODES for case in _last_releases(node)]
+
+
 @pytest.mark.parametrize("node", known_nodes())
 def test_rows_are_of_known_forms(node: str) -> None:
     """Rows name their source, their releases in order, and rows of the same node."""
@@ -100,12 +111,14 @@ def test_a_row_is_that_of_the_release() -> None:
     assert row_for("nobody/nothing", "frequency") is None
 
 
-@pytest.mark.parametrize("node", NODES)
-def test_each_row_is_asked_for(node: str) -> None:
-    """A right value is no problem; a misspelt name, another type and a missing value are one each."""
-    variants = [*_variants(node)]
-    found = _mismatches(node, [values for _, values, _ in variants], variants[0][2])
-    expected = {f"n{number}": int(what != "right") for number, (what, _, _) in enumerate(variants)}
+@pytest.mark.parametrize(("node", "release"), _CASES, ids=[" ".join(case) for case in _CASES])
+def test_each_row_is_asked_for(node: str, release: Release) -> None:
+    """A right value is no problem; a misspelt name, another type and a missing value are one each:
+    for each row in its last release.
+    """
+    variants = [*_variants(node, release)]
+    found = _mismatches(node, [values for _, values in variants], release)
+    expected = {f"n{number}": int(what != "right") for number, (what, _) in enumerate(variants)}
     counts = {f"n{number}": len(found.get(number, ())) for number in range(len(variants))}
     wrong = {
         name: (variants[int(name[1:])], found.get(int(name[1:])))
@@ -115,38 +128,54 @@ def test_each_row_is_asked_for(node: str) -> None:
     assert not wrong, next(iter(wrong.values()))
 
 
-def _variants(node: str) -> Iterator[tuple[str, Values, Release]]:
-    """Yield the parameters of a node with each of its rows right and wrong, in its last release."""
+def _variants(node: str, release: Release) -> Iterator[tuple[str, Values]]:
+    """Yield the parameters of a node in a release, with each of the rows right and wrong for which
+    it is the last one.
+    """
     known = node_rows(node)
     assert known is not None
-    release = known.until
     rows = known.in_release(release)
     required: Values = {}
     for row in rows:
         if row.is_required or "<**>" in row.name:
             required |= _given(row, rows)
-    yield "right", required, release
+    yield "right", required
     for row in rows:
-        if "<**>" in row.name:
+        if "<**>" in row.name or release not in (row.until, known.until):
             continue
         given = required | _given(row, rows)
         name = _name(row)
-        yield "right", given, release
-        written = re.sub(r"<[^<>]+>", lambda it: "0" * len(it[0]), row.name)
-        words = [*_WORD.finditer(written)]
-        if words and not row.name.endswith((".type", ".plugin", "primary_controller")):
-            wrong = _name(row, misspelt=words[-1].span())
-            rest = {key: value for key, value in given.items() if key != name}
-            yield "misspelt", {**rest, wrong: given[name]}, release
-        is_list = any(row.name in other.places for other in rows)  # which is not wrong alone
+        yield "right", given
+        rest = {key: value for key, value in given.items() if key != name}
+        wrong = _misspelt(row, is_open=release in known.open_in)
+        if wrong:
+            yield "misspelt", {**rest, wrong: given[name]}
+        # The entries of a list are parts of other names.
+        has_entries = any("it" in key.split(".") for key in rest) and row.name in _lists(rows)
         is_asked_for = name != "use_sim_time"  # of every node, by other rules
-        if row.type and not (known.takes_any_type or row.is_class or is_list) and is_asked_for:
+        if row.type and not (known.takes_any_type or row.is_class or has_entries) and is_asked_for:
             other = _TYPES[row.type][1]
             if isinstance(other, list):
                 other = other * len(given[name])
-            yield "type", {**given, name: other}, release
+            yield "type", {**given, name: other}
         if row.is_required:
-            yield "missing", {key: it for key, it in given.items() if key != name}, release
+            yield "missing", rest
+
+
+def _lists(rows: Sequence[ParameterRow]) -> set[str]:
+    """Return the lists whose entries are parts of the names of rows."""
+    return {place for row in rows for place in row.places}
+
+
+def _misspelt(row: ParameterRow, *, is_open: bool) -> str:
+    """Return the name of a row with a letter twice, in a word that is long enough to be surely
+    meant; in another word where the node has no other parameters. Empty for a class.
+    """
+    if row.name.endswith((".type", ".plugin", "primary_controller")):
+        return ""
+    written = re.sub(r"<[^<>]+>", lambda it: "0" * len(it[0]), row.name)
+    words = [*_WORD.finditer(written)] or ([] if is_open else [*re.finditer("[a-z]+", written)])
+    return _name(row, misspelt=words[-1].span()) if words else ""
 
 
 def _name(row: ParameterRow, misspelt: tuple[int, int] | None = None) -> str:
@@ -332,7 +361,10 @@ def generate_launch_description():
             "robot_localization/ekf_node",
             "humble",
             {"twist0_config": [True] * 15, "twist0_relative": True},
-            ["'n0' does not use twist0_config without twist0"],
+            [
+                "'n0' does not use twist0_config without twist0",
+                "'n0' has no parameter 'twist0_relative'",
+            ],
         ),
         (
             "diff_drive_controller/DiffDriveController",
@@ -383,6 +415,49 @@ def generate_launch_description():
                 "the parameter 'command_interfaces' is ['positon']; 'n0' knows no 'positon' there, and stops",
                 "'n0' has no parameter 'gains.b'",
             ],
+        ),
+        (  # a limit that is off is not read, whatever its type
+            "moveit_ros_move_group/move_group",
+            "jazzy",
+            {
+                f"robot_description_planning.joint_limits.{joint}.{name}": value
+                for joint, is_limited in (("a", False), ("b", True))
+                for name, value in (
+                    ("has_acceleration_limits", is_limited),
+                    ("max_acceleration", 0),
+                )
+            },
+            [
+                (
+                    "the parameter 'robot_description_planning.joint_limits.b.max_acceleration' is "
+                    "given an integer; 'n0' declares a double, and stops"
+                )
+            ],
+        ),
+        (  # solvers have their own parameters
+            "moveit_ros_move_group/move_group",
+            "humble",
+            {
+                f"robot_description_kinematics.{group}.{name}": value
+                for group, solver in (
+                    ("a", "trac_ik_kinematics_plugin/TRAC_IKKinematicsPlugin"),
+                    ("b", "kdl_kinematics_plugin/KDLKinematicsPlugin"),
+                )
+                for name, value in (("kinematics_solver", solver), ("epsilon", "1e-5"))
+            },
+            [
+                (
+                    "the parameter 'robot_description_kinematics.b.epsilon' is given a string; 'n0' "
+                    "declares a double, and stops"
+                )
+            ],
+        ),
+        ("slam_toolbox/sync_slam_toolbox_node", "jazzy", {"robots": 2}, []),  # may have more
+        (
+            "slam_toolbox/sync_slam_toolbox_node",
+            "kilted",
+            {"robots": 2},
+            ["'n0' has no parameter 'robots'"],
         ),
         (
             "amcl_of_somebody/amcl",

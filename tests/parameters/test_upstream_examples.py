@@ -29,6 +29,20 @@ _HUMBLE_EKF = "72f9e936062a2a6b9a210a36ba5e554058191a92"
 _JAZZY_EKF = "1cb953379378d13b3e0935ed73d0c7407bd80543"
 _HUMBLE_SLAM = "94cec982a7f850818187c81295d1212f145efe37"
 _JAZZY_SLAM = "a3442d2f6824ff058fab0cb0a635e7a454294855"
+# Of the repositories that packages are released from, by commit.
+_EKF_RELEASES: dict[str, Release] = {
+    "829140669542655894d2acbac8a54be91d6dfa5f": "humble",  # 3.5.4
+    "11e68b5502d458c55fb84b5f6d35aee772dc012a": "kilted",  # 3.9.4
+}
+_SLAM_RELEASES: dict[str, Release] = {
+    "33c9f5a3ca94daa8b34c5bfb2a275a3036cc2079": "humble",  # 2.6.10
+    "b4d30cedb9ac9cc108336667c0335edbe9379d19": "kilted",  # 2.9.0
+}
+_JOY_RELEASES: dict[str, Release] = {
+    "8c35e87d8ac85608554f4d4ecaba4c9e9836412a": "humble",  # 2.4.8
+    "8b6d887193e448b1d8d700e4f85b707f21aa8fd7": "kilted",  # 2.6.5
+}
+_HUMBLE_MUX = "deeda8e3c49bad2095c795da5473f34a1b19fb46"
 _PARAMS = "nav2_bringup/params/nav2_params.yaml"
 EXAMPLES: list[tuple[str, str, str, Release]] = [
     (_NAV2, _HUMBLE_NAV2, _PARAMS, "humble"),
@@ -46,6 +60,25 @@ EXAMPLES: list[tuple[str, str, str, Release]] = [
         "d929f1b19a437abcf131287b9e3af27fb40ed34e",
         "config/twist_mux_topics.yaml",
         "jazzy",
+    ),
+    *(
+        ("ros2-gbp/robot_localization-release", commit, f"params/{name}.yaml", release)
+        for commit, release in _EKF_RELEASES.items()
+        for name in ("dual_ekf_navsat_example", "ekf", "navsat_transform", "ukf")
+    ),
+    *(
+        ("SteveMacenski/slam_toolbox-release", commit, f"config/mapper_params_{name}.yaml", release)
+        for commit, release in _SLAM_RELEASES.items()
+        for name in ("lifelong", "localization", "offline", "online_async", "online_sync")
+    ),
+    *(
+        ("ros2-gbp/teleop_twist_joy-release", commit, f"config/{name}.config.yaml", release)
+        for commit, release in _JOY_RELEASES.items()
+        for name in ("atk3", "ps3", "ps3-holonomic", "ps5", "xbox", "xd3")
+    ),
+    *(
+        ("ros2-gbp/twist_mux-release", _HUMBLE_MUX, f"config/twist_mux_{name}.yaml", "humble")
+        for name in ("locks", "topics")
     ),
     *(
         (_DEMOS, _HUMBLE_DEMOS, f"example_{number}/bringup/config/{name}.yaml", "humble")

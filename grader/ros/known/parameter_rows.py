@@ -83,7 +83,7 @@ class NodeRows(NamedTuple):
     node: str
     source: str
     rows: tuple[ParameterRow, ...]
-    is_open: bool = False  # whether it reads more than the rows say
+    open_in: tuple[Release, ...] = ()  # the releases in which it reads more than the rows say
     takes_any_type: bool = False
     since: Release = COVERED[0]
     until: Release = COVERED[-1]
@@ -162,6 +162,7 @@ def node_rows(node: str) -> NodeRows | None:
     if table is None:
         return None
     rows = [*_read_rows(table.get("parameters", {}))]
+    is_open: bool | list[Release] = table.get("open", False)
     for other in table.get("also", ()):
         known = node_rows(other)
         assert known is not None, other
@@ -171,7 +172,7 @@ def node_rows(node: str) -> NodeRows | None:
         node,
         table.get("source", ""),
         tuple(rows),
-        table.get("open", False),
+        tuple(is_open) if isinstance(is_open, list) else COVERED if is_open else (),
         table.get("any_type", False),
         table.get("since", COVERED[0]),
         table.get("until", COVERED[-1]),

@@ -234,7 +234,8 @@ class _NodeReader:
                 self._unread.append(prefix)
                 continue
             index = _index(node, self._release)
-            self._tables.append(_RowTable(prefix, index, known.is_open, known.takes_any_type))
+            is_open = self._release in known.open_in
+            self._tables.append(_RowTable(prefix, index, is_open, known.takes_any_type))
             for row in index.all_rows.values():
                 if row.is_class:
                     waiting += self._plugins(prefix, row)
