@@ -27,7 +27,6 @@ from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
-from grader.ros.workspace.default_values import default_value
 from grader.ros.workspace.endpoints import opened_by
 from grader.ros.workspace.names import FAMILIES, Family
 from grader.ros.workspace.reading import read_agreement, wrong_names
@@ -216,7 +215,7 @@ def value_facts(submission: Submission) -> Iterator[Fact]:
             continue
         title = f"the parameter {name} of {node} is {toml_literal(value)}"
         fact = _parameter_fact(node, name, value=value)._replace(about=node, title=title)
-        default = default_value(submission.workspace, node, name)
+        default = submission.default_value(node, name)
         if default is not None and repr(default.value) == repr(value):
             fact = fact._replace(arguments={**fact.arguments, "or_default": True})
         yield fact

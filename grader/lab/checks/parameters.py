@@ -107,11 +107,7 @@ def _value_or_default(
     try:
         return f"{node} gets", value_of(submission, node, parameter)
     except MissingElement:
-        if not or_default:
-            raise
-        from grader.ros.workspace.default_values import default_value  # late: few rubrics ask
-
-        default = default_value(submission.workspace, node, parameter)
+        default = submission.default_value(node, parameter) if or_default else None
         if default is None:
             raise
         return f"{node} has by default", default

@@ -162,7 +162,9 @@ def node_rows(node: str) -> NodeRows | None:
     if table is None:
         return None
     rows = [*_read_rows(table.get("parameters", {}))]
-    is_open: bool | list[Release] = table.get("open", False)
+    open_in: bool | list[Release] = table.get("open", [])
+    if isinstance(open_in, bool):
+        open_in = [*COVERED] if open_in else []
     for other in table.get("also", ()):
         known = node_rows(other)
         assert known is not None, other
@@ -172,7 +174,7 @@ def node_rows(node: str) -> NodeRows | None:
         node,
         table.get("source", ""),
         tuple(rows),
-        tuple(is_open) if isinstance(is_open, list) else COVERED if is_open else (),
+        tuple(open_in),
         table.get("any_type", False),
         table.get("since", COVERED[0]),
         table.get("until", COVERED[-1]),

@@ -15,6 +15,7 @@ from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Unreadab
 
 if TYPE_CHECKING:
     from grader.base.reuse import Memory
+    from grader.ros.launch.launch_model import ParameterValue
     from grader.ros.package.mesh_loading import Around, MeshLoader
     from grader.ros.workspace.all_names import WorkspaceNames
     from grader.ros.workspace.extent import Extent
@@ -110,6 +111,12 @@ class OpenedWorkspace:
         found += listed_problems(self.workspace)
         found += compared_names(self.workspace)
         return found
+
+    def default_value(self, node: str, parameter: str) -> "ParameterValue | None":
+        """Return the value that a node has for a parameter that it does not get; None without."""
+        from grader.ros.workspace.default_values import default_value  # late: few rubrics ask
+
+        return default_value(self.workspace, node, parameter)
 
     def names(self) -> "WorkspaceNames":
         """Return the names that its files define and use, each where it is written."""

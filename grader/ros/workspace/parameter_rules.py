@@ -198,9 +198,11 @@ class _NodeReader:
                 unmatched[name] = value
                 continue
             switch = self._switch_off(match)
+            # The default says nothing, whether it is read or not.
+            is_default = value.value == match.row.default and not isinstance(value.value, bool)
             if switch is None:
                 yield from self._value_findings(name, value, match)
-            elif switch.name not in said and not _is_default(value.value, match.row):
+            elif switch.name not in said and not is_default:
                 said.add(switch.name)
                 yield switch.finding(self._given, name, value)
         # So many may be those of another program of this name, built from its own source.
@@ -491,11 +493,6 @@ class _OffSwitch(NamedTuple):
         message = f"{given.said} does not use {given.shown(name)}{self.words}"
         mismatch = Mismatch("parameters", message, at, is_certain=False, rule=NO_EFFECT)
         return _RowFinding("without effect", name, mismatch)
-
-
-def _is_default(value: Any, row: ParameterRow) -> bool:
-    """Return whether a value is the default, as which it says nothing even if it is not read."""
-    return value == row.default and not isinstance(value, bool)
 
 
 @cache
