@@ -461,6 +461,18 @@ def test_only_names_may_be_asked_for(tmp_path: Path) -> None:
     assert "parameter_is" not in file.read_text()
 
 
+def test_a_value_that_a_node_has_anyway_is_asked_for_as_its_default(tmp_path: Path) -> None:
+    """A submission that leaves it out passes, and one that leaves out another value does not."""
+    shutil.copytree(LAB6, tmp_path / "my_robot")
+    launch = tmp_path / "my_robot/launch/my_robot_rviz.launch.py"
+    values = "{'publish_frequency': 20.0, 'ignore_timestamp': True}"
+    launch.write_text(launch.read_text().replace("parameters=[", f"parameters=[{values}, "))
+    assert new(tmp_path, tmp_path / "my_robot").returncode == 0
+    text = (tmp_path / "lab.toml").read_text()
+    written = re.findall(r"# with = .*(?:publish_frequency|ignore_timestamp).*", text)
+    assert ["or_default = true" in line for line in written] == [True, False]
+
+
 def test_a_free_link_is_named_by_its_place(tmp_path: Path) -> None:
     """A robot in which it has another name keeps all points."""
     file = tmp_path / "lab.toml"

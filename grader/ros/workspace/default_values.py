@@ -27,16 +27,15 @@ def default_value(workspace: Workspace, node: str, parameter: str) -> ParameterV
         node: The name of a node or controller that is started, without its namespace.
         parameter: The name of the parameter.
     """
+    owners = workspace.parameter_owners.get(node, [])
     defaults: dict[str, ParameterValue | None] = {}
-    for given in workspace.parameter_owners.get(node, ()):
+    for given in owners:
         for default in _defaults(workspace, node, given, parameter):
             value = default.value if default is not None else None
             defaults[repr(value)] = default
-    for default in defaults.values():
-        if default is not None and len(defaults) > 1:
-            return default._replace(value=_NOT_KNOWN)
-        return default
-    return None
+    if len(defaults) > 1:
+        return ParameterValue(_NOT_KNOWN, owners[0].node.location)
+    return next(iter(defaults.values()), None)
 
 
 def _defaults(
