@@ -61,9 +61,9 @@ def parameter_is(
         tolerance: How far a number may be off, in the number's own unit.
         where_given: Whether a node that does not get the parameter passes, for `carried`, if no
             parameter file has another value.
-        or_default: Whether the default counts of a node that runs and does not get the parameter:
-            of a node of the submission the value that its code declares, of a well-known node that
-            of the rubric's release. `where_given` is for nodes without a default.
+        or_default: Whether a default counts where the node runs and does not get the parameter: of
+            a node of the submission the value that its code declares, of a well-known node that of
+            the rubric's release. `where_given` is for nodes without a default.
     """
     del package  # without one, there are no parameters
     try:
