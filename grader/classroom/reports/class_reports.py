@@ -313,12 +313,13 @@ def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[_Done]:
     book, kept = _opened_gradebook(run)
     done = list[_Done]()
     for task in tasks:
-        kept.used, kept.is_lost, known = "", not task.has_hints, {*kept.new}
+        kept.used, kept.is_lost = "", not task.has_hints
         report = report_of(book, book.grade(task.key), has_hints=task.has_hints, kept=kept)
         report = report._replace(class_page=run.class_page)
         for kind in run.formats:
             save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind))
-        new = {key: kept.new[key] for key in kept.new if key not in known}
+        # Also those of an earlier task, which may have failed to write its report.
+        new = {kept.used: kept.new[kept.used]} if kept.used in kept.new else {}
         still: Still = ()
         if Format.HTML in run.formats:
             picture = picture_of(report)
