@@ -11,6 +11,7 @@ from typing import NamedTuple
 from grader.ros.build.places import PREFIX
 from grader.ros.launch.api import CONDITION, ENTITY, SOURCE, class_named, is_a
 from grader.ros.launch.call_arguments import items_in, kind_of
+from grader.ros.launch.components import load_components, start_container
 from grader.ros.launch.launch_model import (
     NAMESPACE,
     Context,
@@ -263,6 +264,22 @@ def _condition_holds(given: Value, context: Context, at: Position) -> bool:
     if not is_a(given.name, CONDITION) or kind not in CONDITIONS:
         raise Undetermined(f"the condition {kind} is not evaluated", given.at)
     return condition_holds(given, context)
+
+
+def _start_container(
+    visitor: ActionVisitor, call: Call, context: Context, when: bool | None
+) -> None:
+    """Note a container and the components in it; what these do is not evaluated."""
+    start_container(visitor.findings, call, context, when)
+    _refuse_action(visitor, call, context, when)
+
+
+def _load_components(
+    visitor: ActionVisitor, call: Call, context: Context, when: bool | None
+) -> None:
+    """Note the components that are loaded into a container; what these do is not evaluated."""
+    load_components(visitor.findings, call, context, when)
+    _refuse_action(visitor, call, context, when)
 
 
 def _texts_in(value: Value) -> Sequence[Value]:
@@ -571,6 +588,8 @@ _EFFECTS: Mapping[str, _ActionFunction] = {
     "PushROSNamespace": _push_namespace,
     "SetRemap": _set_remap,
     "SetUseSimTime": _set_time,
+    "ComposableNodeContainer": _start_container,
+    "LoadComposableNodes": _load_components,
 }
 # What each kind of action does, besides the evaluation of its arguments.
 _KINDS: Mapping[str, _ActionFunction] = {

@@ -15,6 +15,7 @@ SUBSTITUTION = "launch.substitution.Substitution"
 SOURCE = "launch.launch_description_source.LaunchDescriptionSource"
 PATH = "launch.substitutions.path_join_substitution.PathSubstitution"
 JOINED_PATH = "launch.substitutions.path_join_substitution.PathJoinSubstitution"
+COMPONENT = "launch_ros.descriptions.composable_node.ComposableNode"
 DESCRIPTION = "launch.launch_description.LaunchDescription"
 
 

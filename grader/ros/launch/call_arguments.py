@@ -97,6 +97,9 @@ _ACTIONS = (
     "SetParametersFromFile",
     "SetRemap",
     "SetUseSimTime",
+    "ComposableNodeContainer",
+    "LoadComposableNodes",
+    "ComposableNode",
 )
 _MAX_DEPTH = 20  # of lists in others
 _TAKES_A_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")

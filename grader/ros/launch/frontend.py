@@ -19,7 +19,7 @@ from grader.ros.config.yaml_nodes import (
     read_yaml,
     yaml_value,
 )
-from grader.ros.launch.api import class_named, front_end
+from grader.ros.launch.api import COMPONENT, class_named, front_end
 from grader.ros.launch.call_arguments import TYPED, check
 from grader.ros.launch.launch_model import Findings, LaunchFault
 from grader.ros.launch.substitutions import boolean
@@ -104,6 +104,18 @@ _PROCESS: _Parts = {
     "sigterm_timeout": _NOT_EVALUATED,
     "env": _NOT_EVALUATED,
 }
+_NODE: _Parts = {
+    "exec": _REQUIRED,
+    "pkg": _TEXT,
+    "args": _TEXT,
+    "ros_args": _TEXT,
+    "node-name": _NOT_EVALUATED,
+    "exec_name": _NOT_EVALUATED,
+    "namespace": _TEXT,
+    "remap": _ELEMENTS,
+    "param": _ELEMENTS,
+    **_PROCESS,
+}
 _PUSH_NAMESPACE: _Parts = {"namespace": _REQUIRED}
 # The actions that are evaluated.
 _ACTIONS: Mapping[str, _Parts] = {
@@ -124,18 +136,9 @@ _ACTIONS: Mapping[str, _Parts] = {
         "cancel_on_shutdown": _NOT_EVALUATED,
         "children": _CHILDREN,
     },
-    "node": {
-        "exec": _REQUIRED,
-        "pkg": _TEXT,
-        "args": _TEXT,
-        "ros_args": _TEXT,
-        "node-name": _NOT_EVALUATED,
-        "exec_name": _NOT_EVALUATED,
-        "namespace": _TEXT,
-        "remap": _ELEMENTS,
-        "param": _ELEMENTS,
-        **_PROCESS,
-    },
+    "node": _NODE,
+    "node_container": {**_NODE, "composable_node": _ELEMENTS},
+    "load_composable_node": {"target": _REQUIRED, "composable_node": _ELEMENTS},
     "push_ros_namespace": _PUSH_NAMESPACE,
     "push-ros-namespace": _PUSH_NAMESPACE,
     "set_parameter": {"name": _REQUIRED, "value": _REQUIRED},
@@ -145,6 +148,16 @@ _ACTIONS: Mapping[str, _Parts] = {
 _NESTED: Mapping[str, _Parts] = {
     "arg": {"name": _REQUIRED, "value": _REQUIRED},
     "choice": {"value": _REQUIRED},
+    "composable_node": {
+        "pkg": _REQUIRED,
+        "plugin": _REQUIRED,
+        "name": _REQUIRED,
+        "namespace": _TEXT,
+        "param": _ELEMENTS,
+        "remap": _ELEMENTS,
+        "extra_arg": _ELEMENTS,
+        **_CONDITION_PARTS,
+    },
     "remap": {"from": _REQUIRED, "to": _REQUIRED},
     "param": {
         "name": _TEXT,
@@ -180,6 +193,7 @@ _ARGUMENTS = {
     "from": "src",
     "to": "dst",
     "ros_args": "ros_arguments",
+    "target": "target_container",
 }
 _ROS1 = (
     "this is a launch file of ROS 1; in ROS 2 write exec= for type=, $(find-pkg-share ...) "
@@ -498,8 +512,22 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
                 kwargs["remappings"] = _read_pairs(inner, "from", "to")
             case "arg":
                 kwargs["launch_arguments"] = _read_pairs(inner, "name", "value")
+            case "composable_node":
+                kwargs["composable_node_descriptions"] = [_read_component(it) for it in inner]
             case "choice":
                 kwargs["choices"] = [_read_attributes(it, _NESTED[name])["value"] for it in inner]
+
+
+def _read_component(entity: _Entity) -> Call:
+    """Return a component without its parameters and remappings. Raises EvaluationSignal."""
+    given = _read_attributes(entity, _NESTED[entity.kind])
+    condition = _take_condition(given, entity)
+    kwargs: dict[str, Value] = {}
+    for name, value in given.items():
+        kwargs[_ARGUMENTS.get(name, name)] = _read_argument(entity, name, value)
+    if condition is not None:
+        kwargs["condition"] = condition
+    return _checked_call(Call(COMPONENT, [], kwargs, entity.place("plugin")))
 
 
 def _read_pairs(elements: list[_Entity], *names: str) -> list[tuple[list[Value], ...]]:

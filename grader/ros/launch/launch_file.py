@@ -85,7 +85,10 @@ _NODE = "launch_ros.actions.node.Node"
 _MOVEIT = "moveit_configs_utils"
 _MAX_INCLUDES = 40
 # What a launch file shares with those that it includes.
-_JOINED = ("nodes", "references", "faults", "unknown", "doubts", "declared", "values", "passed")
+_JOINED = (
+    *("nodes", "references", "faults", "unknown", "doubts", "declared", "values", "passed"),
+    *("components", "containers"),
+)
 
 
 _NO_ARGUMENTS: Mapping[str, str] = {}
@@ -297,6 +300,8 @@ def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNod
         values=tuple(findings.values),
         passed=tuple(dict.fromkeys(findings.passed)),
         commands=tuple(dict.fromkeys(findings.commands)),
+        components=tuple(dict.fromkeys(findings.components)),
+        containers=tuple(dict.fromkeys(findings.containers)),
         forgotten=forgotten,
     )
 

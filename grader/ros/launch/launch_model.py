@@ -234,6 +234,30 @@ class StartedNode(NamedTuple):
         return f"{self.package}/{self.executable}"
 
 
+class LoadedComponent(NamedTuple):
+    """A class that a launch file loads into a container of rclcpp_components; None for what is not
+    known.
+
+    `container` is the full name of a container that the launch file asks for by its name; empty for
+    one that it starts for the component.
+    """
+
+    package: str | None
+    plugin: str | None  # sensors::Lidar
+    when: bool | None  # as that of a node
+    location: Location
+    loaded_at: Location  # by which action
+    container: str | None = ""
+
+
+class Container(NamedTuple):
+    """A node that a launch file starts to load components, by its full name, if it is known."""
+
+    name: str | None
+    when: bool | None
+    location: Location
+
+
 class NamedFile(NamedTuple):
     """A file that the launch file names. `path` begins with a stand-in where a folder depends on
     the machine.
@@ -288,6 +312,8 @@ class Launch(NamedTuple):
     values: tuple[tuple[str, str], ...] = ()  # of these, as far as they are known
     passed: tuple[PassedArguments, ...] = ()
     commands: tuple[str, ...] = ()  # those that are executed besides nodes
+    components: tuple[LoadedComponent, ...] = ()  # which may start more than is known
+    containers: tuple[Container, ...] = ()  # likewise
     forgotten: tuple[
         StartedNode, ...
     ] = ()  # created in the file, but not part of its LaunchDescription
@@ -340,6 +366,8 @@ class Findings:
     values: list[tuple[str, str]] = field(default_factory=list)
     passed: list[PassedArguments] = field(default_factory=list)
     commands: list[str] = field(default_factory=list)
+    components: list[LoadedComponent] = field(default_factory=list)
+    containers: list[Container] = field(default_factory=list)
     sets_parameters: bool = False
     is_silent: bool = False  # while what may never be executed is visited
 

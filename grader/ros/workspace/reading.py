@@ -12,6 +12,7 @@ from grader.ros.workspace.arguments import argument_facts
 from grader.ros.workspace.bridges import bridge_facts
 from grader.ros.workspace.code import code_facts
 from grader.ros.workspace.companions import companion_facts
+from grader.ros.workspace.components import component_facts
 from grader.ros.workspace.controllers import controller_facts
 from grader.ros.workspace.dependencies import dependency_facts
 from grader.ros.workspace.files import file_facts
@@ -60,6 +61,7 @@ _READERS = (
     known_parameter_facts,
     argument_facts,
     program_facts,
+    component_facts,
     topic_facts,
     service_facts,
     gazebo_facts,

@@ -1,0 +1,85 @@
+"""Components: classes that a launch file loads into a container, and the containers that it
+starts, as launch_ros does.
+
+What components publish, and which parameters they get, is not evaluated.
+"""
+
+from grader.ros.launch.api import COMPONENT
+from grader.ros.launch.call_arguments import items_in
+from grader.ros.launch.launch_model import Container, Context, Findings, LoadedComponent
+from grader.ros.launch.started_nodes import namespace_below
+from grader.ros.launch.substitutions import CONDITIONS, condition_holds, known_text
+from grader.ros.python.values import Call, EvaluationSignal, Value
+
+_DESCRIPTIONS = "composable_node_descriptions"
+
+
+def start_container(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
+    """Add a container, and the components that are loaded into it."""
+    try:
+        namespace = namespace_below(call.kwargs["namespace"] or "", context, call.at)
+        name = known_text(call.kwargs["name"], context, call.at)
+    except EvaluationSignal:
+        full = None
+    else:
+        full = _absolute(f"{namespace}/{name}")
+    findings.containers.append(Container(full, when, findings.locate(call.at)))
+    _add_components(findings, call, context, when, "")
+
+
+def load_components(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
+    """Add the components that are loaded into a container that is started elsewhere."""
+    target = call.kwargs["target_container"]
+    container: str | None = ""
+    if not (isinstance(target, Call) and target.short == "ComposableNodeContainer"):
+        try:
+            # The node of launch itself asks for the service: no namespace is put before it.
+            container = _absolute(known_text(target, context, call.at))
+        except EvaluationSignal:
+            container = None
+    _add_components(findings, call, context, when, container)
+
+
+def _absolute(name: str) -> str:
+    return f"/{name.lstrip('/')}"
+
+
+def _add_components(
+    findings: Findings, call: Call, context: Context, when: bool | None, container: str | None
+) -> None:
+    try:
+        described = items_in(call.kwargs.get(_DESCRIPTIONS) or ()) or ()
+    except EvaluationSignal:
+        return
+    loaded_at = findings.locate(call.at)
+    for item in described:
+        if not isinstance(item, Call) or item.name != COMPONENT:
+            continue
+        is_loaded = _is_loaded(item, context, when)
+        package = _text_if_known(item.kwargs["package"], context, item)
+        plugin = _text_if_known(item.kwargs["plugin"], context, item)
+        at = findings.locate(item.at)
+        findings.components.append(
+            LoadedComponent(package, plugin, is_loaded, at, loaded_at, container)
+        )
+
+
+def _is_loaded(item: Call, context: Context, when: bool | None) -> bool | None:
+    """Return whether a component is loaded by an action that is executed, or not, or perhaps."""
+    condition = item.kwargs.get("condition")
+    if condition is None or when is False:
+        return when
+    if not isinstance(condition, Call) or condition.short not in CONDITIONS:
+        return None
+    try:
+        holds = condition_holds(condition, context)
+    except EvaluationSignal:
+        return None
+    return when if holds else False
+
+
+def _text_if_known(value: Value, context: Context, item: Call) -> str | None:
+    try:
+        return known_text(value, context, item.at)
+    except EvaluationSignal:
+        return None
