@@ -132,8 +132,9 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
         raise GraderError(_which_one(path, read))
     robots = tuple(_inspected(opened, it, joints, relative_to) for it in read)
     opened = opened.of_release(*request.release(selection.settings))
-    found = tuple(opened.package_problems())
-    inspection = Inspection(opened.id, robots, found, opened.extent(), opened.source, base)
+    found, extent = opened.package_problems(), opened.extent()
+    found += opened.mesh_size_problems()  # last: it takes what is left of the budget
+    inspection = Inspection(opened.id, robots, tuple(found), extent, opened.source, base)
     return without_ignored(inspection, opened.whole_tree, [*opened.whole_tree.files], selection)
 
 

@@ -13,7 +13,7 @@ from grader.base.names import closest
 from grader.base.problems import Problem
 from grader.base.source import LazyLocation
 from grader.base.text import quoted, quoted_end
-from grader.files.tree import Tree
+from grader.files.tree import File, Tree
 from grader.ros.build.package_problems import MESH_PATH
 from grader.ros.build.places import is_of_one_machine
 from grader.ros.package.installed_files import Lookup, look_up, similar_file
@@ -91,13 +91,17 @@ class MeshFile(NamedTuple):
         """Return what is wrong with the content of its file in a submitted package; empty if
         nothing is, or there is no such file. Raises NotDecided.
         """
+        file = self.file_in(packages)
+        return content_fault(file, self.path) if file is not None else ""
+
+    def file_in(self, packages: Sequence[Package]) -> File | None:
+        """Return its file in a submitted package; None if there is none."""
         package = packages[0].find(self.package) if packages else None
         if package is None:
-            return ""
+            return None
         path = posixpath.normpath(self.path)
         found = look_up(package, f"share/{self.package}/{path}")
-        file = package.tree.files.get(found.path if found.state == "installed" else path)
-        return content_fault(file, self.path) if file is not None else ""
+        return package.tree.files.get(found.path if found.state == "installed" else path)
 
 
 def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:

@@ -65,10 +65,8 @@ def _unregistered(
     elif not is_known:
         yield Undecided("programs", f"which components {owner.name} has is not evaluated")
         return
-    elif registered:
-        message += f"; it registers {', '.join(map(quoted, registered))}"
     else:
-        message += ": its build calls no rclcpp_components_register_node()"
+        message += f"; it registers {', '.join(registered) or 'none'}"
     related = registered[meant] if meant is not None else None
     either = corrections(plugin, component.location, meant, related)
     yield Mismatch("programs", message, component.location, related, is_known, either)
@@ -78,14 +76,12 @@ def _no_container(workspace: Workspace, launch: Launch) -> Iterator[Mismatch]:
     """Yield the containers that a launch file asks for and does not start, though it starts
     others. What may start more leaves open which there are.
     """
-    asked = [it for it in launch.components if it.container and it.when is True]
-    started = _containers(workspace, launch) if asked else None
+    started = _containers(workspace, launch) if launch.components else None
     if not started:
         return
-    for component in asked:
+    for component in launch.components:
         name = component.container
-        assert name
-        if name not in started:
+        if name and component.when is True and name not in started:
             workspace.charge(cost_of_guess(len(started)))
             meant = closest(name, started) or min(started)
             at = started[meant]
@@ -107,17 +103,14 @@ def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | N
     if not all(workspace.has_file(passed.path) for passed in launch.passed):
         return None
     found: dict[str, Location] = {}
-    others: dict[str, Location] = {}
     for container in launch.containers:
         if container.name is None:
             return None
         found[container.name] = container.location
     for node in launch.nodes:
-        is_container = node.package == _CONTAINERS
-        may_be = is_container or workspace.package_of(node) is not None
+        may_be = node.package == _CONTAINERS or workspace.package_of(node) is not None
         if may_be and (not node.node_name or node.namespace is None):
             return None
-        if node.node_name:
-            named = found if is_container else others
-            named[node.full_name(node.node_name)] = node.location
-    return {**others, **found} if found else None
+        if node.node_name and found:
+            found[node.full_name(node.node_name)] = node.location
+    return found or None

@@ -35,7 +35,7 @@ _NO_INTERFACE = _error("REF014", "Message, service, action or field that does no
 _NO_RUN = _error("REF015", "Node that certainly stops, or does nothing")
 _MAY_WAIT = _warning("REF016", "Node that may stop or wait")
 _WRONG_VALUE = _error("REF017", "Number that contradicts the robot")
-_OTHER_VALUE = _warning("REF018", "Number that is not that of the robot")
+OTHER_VALUE = _warning("REF018", "Number that is not that of the robot")
 _WRONG_TRANSFORM = _error("REF019", "Frames that are no tree")
 _OTHER_TRANSFORM = _warning("REF020", "Transform that two programs publish")
 _NO_COMPANION = _warning("REF021", "Node that does not fit the others")
@@ -72,7 +72,7 @@ _KINDS: Mapping[AnyFamily, Kind] = {
 # Of what is not certain; of other families it is a similar name.
 _UNCERTAIN: Mapping[AnyFamily, Kind] = {
     "code": _MAY_WAIT,
-    "values": _OTHER_VALUE,
+    "values": OTHER_VALUE,
     "transforms": _OTHER_TRANSFORM,
     "wiring": _NO_COMPANION,
     "machine": _ONE_MACHINE,

@@ -118,6 +118,14 @@ class OpenedWorkspace:
 
         return default_value(self.workspace, node, parameter)
 
+    def mesh_size_problems(self) -> list[Problem]:
+        """Return the meshes whose sizes surely are in another unit: `grader inspect` alone warns of
+        them.
+        """
+        from grader.ros.workspace.mesh_sizes import mesh_size_problems  # late: as above
+
+        return mesh_size_problems(self.workspace)
+
     def names(self) -> "WorkspaceNames":
         """Return the names that its files define and use, each where it is written."""
         from grader.ros.workspace.all_names import read_names  # late: only editors ask for them
