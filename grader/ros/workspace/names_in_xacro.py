@@ -30,13 +30,16 @@ _PREFIX = "xacro:"
 
 
 class _XacroName(NamedTuple):
-    """A name in a file; `scope` is the macro that it belongs to, empty outside of macros."""
+    """A name in a file; `scope` is the macro that it belongs to, empty outside of macros. Of an
+    argument in a macro call, only the name of the macro is known: `called`.
+    """
 
     kind: str
     name: str
     role: Role
     span: Span
     scope: str = ""
+    called: str | None = None
 
 
 class _Macro(NamedTuple):
@@ -85,31 +88,20 @@ def _names_of_owner(documents: Sequence[_Document], owner: str) -> Iterator[Writ
     for document in documents:
         properties |= {it.name for it in document.names if it.kind == "xacro property"}
     for document in documents:
+        source = document.source
         for it in document.names:
-            scope = scopes.get(it.scope.removeprefix(_PREFIX), "") if _is_call(it) else it.scope
-            if scope or not _is_call(it):
-                yield written_name(
-                    document.source, it.span, it.kind, it.name, it.role, scope or owner
-                )
+            scope = it.scope
+            if it.called is not None:
+                scope = scopes.get(it.called, "")
+                if not scope:
+                    continue  # no file of this owner has the macro
+            yield written_name(source, it.span, it.kind, it.name, it.role, scope or owner)
         for it in document.loose:
-            scope = _scope_of(document, it)
-            if scope or it.name in properties:
-                kind = "xacro parameter" if scope else "xacro property"
-                yield written_name(document.source, it.span, kind, it.name, "use", scope or owner)
-
-
-def _is_call(name: _XacroName) -> bool:
-    """Return whether a name is that of an argument in a macro call: the macro is in its scope."""
-    return name.scope.startswith(_PREFIX)
-
-
-def _scope_of(document: _Document, name: _XacroName) -> str:
-    """Return the innermost macro around a name that has a name of this kind; empty without one."""
-    around = ""
-    for macro in document.macros:
-        if macro.start < name.span[0] < macro.end and name.name in macro.own:
-            around = macro.scope
-    return around
+            scope = _scope_at(document.macros, it.span[0], it.name)
+            if scope:
+                yield written_name(source, it.span, "xacro parameter", it.name, "use", scope)
+            elif it.name in properties:
+                yield written_name(source, it.span, "xacro property", it.name, "use", owner)
 
 
 def _read_document(root: XacroNode) -> _Document:
@@ -165,7 +157,7 @@ def _names_in_tag(node: XacroNode, macros: Sequence[_Macro]) -> Iterator[_XacroN
     elif "name" in written:
         own = written["name"]
         name = text[slice(*own)]
-        scope = "" if "scope" in written else _around(macros, start, name)
+        scope = "" if "scope" in written else _scope_at(macros, start, name)
         if node.tag == "xacro:arg":
             yield _XacroName("xacro argument", name, "definition", own)
         elif node.tag == "xacro:property":
@@ -201,12 +193,12 @@ def _names_in_call(
     for attribute, (value_start, _) in written.items():
         at = text.rindex(attribute, start, value_start)
         span = at, at + len(attribute)
-        yield _XacroName("xacro parameter", attribute, "use", span, f"{_PREFIX}{called}")
+        yield _XacroName("xacro parameter", attribute, "use", span, called=called)
 
 
-def _around(macros: Sequence[_Macro], offset: int, name: str) -> str:
+def _scope_at(macros: Sequence[_Macro], offset: int, name: str) -> str:
     """Return the innermost macro around an offset that has a name as its own; empty without one."""
-    scope = ""
+    scope = ""  # `macros` has outer ones first
     for macro in macros:
         if macro.start < offset < macro.end and name in macro.own:
             scope = macro.scope
