@@ -201,35 +201,36 @@ class CppEvaluation:
             local = self._local_variable(name, function)
             if local is not None:
                 return self._value_of_local(node, local)
-        scopes = self.unit.scopes_of(function) if function is not None else ()
-        variables = self.unit.variables_named(name, scopes)
-        if variables:
-            return self._value_of_variable(variables, node)
-        if name in self.unit.macros:
+        if name in self.unit.macros and not self._variables_at(node, name):
             return self._value_of_macro(name)
-        return CppName(name, node)
+        return self._value_of_shared(node, name, name)
 
     def qualified(self, node: CppNode) -> CppValue:
         """Return the value of a constant by a name with its scopes."""
-        function = self.unit.function_around(node)
-        scopes = self.unit.scopes_of(function) if function is not None else ()
-        variables = self.unit.variables_named(plain_name(node), scopes)
-        if variables:
-            return self._value_of_variable(variables, node)
-        return CppName(plain_name(node), node)
+        name = plain_name(node)
+        return self._value_of_shared(node, name, name)
 
     def member(self, node: CppNode) -> CppValue:
         """Return the value of a member of the object itself: `this->name`."""
         owner, field = node.child("argument"), node.child("field")
-        if owner is None or field is None or owner.kind != "this":
-            name = node.text if field is not None else ""
-            return CppName(name, node)
+        if field is None:
+            return CppName("", node)
+        if owner is None or owner.kind != "this":
+            return CppName(node.text, node)
+        return self._value_of_shared(node, field.text, node.text)
+
+    def _value_of_shared(self, node: CppNode, name: str, written: str) -> CppValue:
+        """Return the value of the variable of a namespace or class that a name means at a place;
+        the name as it is written, where none has it.
+        """
+        variables = self._variables_at(node, name)
+        return self._value_of_variable(variables, node) if variables else CppName(written, node)
+
+    def _variables_at(self, node: CppNode, name: str) -> Sequence[CppVariable]:
+        """Return the variables of namespaces and classes that a name may mean at a place."""
         function = self.unit.function_around(node)
         scopes = self.unit.scopes_of(function) if function is not None else ()
-        variables = self.unit.variables_named(field.text, scopes)
-        if variables:
-            return self._value_of_variable(variables, node)
-        return CppName(node.text, node)
+        return self.unit.variables_named(name, scopes)
 
     def _local_variable(self, name: str, function: CppFunction) -> "_LocalVariable | None":
         """Return the local variable or parameter of a function that has a name; None without."""
