@@ -172,16 +172,8 @@ class CppEvaluation:
         return not_known("it is computed")
 
     def call(self, node: CppNode) -> CppValue:
-        """Return a call that is recorded."""
+        """Return a call of a function or method that is recorded."""
         arguments = [self.value_of(it) for it in arguments_of(node)]
-        if node.kind != "call_expression":
-            kind = node.child("type")
-            name = plain_name(kind) if kind is not None else ""
-            types = template_arguments(kind) if kind is not None else ()
-            if node.kind == "compound_literal_expression":
-                value = node.child("value")
-                arguments = [self.value_of(it) for it in (value.children if value else ())]
-            return _constructed(CppCall(name, arguments, node, types))
         function = node.child("function")
         owner = None
         if function is not None and function.kind == "field_expression":
@@ -190,6 +182,14 @@ class CppEvaluation:
         if isinstance(owner, str) and name in _SAME_TEXT:
             return owner
         return _constructed(CppCall(name, arguments, node, template_arguments(node), owner))
+
+    def made(self, node: CppNode) -> CppValue:
+        """Return what makes an object, `new Type(...)` or `Type{...}`, as a call of its type."""
+        arguments = [self.value_of(it) for it in arguments_of(node)]
+        kind = node.child("type")
+        if kind is None:
+            return _constructed(CppCall("", arguments, node, ()))
+        return _constructed(CppCall(plain_name(kind), arguments, node, template_arguments(kind)))
 
     # --- Names
     # ----------------------------------------------------------------------
@@ -366,25 +366,22 @@ class CppEvaluation:
         not known. `declaration` is that of a local one, whose methods may change it.
         """
         node = use
-        if _is_member_of_this(use):
-            assert use.parent is not None
+        if _is_member_of_this(use) and use.parent is not None:
             node = use.parent
         parent = node.parent
-        kind = parent.kind if parent is not None else ""
-        effect: list[_Write] | Unknown = not_known("it may change")
-        if parent is not None and kind in ("argument_list", "template_argument_list"):
-            effect = self._effect_of_argument(node, parent)
-        elif parent is not None and kind == "field_initializer":
-            values = [self.value_of(it) for it in arguments_of(parent)]
-            value = values[0] if values else not_known("it has no value")
-            effect = [_Write("set", node, value)]
-        elif parent is not None and kind == "assignment_expression" and node.field == "left":
-            effect = self._effect_of_assignment(node, parent)
-        elif parent is not None and kind == "field_expression" and node.field == "argument":
-            effect = self._effect_of_method(node, parent, declaration)
-        elif parent is not None and _is_read(node, parent):
-            effect = []
-        return effect
+        if parent is None:
+            return not_known("it may change")
+        match parent.kind, node.field:
+            case (("argument_list" | "template_argument_list"), _):
+                return self._effect_of_argument(node, parent)
+            case "field_initializer", _:
+                values = [self.value_of(it) for it in arguments_of(parent)]
+                return [_Write("set", node, values[0] if values else not_known("it has no value"))]
+            case "assignment_expression", "left":
+                return self._effect_of_assignment(node, parent)
+            case "field_expression", "argument":
+                return self._effect_of_method(node, parent, declaration)
+        return [] if _is_read(node, parent) else not_known("it may change")
 
     def _effect_of_argument(self, node: CppNode, given: CppNode) -> list[_Write] | Unknown:
         call = given.parent
@@ -460,7 +457,9 @@ class CppEvaluation:
 _EVALUATED: Mapping[str, Callable[[CppEvaluation, CppNode], CppValue]] = {
     **dict.fromkeys(TEXTS, CppEvaluation.text),
     **dict.fromkeys(NUMBERS, CppEvaluation.number),
-    **dict.fromkeys(_CALLS, CppEvaluation.call),
+    "call_expression": CppEvaluation.call,
+    "compound_literal_expression": CppEvaluation.made,
+    "new_expression": CppEvaluation.made,
     "concatenated_string": CppEvaluation.joined_texts,
     "user_defined_literal": CppEvaluation.with_suffix,
     "identifier": CppEvaluation.name,
