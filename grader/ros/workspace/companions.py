@@ -13,7 +13,7 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.bridges import bridge_rows
 from grader.ros.workspace.controllers import defined_controllers, spawned_controllers
 from grader.ros.workspace.gazebo import BRIDGE
-from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.workspace import MANAGER, Workspace
 
 _ROBOT_PUBLISHER, _CONTROL_NODE = "robot_state_publisher", "ros2_control_node"
@@ -43,10 +43,6 @@ def companion_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _wall_time(workspace)
 
 
-def _warning(message: str, at: Location, related: Location | None = None) -> Mismatch:
-    return Mismatch("wiring", message, at, related, is_certain=False)
-
-
 def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the nodes that a launch file gives a name which it gives another one."""
     first: dict[tuple[int, str], StartedNode] = {}
@@ -60,7 +56,7 @@ def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
                 f"two nodes are named {name}: their parameters and services cannot be told apart; "
                 f"the other one is at {before.location.file_and_line}"
             )
-            yield _warning(message, node.location, before.location)
+            yield warning("wiring", message, node.location, before.location)
 
 
 def _broadcasters(workspace: Workspace) -> set[str]:
@@ -83,7 +79,7 @@ def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
                     f"{node.executable} and the controller {quoted(name)} both publish "
                     "joint_states: the joints jump between their positions"
                 )
-                yield _warning(message, node.location)
+                yield warning("wiring", message, node.location)
 
 
 def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
@@ -112,7 +108,7 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
         "joint_state_broadcaster"
     )
     at = joint.location.resolve() if joint.location is not None else None
-    yield _warning(message, publishers[0].location, at)
+    yield warning("wiring", message, publishers[0].location, at)
 
 
 def _is_understood(workspace: Workspace, node: StartedNode, kind: str) -> bool:
@@ -149,7 +145,7 @@ def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
             "the controller manager waits for the topic robot_description, which nothing "
             "publishes: start robot_state_publisher"
         )
-        yield _warning(message, managers[0].location)
+        yield warning("wiring", message, managers[0].location)
 
 
 def _sim_time(workspace: Workspace) -> Iterator[Location]:
@@ -167,7 +163,7 @@ def _no_clock(workspace: Workspace) -> Iterator[Mismatch]:
     if at is None or _may_have_clock(workspace):
         return
     message = "use_sim_time is true, but nothing publishes /clock: the time of the node stays 0"
-    yield _warning(message, at)
+    yield warning("wiring", message, at)
 
 
 def _may_have_clock(workspace: Workspace) -> bool:
@@ -225,5 +221,5 @@ def _wall_time(workspace: Workspace) -> Iterator[Mismatch]:
                 f"{node.executable} uses the time of the machine, but the simulation has its own "
                 f"clock ({rows[0].location.file_and_line}): give the nodes use_sim_time"
             )
-            yield _warning(message, node.location, rows[0].location)
+            yield warning("wiring", message, node.location, rows[0].location)
             return

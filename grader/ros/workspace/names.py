@@ -126,6 +126,13 @@ class Mismatch(NamedTuple):
     rule: str = ""  # of the families code and parameters: what is wrong
 
 
+def warning(
+    family: AnyFamily, message: str, at: Location, related: Location | None = None
+) -> Mismatch:
+    """Return something that does not agree, and may be meant so."""
+    return Mismatch(family, message, at, related, is_certain=False)
+
+
 class Compared(NamedTuple):
     """That something of a family is there to be compared; of a file its path below the prefix."""
 

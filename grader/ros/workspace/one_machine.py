@@ -3,10 +3,10 @@
 import re
 from collections.abc import Iterator
 
-from grader.base.source import Location, Source
+from grader.base.source import Source
 from grader.base.text import cut, quoted
 from grader.ros.known.known import known
-from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.workspace import Workspace
 
 _HOME = re.compile(r"(?<![\w$}/.:])(?:file://)?(/(?:home|Users)/[\w.-]+/[^\s\"'<>,;:)}\]]*)")
@@ -38,7 +38,7 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
                 message = f"the path {path} is of one machine"
                 if len(found) > 1:
                     message += f"; the file has {len(found)} such paths"
-                yield _warning(message, source.at(found[0].start(1)))
+                yield warning("machine", message, source.at(found[0].start(1)))
     for package in workspace.packages:
         for source in workspace.launch_sources(package):
             yield from _variables(source)
@@ -58,7 +58,7 @@ def _variables(source: Source) -> Iterator[Mismatch]:
             f"the launch file ends with an error where the environment variable {name} is not set: "
             "give it a default"
         )
-        yield _warning(message, source.at(match.start()))
+        yield warning("machine", message, source.at(match.start()))
 
 
 def _is_handled(text: str, name: str) -> bool:
@@ -70,7 +70,3 @@ def _is_handled(text: str, name: str) -> bool:
         rf"|environ\.(?:get|setdefault)\(\s*{word}|except\s+\(?KeyError"
     )
     return re.search(handled, text) is not None
-
-
-def _warning(message: str, at: Location) -> Mismatch:
-    return Mismatch("machine", message, at, is_certain=False)
