@@ -26,6 +26,15 @@ class OpenedName(NamedTuple):
         return self.name is not None and ANY not in self.name
 
 
+class CertainEnd(NamedTuple):
+    """An endpoint with its full name in one launch, by a node that is certainly started."""
+
+    name: str
+    endpoint: Endpoint
+    launch: int  # its number among those that are started on their own
+    node: StartedNode
+
+
 def opened_by(workspace: Workspace, node: StartedNode) -> Iterator[OpenedName]:
     """Yield what an own node opens as it is started. Raises NotDecided."""
     own_node = workspace.own_node(node)
@@ -44,6 +53,17 @@ def opened_by(workspace: Workspace, node: StartedNode) -> Iterator[OpenedName]:
                 yield OpenedName(None, endpoint)
             else:
                 yield OpenedName(full, endpoint)
+
+
+def certainly_opened(workspace: Workspace) -> Iterator[CertainEnd]:
+    """Yield the endpoints whose names are known of the nodes that are certainly started. Raises
+    NotDecided.
+    """
+    for launch, node in workspace.launched:
+        if node.when is True:
+            for found in opened_by(workspace, node):
+                if found.name is not None and found.is_known:
+                    yield CertainEnd(found.name, found.endpoint, launch, node)
 
 
 def frames_of(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str | None, NodeFrame]]:

@@ -5,13 +5,12 @@ compares times, or images with an encoding that cannot be converted; and queues 
 import re
 from collections.abc import Iterator, Mapping
 
-from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.known import known
 from grader.ros.package.node_facts import Endpoint, ImageEncoding
-from grader.ros.workspace.endpoints import opened_by
-from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.endpoints import certainly_opened
+from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.workspace import Workspace
 
 _HEADER = "header"
@@ -28,10 +27,6 @@ def received_message_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _other_encodings(workspace)
 
 
-def _warning(message: str, at: Location, related: Location | None = None) -> Mismatch:
-    return Mismatch("messages", message, at, related, is_certain=False)
-
-
 def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
     """Yield the messages that a synchroniser drops, or stops at, since they have no header."""
     for each in workspace.nodes_by_package[package].synchronised:
@@ -42,7 +37,7 @@ def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
         else:
             effect = "drops messages without allow_headerless"
         message = f"{each.type} has no header with a time: {each.by} {effect}"
-        yield _warning(message, each.location)
+        yield warning("messages", message, each.location)
 
 
 def _has_header(workspace: Workspace, name: str) -> bool | None:
@@ -68,18 +63,19 @@ def _without_queue(workspace: Workspace, package: str) -> Iterator[Mismatch]:
                     f"the {endpoint.kind} keeps 0 messages, which ROS 2 reads as the default of "
                     "the middleware, mostly 1: write how many"
                 )
-                yield _warning(message, endpoint.location)
+                yield warning("messages", message, endpoint.location)
 
 
 def _other_encodings(workspace: Workspace) -> Iterator[Fact]:
     """Yield the callbacks that convert images to an encoding to which they cannot be converted."""
     sent: dict[tuple[int, str], list[Endpoint]] = {}
     received: dict[tuple[int, str], list[Endpoint]] = {}
-    for launch, node in workspace.launched:
-        for name, endpoint in opened_by(workspace, node) if node.when is True else ():
-            if name is not None and "*" not in name and endpoint.kind in _ENDS:
-                table = sent if endpoint.kind == "publisher" else received
-                table.setdefault((launch, name), []).append(endpoint)
+    for end in certainly_opened(workspace):
+        key = end.launch, end.name
+        if end.endpoint.kind == "publisher":
+            sent.setdefault(key, []).append(end.endpoint)
+        elif end.endpoint.kind == "subscription":
+            received.setdefault(key, []).append(end.endpoint)
     for key, subscriptions in received.items():
         publishers = sent.get(key, [])
         if not publishers or not all(publisher.encodings for publisher in publishers):
@@ -99,7 +95,7 @@ def _cannot_convert(topic: str, made: ImageEncoding, asked: ImageEncoding) -> Mi
         f"the images of {topic} have the encoding {quoted(made.name)} ({at.file_and_line}), which "
         f"cv_bridge does not convert to {quoted(asked.name)}"
     )
-    return _warning(message, asked.location, at)
+    return warning("messages", message, asked.location, at)
 
 
 def _is_lost(made: str, asked: str) -> bool:
