@@ -17,7 +17,7 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Collision, Mesh, Visual
 from grader.ros.urdf.numbers import finite_number
 from grader.ros.urdf.shapes import PlacedShape
-from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.names import Compared, Fact, warning
 from grader.ros.workspace.under_arguments import may_vary
 from grader.ros.workspace.workspace import KnownRobot, Workspace
 
@@ -54,28 +54,25 @@ class _Room(NamedTuple):
 def footprint_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the costmaps for which the robot is smaller than it is."""
     rooms = [*_rooms(workspace)]
-    if not rooms or workspace.has_other_robots or may_vary(workspace, *_PLACING):
+    robots = workspace.robots
+    if not rooms or not robots or workspace.has_other_robots or may_vary(workspace, *_PLACING):
+        return
+    if any(len(it.robot.links) > _MAX_LINKS for it in robots):
         return
     for room in rooms:
-        small = [it for it in workspace.robots if len(it.robot.links) <= _MAX_LINKS]
-        if len(small) < len(workspace.robots):
-            continue
-        workspace.charge(sum(_OF_LINK * len(it.robot.links) for it in small))
-        beyond = [_beyond(room, robot) for robot in small]
-        if not beyond:
-            continue
+        workspace.charge(sum(_OF_LINK * len(it.robot.links) for it in robots))
         yield Compared("values")
-        # It may be the footprint of one of several robots.
+        beyond = [_beyond(room, robot) for robot in robots]
         first = beyond[0]
         if first is None or None in beyond:
-            continue
+            continue  # it may be the footprint of a robot that it has room for
         message = (
             f"{room.said} ends {room.reach(first.direction):.3g} m from {quoted(room.base)}, where "
             f"the link {quoted(first.link)} of the robot reaches {first.distance:.3g} m"
         )
-        location = workspace.robots[0].robot.link(first.link).location
+        location = robots[0].robot.link(first.link).location
         at = location.resolve() if location is not None else None
-        yield Mismatch("values", message, room.location, at, is_certain=False)
+        yield warning("values", message, room.location, at)
 
 
 def _rooms(workspace: Workspace) -> Iterator[_Room]:
