@@ -2,7 +2,7 @@
 lidars that Nav2 reads.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from grader.base.source import Location
@@ -12,8 +12,9 @@ from grader.ros.config.yaml_values import sections_in
 from grader.ros.urdf.numbers import finite_number
 from grader.ros.workspace.controllers import defined_controllers, parameters_of_controllers
 from grader.ros.workspace.gazebo import roots
-from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.workspace import MANAGER, Workspace
+from grader.ros.xml.parsing import Element
 
 _LIDARS = ("lidar", "gpu_lidar", "ray", "gpu_ray")
 _SOURCES, _SCAN = "observation_sources", "LaserScan"
@@ -33,29 +34,40 @@ def rate_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _rates_of_controllers(workspace)
     if workspace.has_other_robots:
         return
-    ranges = [*_numbers_of_lidars(workspace, "max")]
-    rates = [*_numbers_of_lidars(workspace, "update_rate")]
+    farthest = _largest(_ranges_of_lidars(workspace))
+    rates = _numbers_of_lidars(workspace, "update_rate")
+    fastest = _largest(rate for rate, _ in rates)
     for name, source in _scan_sources(workspace):
         yield Compared("values")
-        asked = _number_in(source, name, "obstacle_max_range")
-        if asked is not None and ranges:
-            seen = max(ranges, key=lambda it: it.value)
-            if asked.value > seen.value + _ROUNDING:
-                message = (
-                    f"{name}.obstacle_max_range is {asked.value:g} m; the lidar {quoted(seen.of)} "
-                    f"measures up to {seen.value:g} m"
-                )
-                yield Mismatch("values", message, asked.location, seen.location, is_certain=False)
-        asked = _number_in(source, name, "expected_update_rate")
-        if asked is not None and rates:
-            fastest = max(rates, key=lambda it: it.value)
-            if asked.value < 1.0 / fastest.value - _ROUNDING:
-                message = (
-                    f"{name}.expected_update_rate is {asked.value:g} s; the lidar "
-                    f"{quoted(fastest.of)} measures every {1.0 / fastest.value:.4g} s"
-                )
-                place = fastest.location
-                yield Mismatch("values", message, asked.location, place, is_certain=False)
+        if farthest is not None:
+            yield from _too_far(_number_in(source, name, "obstacle_max_range"), farthest)
+        if fastest is not None:
+            yield from _too_often(_number_in(source, name, "expected_update_rate"), fastest)
+
+
+def _largest(numbers: Iterable[_StatedNumber]) -> _StatedNumber | None:
+    return max(numbers, key=lambda it: it.value, default=None)
+
+
+def _too_far(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mismatch]:
+    """Yield that a costmap marks obstacles farther away than any lidar measures."""
+    if asked is not None and asked.value > lidar.value + _ROUNDING:
+        message = (
+            f"{asked.of}.obstacle_max_range is {asked.value:g} m; the lidar {quoted(lidar.of)} "
+            f"measures up to {lidar.value:g} m"
+        )
+        yield warning("values", message, asked.location, lidar.location)
+
+
+def _too_often(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mismatch]:
+    """Yield that a costmap expects scans more often than any lidar measures."""
+    period = 1.0 / lidar.value
+    if asked is not None and asked.value < period - _ROUNDING:
+        message = (
+            f"{asked.of}.expected_update_rate is {asked.value:g} s; the lidar {quoted(lidar.of)} "
+            f"measures every {period:.4g} s"
+        )
+        yield warning("values", message, asked.location, lidar.location)
 
 
 def _rates_of_controllers(workspace: Workspace) -> Iterator[Fact]:
@@ -74,7 +86,7 @@ def _rates_of_controllers(workspace: Workspace) -> Iterator[Fact]:
                 f"{asked.of}.publish_rate is {asked.value:g} Hz; the controller manager updates "
                 f"its controllers {update.value:g} times a second"
             )
-            yield Mismatch("values", message, asked.location, update.location, is_certain=False)
+            yield warning("values", message, asked.location, update.location)
 
 
 def _number_in(section: YamlNode | None, name: str, key: str) -> _StatedNumber | None:
@@ -86,19 +98,22 @@ def _number_in(section: YamlNode | None, name: str, key: str) -> _StatedNumber |
     return _StatedNumber(name, value, node.location)
 
 
-def _numbers_of_lidars(workspace: Workspace, tag: str) -> Iterator[_StatedNumber]:
-    """Yield the positive numbers in elements of the simulated lidars."""
+def _ranges_of_lidars(workspace: Workspace) -> Iterator[_StatedNumber]:
+    """Yield how far simulated lidars measure, in metres."""
+    for number, element in _numbers_of_lidars(workspace, "max"):
+        parent = element.getparent()
+        if parent is not None and parent.tag == "range":
+            yield number
+
+
+def _numbers_of_lidars(workspace: Workspace, tag: str) -> Iterator[tuple[_StatedNumber, Element]]:
+    """Yield the positive numbers in elements of the simulated lidars, with the elements."""
     for root, place in roots(workspace):
         for sensor in root.iter("sensor"):
-            if sensor.get("type") not in _LIDARS:
-                continue
-            for element in sensor.iter(tag):
-                parent = element.getparent()
-                if tag == "max" and (parent is None or parent.tag != "range"):
-                    continue
+            for element in sensor.iter(tag) if sensor.get("type") in _LIDARS else ():
                 value = finite_number(element.text)
                 if value is not None and value > 0.0:
-                    yield _StatedNumber(sensor.get("name", ""), value, place(element))
+                    yield _StatedNumber(sensor.get("name", ""), value, place(element)), element
 
 
 def _scan_sources(workspace: Workspace) -> Iterator[tuple[str, YamlNode]]:
