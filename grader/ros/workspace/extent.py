@@ -26,26 +26,28 @@ class Extent(NamedTuple):
     @property
     def words(self) -> str:
         """Return what was read and what was not, in one line."""
-        nodes = counted(self.nodes, "node")
-        if self.nodes < self.all_nodes:
-            nodes = f"{self.nodes} of {counted(self.all_nodes, 'node')}"
-        counts = [
-            counted(self.packages, "package"),
-            counted(self.robots, "robot"),
-            counted(self.launch_files, "launch file"),
-            nodes,
-        ]
-        text = f"read: {', '.join(it for it in counts if not it.startswith('0 '))}"
-        unread = [
-            counted(self.unread_robots, "robot"),
-            counted(self.cpp_files, "C++ file"),
-            counted(self.computed_names, "computed name"),
-            counted(self.expressions, "expression"),
-        ]
-        unread = [it for it in unread if not it.startswith("0 ")]
+        read = _counted_ones(
+            (self.packages, "package"), (self.robots, "robot"), (self.launch_files, "launch file")
+        )
+        if self.nodes:
+            nodes = counted(self.all_nodes, "node")
+            is_all = self.nodes == self.all_nodes
+            read.append(nodes if is_all else f"{self.nodes} of {nodes}")
+        unread = _counted_ones(
+            (self.unread_robots, "robot"),
+            (self.cpp_files, "C++ file"),
+            (self.computed_names, "computed name"),
+            (self.expressions, "expression"),
+        )
+        text = f"read: {', '.join(read)}"
         if unread:
             text += f"; not read: {', '.join(unread)}"
         return f"{text}; {self.stated.words}"
+
+
+def _counted_ones(*counts: tuple[int, str]) -> list[str]:
+    """Return numbers with what they count, without those that are 0."""
+    return [counted(number, word) for number, word in counts if number]
 
 
 def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) -> Extent:
