@@ -14,7 +14,7 @@ _TAG = re.compile(
     r"\bname\s*=\s*(?P<quote>[\"'])(?P<name>.*?)(?P=quote)|\bfilename\s*=\s*[\"'](?P<file>[^\"']*)",
     re.DOTALL,
 )
-_CALL = re.compile(r"<xacro:(\w+)\b([^>]*)>")
+_XACRO_TAG = re.compile(r"<xacro:(\w+)\b([^>]*)>")  # a call of a macro, or a property
 _ATTRIBUTE = re.compile(r"([\w.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 _COMPUTED = re.compile(r"\$\([^()]*\)|\$\{[^{}]*\}")
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -41,8 +41,7 @@ def may_vary(workspace: Workspace, *tags: str) -> bool:
     element = re.compile(rf"<(?:{'|'.join(tags)})\b[^>]*>")
     for source in sources:
         for tag in element.finditer(source.text):
-            words = {word for it in _COMPUTED.findall(tag[0]) for word in _WORD.findall(it)}
-            if not dependent.isdisjoint(words):
+            if not dependent.isdisjoint(_computing_words(tag[0])):
                 return True
     return False
 
@@ -62,9 +61,7 @@ def names_under_arguments(workspace: Workspace, tag: str) -> frozenset[str]:
         is_chosen = source.path in chosen
         for match, depth in _matches(source.text):
             name = match["name"] or ""
-            is_computed = any(
-                not dependent.isdisjoint(_WORD.findall(it)) for it in _COMPUTED.findall(name)
-            )
+            is_computed = not dependent.isdisjoint(_computing_words(name))
             if match["tag"] == tag and (depth or is_chosen or is_computed):
                 names.add(_COMPUTED.sub("*", name))
     return frozenset(names)
@@ -80,21 +77,25 @@ def _matches(text: str) -> Iterator[tuple[re.Match[str], int]]:
             depth += -1 if match["end"] else 1
 
 
+def _computing_words(text: str) -> frozenset[str]:
+    """Return the words in the expressions of a text, among which are the names that it needs."""
+    return frozenset(_WORD.findall(" ".join(_COMPUTED.findall(text))))
+
+
 def _dependent(sources: tuple[Source, ...]) -> frozenset[str]:
     """Return the properties and the parameters of macros that arguments may give a value; `arg`
     stands for the arguments themselves.
     """
     given: list[tuple[str, frozenset[str]]] = []  # names, with the words of their values
     for source in sources:
-        for tag, attributes in _CALL.findall(source.text):
+        for tag, attributes in _XACRO_TAG.findall(source.text):
             values = {
                 name: first or second for name, first, second in _ATTRIBUTE.findall(attributes)
             }
             if tag == "property":
                 values = {values.get("name", ""): values.get("value", "")}
             for name, value in values.items():
-                words = {word for it in _COMPUTED.findall(value) for word in _WORD.findall(it)}
-                given.append((name, frozenset(words)))
+                given.append((name, _computing_words(value)))
     names = {"arg"}
     for _ in range(_MAX_STEPS):
         names |= {name for name, words in given if not names.isdisjoint(words)}
@@ -113,7 +114,7 @@ def _chosen_files(sources: tuple[Source, ...], robot_files: frozenset[str]) -> s
             if depth and match["file"]
         }
     chosen = set()
-    for path in [source.path for source in sources if source.path not in robot_files]:
+    for path in {source.path for source in sources} - robot_files:
         is_named = posixpath.basename(path) in named
         if is_named or any(pattern.fullmatch(path) for pattern in patterns):
             chosen.add(path)
