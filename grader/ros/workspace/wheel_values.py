@@ -6,7 +6,6 @@ The rows of known/wheels.toml say which parameter is which number.
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from itertools import chain
 from math import hypot
 from typing import Any, NamedTuple
@@ -25,7 +24,7 @@ from grader.ros.urdf.rolling import middle_of
 from grader.ros.urdf.wheel_sizes import WheelSize, measure_wheel
 from grader.ros.workspace.controllers import defined_controllers, parameters_of_controllers
 from grader.ros.workspace.gazebo import system_of
-from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.under_arguments import may_vary
 from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
@@ -189,25 +188,22 @@ def _faults_of(source: _Source, robot: Configuration) -> Iterator[Mismatch]:
     rows = sorted(source.rows.items(), key=lambda row: row[1]["is"] not in _SIDED)
     for key, row in rows:
         kind, groups = row["is"], [source.joints(keys) for keys in row["of"]]
-        if sum(map(len, groups)) > _MAX_WHEELS:
+        wheels = _measured(source, robot, groups)
+        if wheels is None:
             continue
-        with suppress(MissingElement, NotDecided):
-            wheels = _measured(source, robot, groups)
-            names = {wheel.joint.name for wheel in wheels.all}
-            if not all(wheels.groups):
-                continue
-            if compared.isdisjoint(names):
-                compared |= names
-                faults = [*_faults_of_side(wheels, groups, kind)]
-                yield from faults
-                if faults and kind in _SIDED:
-                    continue
-            if _is_corrected(source, row):
-                continue
-            for number in source.parameters(key):
-                value = finite_number(number.text)
-                if value is not None:
-                    yield from _faults_of_number(key, value, number.location, kind, wheels)
+        faults: list[Mismatch] = []
+        names = {wheel.joint.name for wheel in wheels.all}
+        if compared.isdisjoint(names):
+            compared |= names
+            faults += _faults_of_side(wheels, groups, kind)
+            yield from faults
+        is_of_sides = bool(faults) and kind in _SIDED  # a number of these wheels means nothing
+        if is_of_sides or _is_corrected(source, row):
+            continue
+        for number in source.parameters(key):
+            value = finite_number(number.text)
+            if value is not None:
+                yield from _faults_of_number(key, value, number.location, kind, wheels)
 
 
 def _is_corrected(source: _Source, row: Mapping[str, Any]) -> bool:
@@ -219,17 +215,26 @@ def _is_corrected(source: _Source, row: Mapping[str, Any]) -> bool:
     return False
 
 
-def _measured(source: _Source, robot: Configuration, groups: list[list[_Word]]) -> _Wheels:
-    """Return the wheels of groups of joints, in the frame of the robot's base."""
+def _measured(
+    source: _Source, robot: Configuration, groups: Sequence[Sequence[_Word]]
+) -> _Wheels | None:
+    """Return the wheels of groups of joints, in the frame of the robot's base; None where a group
+    is empty, or a wheel cannot be measured.
+    """
     named = [word.text for group in groups for word in group]
-    base = robot.root_of(_joint(robot, named[0]).child) if named else ""
-    for frame in source.parameters(_BASE):
-        if robot.robot.has_link(frame.text):
-            base = frame.text
-    measured = []
-    for group in groups:
-        joints = [_joint(robot, word.text) for word in group]
-        measured.append(tuple(measure_wheel(robot, joint, base) for joint in joints))
+    if not all(groups) or len(named) > _MAX_WHEELS:
+        return None
+    try:
+        base = robot.root_of(_joint(robot, named[0]).child)
+        for frame in source.parameters(_BASE):
+            if robot.robot.has_link(frame.text):
+                base = frame.text
+        measured = []
+        for group in groups:
+            joints = [_joint(robot, word.text) for word in group]
+            measured.append(tuple(measure_wheel(robot, joint, base) for joint in joints))
+    except (MissingElement, NotDecided):
+        return None
     return _Wheels(base, tuple(measured))
 
 
@@ -322,13 +327,20 @@ def _faults_of_number(
     rounding = _ROUNDING + _TOLERANCE * measured
     if low - rounding <= value <= high + rounding:
         return
-    are_known = all(wheel.half_width is not None for wheel in wheels.all)
-    is_certain = kind == "track" and len(wheels.all) == 2 and are_known
-    is_certain = is_certain and (_is_near(value, 2.0 * measured) or _is_near(value, measured / 2.0))
+    is_certain = kind == "track" and _is_other_half(value, measured, wheels)
     message = f"{key} is {value:g} m; {what} {measured:.4g} m"
     if slack:
         message += f" ({low:.4g} to {high:.4g} m with the width of the wheels)"
     yield Mismatch("values", message, at, related, is_certain)
+
+
+def _is_other_half(value: float, measured: float, wheels: _Wheels) -> bool:
+    """Return whether a number is twice or half the track of two wheels of known width, which is
+    surely a mistake.
+    """
+    if len(wheels.all) != 2 or any(wheel.half_width is None for wheel in wheels.all):
+        return False
+    return _is_near(value, 2.0 * measured) or _is_near(value, measured / 2.0)
 
 
 def _is_near(value: float, other: float) -> bool:
@@ -350,7 +362,7 @@ def _faults_of_radius(
             continue
         name, size = quoted(wheel.joint.name), factor * wheel.radii[0]
         message = f"{key} is {value:g} m; the wheel of {name} has the {kind} {size:.4g} m"
-        yield Mismatch("values", message, at, _place(wheel), is_certain=False)
+        yield warning("values", message, at, _place(wheel))
 
 
 def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:
