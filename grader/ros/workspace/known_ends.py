@@ -16,7 +16,7 @@ from grader.ros.workspace.bridges import rows_of_bridge
 from grader.ros.workspace.controllers import controller_endpoints
 from grader.ros.workspace.endpoints import ANY, opened_by
 from grader.ros.workspace.gazebo import BRIDGE
-from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.publishers import may_be_published_by
 from grader.ros.workspace.workspace import Workspace
 
@@ -27,6 +27,15 @@ _CLASSIC = "libgazebo_ros_"  # how the names of plugins of Gazebo Classic begin,
 class _Published(NamedTuple):
     """A topic that a launch file certainly publishes, and who does."""
 
+    topic: str
+    type: str
+    location: Location
+
+
+class _Input(NamedTuple):
+    """A topic that a parameter of a program names, with the type that the program reads there."""
+
+    parameter: str
     topic: str
     type: str
     location: Location
@@ -46,15 +55,13 @@ def known_end_facts(workspace: Workspace) -> Iterator[Fact]:
             published.setdefault(each.topic, []).append(each)
             everything.setdefault(each.topic, []).append(each)
         for node in launch.nodes:
-            for row in _rows_of_program(node) if node.when is True else ():
-                yield from _other_types(node, row, published)
-                yield from _inputs(workspace, package, node, row, published)
-                yield from _remappings(node, row)
+            if node.when is True:
+                for row in _rows_of_program(node):
+                    yield from _other_types(node, row, published)
+                    inputs = _inputs(workspace, package, node, row)
+                    yield from _other_inputs(workspace, node, inputs, published)
+                    yield from _remappings(node, row)
     yield from _displays(workspace, everything)
-
-
-def _warning(message: str, at: Location, related: Location | None = None) -> Mismatch:
-    return Mismatch("wiring", message, at, related, is_certain=False)
 
 
 def _rows_of_program(node: StartedNode) -> Iterator[Mapping[str, Any]]:
@@ -116,52 +123,65 @@ def _other_types(node: StartedNode, row: Mapping[str, Any], published: _ByTopic)
                 f"{node.executable} reads {topic} with {wanted}, but it is published with "
                 f"{other.type} ({other.location.file_and_line})"
             )
-            yield _warning(message, node.location, other.location)
+            yield warning("wiring", message, node.location, other.location)
 
 
 def _inputs(
-    workspace: Workspace,
-    package: Package,
-    node: StartedNode,
-    row: Mapping[str, Any],
-    published: _ByTopic,
-) -> Iterator[Fact]:
-    """Yield the parameters with topics that are published with another type, or not at all while
-    another one of their type is.
-    """
-    inputs = row.get("inputs")
-    if inputs is None:
-        return
-    given = workspace.parameters_given(package, node)
-    topics = {}
-    for name, value in given.values.items():
-        found = _INPUT.fullmatch(name)
-        if found is None or found[1] not in inputs or not isinstance(value.value, str):
+    workspace: Workspace, package: Package, node: StartedNode, row: Mapping[str, Any]
+) -> list[_Input]:
+    """Return the topics that parameters of a program name, such as `odom0` of an ekf_node."""
+    types = row.get("inputs")
+    if types is None:
+        return []
+    inputs = []
+    for name, given in workspace.parameters_given(package, node).values.items():
+        numbered = _INPUT.fullmatch(name)
+        if numbered is None or numbered[1] not in types or not isinstance(given.value, str):
             continue
-        topic = node.topic(value.value)
+        topic = node.topic(given.value)
         if topic is not None:
-            topics[name] = (topic, inputs[found[1]], value)
-    read = {topic for topic, _, _ in topics.values()}
-    for name, (topic, wanted, value) in topics.items():
+            inputs.append(_Input(name, topic, types[numbered[1]], given.location))
+    return inputs
+
+
+def _other_inputs(
+    workspace: Workspace, node: StartedNode, inputs: Sequence[_Input], published: _ByTopic
+) -> Iterator[Fact]:
+    """Yield the inputs that are published with another type, or not at all while another topic of
+    their type is.
+    """
+    read = {each.topic for each in inputs}
+    for each in inputs:
         yield Compared("wiring")
-        other = _other_type(published.get(topic, ()), wanted)
+        other = _other_type(published.get(each.topic, ()), each.type)
         if other is not None:
             message = (
-                f"{name} reads {topic} with {wanted}, but it is published with {other.type} "
-                f"({other.location.file_and_line})"
+                f"{each.parameter} reads {each.topic} with {each.type}, but it is published with "
+                f"{other.type} ({other.location.file_and_line})"
             )
-            yield _warning(message, value.location, other.location)
-        elif topic not in published and not _may_be_published(workspace, topic):
-            workspace.charge(len(published))
-            every = [each for row in published.values() for each in row if each.type == wanted]
-            names = {each.topic for each in every if each.location != node.location} - read
-            if len(names) == 1:
-                meant = next(each for each in every if each.topic in names)
+            yield warning("wiring", message, each.location, other.location)
+        elif each.topic not in published and not _may_be_published(workspace, each.topic):
+            meant = _only_unread(workspace, node, each.type, published, read)
+            if meant is not None:
                 message = (
-                    f"{name} reads {topic}, which nothing publishes; did you mean {meant.topic} "
-                    f"({meant.location.file_and_line})?"
+                    f"{each.parameter} reads {each.topic}, which nothing publishes; did you mean "
+                    f"{meant.topic} ({meant.location.file_and_line})?"
                 )
-                yield _warning(message, value.location, meant.location)
+                yield warning("wiring", message, each.location, meant.location)
+
+
+def _only_unread(
+    workspace: Workspace, node: StartedNode, wanted: str, published: _ByTopic, read: set[str]
+) -> _Published | None:
+    """Return what others than a node publish with a type, and it does not read; None if that is
+    not one topic.
+    """
+    workspace.charge(len(published))
+    of_type = [it for row in published.values() for it in row if it.type == wanted]
+    topics = {it.topic for it in of_type if it.location != node.location} - read
+    if len(topics) != 1:
+        return None
+    return next(it for it in of_type if it.topic in topics)
 
 
 def _may_be_published(workspace: Workspace, topic: str) -> bool:
@@ -207,4 +227,4 @@ def _displays(workspace: Workspace, published: _ByTopic) -> Iterator[Mismatch]:
                         f"the display {quoted(display.name)} reads {wanted}, but {topic.text} is "
                         f"published with {other.type} ({other.location.file_and_line})"
                     )
-                    yield _warning(message, topic.location, other.location)
+                    yield warning("wiring", message, topic.location, other.location)
