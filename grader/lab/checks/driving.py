@@ -347,6 +347,14 @@ def _judge(
     )
 
 
+class _Culprit(NamedTuple):
+    """A wheel that does not drive as the others: how it differs, and where to look."""
+
+    link: str
+    how: str
+    at: LazyLocation | None
+
+
 class _Driven:
     """The driven wheels of a robot that stands, and what is wrong with how they drive it."""
 
@@ -430,16 +438,21 @@ class _Driven:
             if abs(course.turn) * reach > _SLOW * course.rim_speed:
                 text = f"it turns on the spot to the {_side(course.turn)}"
             faults.append(_RobotFault(text, course.speed, None, "m/s", at))
-        slips: dict[str, float] = {}
-        for wheel, slip in zip(self.wheels, course.slips, strict=True):
+        return [*faults, *self._find_slips(course.slips)]
+
+    def _find_slips(self, slips: Sequence[float]) -> list[_RobotFault]:
+        """Return that wheels slip, at the speeds of their contacts in m/s: one fault for all."""
+        shares: dict[str, float] = {}  # of the speed of the rim, of the wheels that slip
+        for wheel, slip in zip(self.wheels, slips, strict=True):
             if slip > (_MAX_SLIP + SLACK) * wheel.radius:
-                slips[wheel.link] = slip / max(wheel.radius, slip)
-        if slips:
-            share = 100.0 * max(slips.values())
-            verb = "slips" if len(slips) == 1 else "slip"
-            text = f"{_in_quotes([*slips])} {verb} by {share:.3g} % of the speed of the rim"
-            faults.append(_RobotFault(text, share, 100.0 * _MAX_SLIP, "%", at))
-        return faults
+                shares[wheel.link] = slip / max(wheel.radius, slip)
+        if not shares:
+            return []
+        share = 100.0 * max(shares.values())
+        verb = "slips" if len(shares) == 1 else "slip"
+        text = f"{_in_quotes([*shares])} {verb} by {share:.3g} % of the speed of the rim"
+        at = axis_place(self.wheels[0].joint)
+        return [_RobotFault(text, share, 100.0 * _MAX_SLIP, "%", at)]
 
     def find_turning_faults(self) -> list[_RobotFault]:
         """Return what is wrong with the way that the robot turns while its wheels turn against each
@@ -473,41 +486,45 @@ class _Driven:
         culprits = [] if self._has_rollers or not faults else self._find_culprits(forward)
         if not culprits:
             return faults
-        causes = enumerated([f"{link!r} {how}" for link, how, _ in culprits])
-        *_, at = culprits[0]
-        first = faults[0]._replace(text=f"{faults[0].text}: {causes}", at=at)
+        causes = enumerated([f"{culprit.link!r} {culprit.how}" for culprit in culprits])
+        first = faults[0]._replace(text=f"{faults[0].text}: {causes}", at=culprits[0].at)
         return [first, *faults[1:]]
 
-    def _find_culprits(self, forward: Vector) -> list[tuple[str, str, LazyLocation | None]]:
-        """Return the links of the wheels that do not drive as the others, each with how it
-        differs, and where to look.
+    def _find_culprits(self, forward: Vector) -> list[_Culprit]:
+        """Return the wheels that do not drive as the others: those that point elsewhere, or else
+        those of another size.
         """
         rates = [1.0] * len(self.wheels)
         headings = self._standing.drive(self.wheels, rates, forward).headings
-        culprits: list[tuple[str, str, LazyLocation | None]] = []
-        if any(abs(heading) > _ANGLE for heading in headings):
-            if max(headings) - min(headings) <= _ANGLE:  # all alike
-                return []
-            for wheel, off in zip(self.wheels, headings, strict=True):
-                at = axis_place(wheel.joint)
-                if abs(off) > 90.0:
-                    culprits.append((wheel.link, "drives it backward", at))
-                elif abs(off) > _ANGLE:
-                    how = f"points {in_degrees(abs(off))} to the {_side(off)}"
-                    culprits.append((wheel.link, how, at))
-            return culprits
+        if all(abs(heading) <= _ANGLE for heading in headings):
+            return self._find_other_sizes()
+        if max(headings) - min(headings) <= _ANGLE:  # all alike
+            return []
+        culprits: list[_Culprit] = []
+        for wheel, off in zip(self.wheels, headings, strict=True):
+            at = axis_place(wheel.joint)
+            if abs(off) > 90.0:
+                culprits.append(_Culprit(wheel.link, "drives it backward", at))
+            elif abs(off) > _ANGLE:
+                how = f"points {in_degrees(abs(off))} to the {_side(off)}"
+                culprits.append(_Culprit(wheel.link, how, at))
+        return culprits
+
+    def _find_other_sizes(self) -> list[_Culprit]:
+        """Return the wheels whose radius is not the usual one."""
         radii = sorted(wheel.radius for wheel in self.wheels)
         usual = radii[len(radii) // 2]
+        culprits = []
         for wheel in self.wheels:
             share = wheel.radius / usual - 1.0
             if abs(share) > _OTHER_SIZE:
                 size = "larger" if share > 0.0 else "smaller"
-                how = f"is {abs(share) * 100.0:.3g} % {size}"
                 link = self._standing.robot.link(wheel.link)
                 at = axis_place(wheel.joint)
                 for element in link.collisions or link.visuals:
                     at = place(element.geometry.location)
-                culprits.append((wheel.link, how, at))
+                how = f"is {abs(share) * 100.0:.3g} % {size}"
+                culprits.append(_Culprit(wheel.link, how, at))
         return culprits
 
 
