@@ -5,7 +5,7 @@ from functools import cached_property
 
 from grader.ros.workspace.all_names import WorkspaceNames
 from grader.ros.workspace.names import Mismatch
-from grader.ros.workspace.offered_names import OFFERED, offered_names
+from grader.ros.workspace.offered_names import offered_names
 from grader.ros.workspace.offered_parameters import parameter_text, parameters_below
 from grader.ros.workspace.opened import OpenedWorkspace
 from grader.ros.workspace.reading import read_agreement
@@ -65,7 +65,6 @@ class NamePlaces:
 
     def offered(self, kind: str, owner: str) -> list[str]:
         """Return the names of a kind that may be written, as `offered_names` does."""
-        assert kind in OFFERED
         return offered_names(self._opened.workspace, kind, owner)
 
     def parameters_below(self, section: str, prefix: str) -> list[str]:

@@ -1,7 +1,6 @@
 """The names that may be written at a place of a workspace: what an editor offers."""
 
 from collections.abc import Callable, Iterable, Mapping
-from typing import Literal, get_args
 
 from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.known import known_packages, programs_of
@@ -10,33 +9,15 @@ from grader.ros.workspace.names import Definition
 from grader.ros.workspace.reading import facts_once
 from grader.ros.workspace.workspace import Workspace
 
-_OfferedKind = Literal[
-    "link",
-    "joint",
-    "frame",
-    "material",
-    "controller",
-    "package",
-    "program",
-    "launch file",
-    "launch argument",
-    "xacro argument",
-    "message",
-    "service",
-    "action",
-    "file",
-]
-OFFERED: tuple[_OfferedKind, ...] = get_args(_OfferedKind)
 
-
-def offered_names(workspace: Workspace, kind: _OfferedKind, owner: str = "") -> list[str]:
+def offered_names(workspace: Workspace, kind: str, owner: str = "") -> list[str]:
     """Return the names of a kind in alphabetical order, each once.
 
     Args:
         workspace: The packages and robots.
-        kind: What is named.
-        owner: The package of a program, a file or an interface; the node of a parameter; without
-            it, of any.
+        kind: What is named, a key of `_FINDERS`.
+        owner: The package of a program, a file or an interface, or what owns an argument; without
+            it, any.
     """
     return sorted({name for name in _FINDERS[kind](workspace, owner) if name})
 
@@ -106,7 +87,7 @@ def _interfaces(part: str) -> Callable[[Workspace, str], Iterable[str]]:
     return find
 
 
-def _of_kind(kind: str) -> Callable[[Workspace, str], Iterable[str]]:
+def _arguments(kind: str) -> Callable[[Workspace, str], Iterable[str]]:
     return lambda workspace, owner: _defined(workspace, kind, owner)
 
 
@@ -116,7 +97,7 @@ def _defined(workspace: Workspace, kind: str, owner: str) -> Iterable[str]:
             yield fact.name
 
 
-_FINDERS: Mapping[_OfferedKind, Callable[[Workspace, str], Iterable[str]]] = {
+_FINDERS: Mapping[str, Callable[[Workspace, str], Iterable[str]]] = {
     "link": _links,
     "joint": _joints,
     "frame": _frames,
@@ -126,8 +107,8 @@ _FINDERS: Mapping[_OfferedKind, Callable[[Workspace, str], Iterable[str]]] = {
     "program": _programs,
     "launch file": _launch_files,
     "file": _files,
-    "launch argument": _of_kind("launch argument"),
-    "xacro argument": _of_kind("xacro argument"),
+    "launch argument": _arguments("launch argument"),
+    "xacro argument": _arguments("xacro argument"),
     "message": _interfaces("msg"),
     "service": _interfaces("srv"),
     "action": _interfaces("action"),
