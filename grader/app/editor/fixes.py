@@ -46,8 +46,9 @@ def _of_robots(look: Look, path: str) -> Iterator[tuple[str, Location, Edits]]:
     for robot in look.opened.robots:
         for slip in robot.slips if isinstance(robot, Read) else ():
             if slip.location.path == path and slip.edits:
-                changes = [f"{quoted(it.old)} to {quoted(it.new)}" for it in slip.edits[:1]]
-                yield f"Change {changes[0]}", slip.location, slip.edits
+                first = slip.edits[0]
+                title = f"Change {quoted(first.old)} to {quoted(first.new)}"
+                yield title, slip.location, slip.edits
 
 
 def _overlap(one: lsp.Range, other: lsp.Range) -> bool:

@@ -514,8 +514,9 @@ def _is_statement(node: CppNode) -> bool:
         return False
     body = statement.parent
     above = body.parent if body is not None else None
-    is_of_function = above is not None and above.kind == "function_definition"
-    return is_of_function and above is not None and not is_conditional(node, above)
+    if above is None or above.kind != "function_definition":
+        return False
+    return not is_conditional(node, above)
 
 
 def _is_member_of_this(use: CppNode) -> bool:
