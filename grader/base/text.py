@@ -115,10 +115,11 @@ def sentence_end(text: str) -> str:
     return text if text.endswith(("?", ".")) else f"{text}."
 
 
-def in_backticks(texts: Iterable[str], most: int = MAX_NAMED) -> str:
+def in_backticks(texts: Iterable[str]) -> str:
     """Return texts of a file for a sentence: `a` and `b`; empty without one that can be read."""
     shown = [" ".join(text.split()) for text in texts]
-    return enumerated([f"`{cut(text, _MAX_NAME)}`" for text in dict.fromkeys(shown) if text], most)
+    quotes = [f"`{cut(text, _MAX_NAME)}`" for text in dict.fromkeys(shown) if text]
+    return enumerated(quotes, MAX_NAMED)
 
 
 def enumerated(

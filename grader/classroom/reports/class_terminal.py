@@ -223,9 +223,7 @@ def _show_mistakes(rows: Sequence[CriterionMistakes], page: Page) -> None:
             page.inset(f"... and {counted(row.causes - _MAX_CAUSES, 'more cause')}", "dim", 12)
 
 
-def _show_lines(
-    title: str, lines: Sequence[str], page: Page, *, note: str = "", indent: int = 4
-) -> None:
+def _show_lines(title: str, lines: Sequence[str], page: Page, *, note: str = "") -> None:
     """Print lines below a title, nothing without lines."""
     if not lines:
         return
@@ -233,7 +231,7 @@ def _show_lines(
     if note:
         page.inset(note, "dim")
     for line in lines:
-        page.inset(printable(line), indent=indent, head=Text(" " * INDENT))
+        page.inset(printable(line), indent=4, head=Text(" " * INDENT))
 
 
 def _attention_line(
