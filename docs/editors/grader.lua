@@ -38,17 +38,19 @@ end
 
 local function attach(event)
   local root = find_root(vim.api.nvim_buf_get_name(event.buf))
-  local client = clients[root or ""]
-  if not client or vim.lsp.client_is_stopped(client) then
-    client = vim.lsp.start_client({
+  local key = root or ""
+  if not clients[key] then
+    clients[key] = vim.lsp.start_client({
       name = "grader",
       cmd = { "grader", "lsp" },
       root_dir = root,
       workspace_folders = root and { { uri = vim.uri_from_fname(root), name = root } },
+      on_exit = function()
+        clients[key] = nil
+      end,
     })
-    clients[root or ""] = client
   end
-  vim.lsp.buf_attach_client(event.buf, client)
+  vim.lsp.buf_attach_client(event.buf, clients[key])
 end
 
 vim.api.nvim_create_autocmd("FileType", { pattern = filetypes, callback = attach })

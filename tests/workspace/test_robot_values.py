@@ -27,6 +27,17 @@ _CLOCK = (
     "arguments=['/clock@rosgraph_msgs/msg/Clock[gz.msgs.Clock']),"
 )
 
+_DIFF_DRIVE = """\
+    left_wheel_names: [left_wheel_joint]
+    right_wheel_names: [right_wheel_joint]
+    wheel_separation: 0.3
+    wheel_radius: 0.05
+    publish_rate: 50.0
+"""
+_MECANUM = """\
+      wheels_radius: 0.05
+      sum_of_robot_center_projection_on_X_Y_axis: {}
+"""
 _SRDF = '<robot name="rover"></robot>\n'
 _JOINTS = "Node(package='joint_state_publisher', executable='joint_state_publisher'),"
 _BROADCASTER = """\
@@ -665,3 +676,46 @@ def test_a_misspelt_joint_hides_no_wrong_number() -> None:
         (CONTROLLERS, "wheel_separation: 0.3", "wheel_separation: 0.6"),
     ]
     assert [it.split()[0] for it in problems_of(*edits)] == ["REF002", "REF017"]
+
+
+@pytest.mark.parametrize(
+    ("total", "problems"),
+    [
+        ("0.25", []),
+        (
+            "0.7",
+            [
+                (
+                    "REF018 config/controllers.yaml:16 "
+                    "kinematics.sum_of_robot_center_projection_on_X_Y_axis is 0.7 m; half the track and half "
+                    "the wheelbase of the robot together are 0.25 m (0.24 to 0.26 m with the width of the "
+                    "wheels)"
+                )
+            ],
+        ),
+    ],
+)
+def test_the_sum_of_a_mecanum_drive_is_that_of_its_wheels(total: str, problems: list[str]) -> None:
+    """The sum of half the wheelbase and half the track."""
+    names = "".join(
+        f"    {end}_{side}_wheel_command_joint_name: {end}_{side}_wheel_joint\n"
+        for end in ("front", "rear")
+        for side in ("left", "right")
+    )
+    wheels = "".join(
+        f'  <xacro:wheel side="{end}_{side}" x="{x}" y="{y}"/>\n'
+        for end, x in (("front", 0.1), ("rear", -0.1))
+        for side, y in (("left", 0.15), ("right", -0.15))
+    )
+    found = problems_of(
+        (ROBOT, 'params="side y"', 'params="side y x:=0"'),
+        (ROBOT, 'xyz="0 ${y} 0"', 'xyz="${x} ${y} 0"'),
+        (ROBOT, '  <link name="laser"/>\n', f'{wheels}  <link name="laser"/>\n'),
+        (CONTROLLERS, "diff_drive_controller/DiffDrive", "mecanum_drive_controller/MecanumDrive"),
+        (
+            CONTROLLERS,
+            _DIFF_DRIVE,
+            f"{names}    kinematics:\n{_MECANUM.format(total)}",
+        ),
+    )
+    assert found == problems

@@ -67,4 +67,4 @@ def _problem_rows(console: Console, inspection: Inspection) -> Iterator[Text]:
             yield excerpt_block(console, source, where, min(len(head), console.width // 5))
     rest = len(inspection.problems) - _MAX_PROBLEMS
     if rest > 0:
-        yield block(console, Text(f"... and {rest} more"), INDENT)
+        yield block(console, Text(f"... and {rest} more (--format concise lists all)"), INDENT)

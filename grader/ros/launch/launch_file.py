@@ -39,6 +39,7 @@ from grader.ros.launch.launch_model import (
     Launch,
     LaunchFault,
     Machine,
+    NamedFile,
     StartedNode,
     UnknownText,
     texts_by_name,
@@ -282,17 +283,11 @@ def _forgotten_node(node: Call, findings: Findings) -> StartedNode:
 
 
 def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
-    named = {
-        reference.path
-        for reference in findings.references
-        if reference.purpose not in ("read", "parameters")
-    }
-    references = [it for it in findings.references if it.purpose != "read" or it.path not in named]
     order = attrgetter("location.line", "location.column", "message")
     return Launch(
         source=source,
         nodes=tuple(findings.nodes),
-        references=tuple(dict.fromkeys(references)),
+        references=tuple(dict.fromkeys(_references_of(findings))),
         faults=tuple(sorted(set(findings.faults), key=order)),
         unknown=tuple(dict.fromkeys(findings.unknown)),
         doubts=tuple(dict.fromkeys(findings.doubts)),
@@ -304,6 +299,15 @@ def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNod
         containers=tuple(dict.fromkeys(findings.containers)),
         forgotten=forgotten,
     )
+
+
+def _references_of(findings: Findings) -> list[NamedFile]:
+    """Return the files that are named, each that is read and used only for its use."""
+    named = set()
+    for reference in findings.references:
+        if reference.purpose not in ("read", "parameters"):
+            named.add(reference.path)
+    return [it for it in findings.references if it.purpose != "read" or it.path not in named]
 
 
 @dataclass(slots=True)

@@ -12,7 +12,7 @@ from grader.ros.workspace.arguments import argument_facts
 from grader.ros.workspace.bridges import bridge_facts
 from grader.ros.workspace.code import code_facts
 from grader.ros.workspace.companions import companion_facts
-from grader.ros.workspace.components import component_facts
+from grader.ros.workspace.component_names import component_facts
 from grader.ros.workspace.controllers import controller_facts
 from grader.ros.workspace.dependencies import dependency_facts
 from grader.ros.workspace.files import file_facts

@@ -261,7 +261,7 @@ class Texts:
             )
             raise XacroFails(f"{message} in the launch file")
         if name not in self.arguments:
-            raise Undetermined(f"the argument {name} has no default, and nothing gives it a value")
+            raise Undetermined(f"the argument {name} has no default, and no --arg gives it a value")
         value = self.arguments[name]
         if value is None and self.other_arguments == "unknown":
             raise Undetermined(
