@@ -669,13 +669,27 @@ def test_a_robot_with_too_many_parts_is_not_compared() -> None:
     assert problems_of(small, (ROBOT, "</robot>\n", f"{links}</robot>\n")) == []
 
 
-def test_a_misspelt_joint_hides_no_wrong_number() -> None:
-    """The numbers of wheels are compared with the joint that is meant."""
-    edits = [
-        (CONTROLLERS, "[left_wheel_joint]", "[left_weel_joint]"),
-        (CONTROLLERS, "wheel_separation: 0.3", "wheel_separation: 0.6"),
-    ]
-    assert [it.split()[0] for it in problems_of(*edits)] == ["REF002", "REF017"]
+@pytest.mark.parametrize(
+    ("edits", "codes"),
+    [
+        ([("wheel_separation: 0.3", "wheel_separation: 0.6")], ["REF002", "REF017"]),
+        (
+            [
+                ("right_wheel_names: [right_wheel_joint]", "right_wheel_names: [tmp]"),
+                ("left_wheel_names: [left_weel_joint]", "left_wheel_names: [right_weel_joint]"),
+                ("[tmp]", "[left_wheel_joint]"),
+            ],
+            ["REF017", "REF002"],
+        ),
+    ],
+)
+def test_a_misspelt_joint_hides_no_other_mistake(
+    edits: list[tuple[str, str]], codes: list[str]
+) -> None:
+    """The numbers and sides of wheels are compared with the joint that is meant."""
+    misspelt = ("[left_wheel_joint]", "[left_weel_joint]")
+    found = problems_of(*[(CONTROLLERS, *edit) for edit in (misspelt, *edits)])
+    assert [it.split()[0] for it in found] == codes
 
 
 @pytest.mark.parametrize(

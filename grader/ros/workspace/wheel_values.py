@@ -135,10 +135,11 @@ def _controllers(workspace: Workspace) -> Iterator[_Source]:
         source = _Source(controller.name, rows, _reader_of_yaml(section), ())
         keys = {key for row in rows.values() for key in chain(*row["of"])}
         named = [joint.text for joint in source.joints(sorted(keys))]
-        robots = []
-        for robot in workspace.robots:
+        robots = [it for it in workspace.robots if all(map(it.robot.has_joint, named))]
+        if not robots and len(workspace.robots) == 1:
+            [robot] = workspace.robots
             if all(robot.robot.has_joint(_meant(robot.robot, name)) for name in named):
-                robots.append(robot)
+                robots = [robot]
         if named and robots:
             yield source._replace(robots=robots)
 
@@ -246,7 +247,10 @@ def _faults_of_side(wheels: _Wheels, groups: list[list[_Word]], kind: str) -> It
     """Yield that left wheels are on the right, and the reverse, wheels that turn about an axis
     across their axle, and wheels that turn backward.
     """
-    places = {word.text: word.location for group in groups for word in group}
+    places = {
+        wheel.joint.name: word.location
+        for wheel, word in zip(chain(*wheels.groups), chain(*groups), strict=True)
+    }
 
     def fault(joints: Sequence[WheelSize], message: str, *, is_certain: bool = False) -> Mismatch:
         at = places[joints[0].joint.name]
