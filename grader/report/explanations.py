@@ -123,8 +123,8 @@ def explanation(name: str, rubric: Rubric) -> str:
         + check_names()
     )
     lists = (
-        f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, and "
-        "reports show the codes"
+        f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, "
+        "reports show the codes, and a parameter of a well-known node is NODE.NAME"
     )
     begun = [criterion.id for criterion in rubric.criteria if criterion.id.startswith(name)]
     if begun:
