@@ -271,6 +271,30 @@ def test_corrects_where_the_name_is_written(diffdrive: Path) -> None:
     _edit(diffdrive, act)
 
 
+def test_corrects_a_word_for_which_ros_2_rejects_the_file(lab6: Path) -> None:
+    async def act(one: Editor) -> None:
+        await one.open(_LAB6)
+        text = one.text(_LAB6)
+        for old, new in (('child link="lidar"', 'child link="lidr"'), ("continuous", "continous")):
+            await one.type(_LAB6, text.replace(old, new, 1))
+            found = one.client.diagnostics[one.uri(_LAB6)]
+            context = lsp.CodeActionContext(found)
+            asked = lsp.CodeActionParams(one.document(_LAB6), found[0].range, context)
+            [action] = await one.client.text_document_code_action_async(asked) or ()
+            assert isinstance(action, lsp.CodeAction)
+            assert action.edit is not None
+            assert action.edit.changes is not None
+            [edit] = action.edit.changes[one.uri(_LAB6)]
+            start, end = edit.range.start, edit.range.end
+            assert start.line == end.line
+            rows = text.replace(old, new, 1).split("\n")
+            row = rows[start.line]
+            rows[start.line] = row[: start.character] + edit.new_text + row[end.character :]
+            assert "\n".join(rows) == text
+
+    _edit(lab6, act)
+
+
 def test_offers_the_edits_of_hints(lab6: Path) -> None:
     """A rubric whose hints show edits has them as corrections."""
     rubric = (lab6 / "rubric.toml").read_text(encoding="utf-8")

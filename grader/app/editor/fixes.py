@@ -8,7 +8,9 @@ from grader.app.editor.look import Look
 from grader.app.editor.places import TextPlace
 from grader.base.source import Edits, Location
 from grader.base.text import quoted
+from grader.lab.hints.generators import word_edits
 from grader.lab.hints.name_edits import correction_edits
+from grader.lab.hints.robot_draft import Draft
 from grader.ros.package.robot_file import Read
 
 
@@ -16,10 +18,7 @@ def actions(look: Look, place: TextPlace, wanted: lsp.Range) -> list[lsp.CodeAct
     """Return the corrections of what is wrong in a range of a file."""
     ranges = place.ranges(look)
     found = []
-    offered: list[tuple[str, Location, Edits]]
-    offered = [*_of_names(look, place.path), *_of_robots(look, place.path)]
-    offered += [fix for fix in look.graded.fixes if fix.at.path == place.path]
-    for title, at, edits in offered:
+    for title, at, edits in _offered(look, place.path):
         # Where it is wrong, and where it is written.
         places = [at, *(Location(it.path, it.line, it.column) for it in edits)]
         own = [ranges.range(it) for it in places if it.path == place.path]
@@ -27,6 +26,16 @@ def actions(look: Look, place: TextPlace, wanted: lsp.Range) -> list[lsp.CodeAct
             edit = ranges.workspace_edit(edits)
             found.append(lsp.CodeAction(title, lsp.CodeActionKind.QuickFix, edit=edit))
     return found
+
+
+def _offered(look: Look, path: str) -> Iterator[tuple[str, Location, Edits]]:
+    """Yield all corrections at places of a file, with their titles and places."""
+    yield from _of_names(look, path)
+    yield from _of_robots(look, path)
+    yield from _of_rejected(look)
+    for fix in look.graded.fixes:
+        if fix.at.path == path:
+            yield fix.title, fix.at, fix.edits
 
 
 def _of_names(look: Look, path: str) -> Iterator[tuple[str, Location, Edits]]:
@@ -49,6 +58,21 @@ def _of_robots(look: Look, path: str) -> Iterator[tuple[str, Location, Edits]]:
                 first = slip.edits[0]
                 title = f"Change {quoted(first.old)} to {quoted(first.new)}"
                 yield title, slip.location, slip.edits
+
+
+def _of_rejected(look: Look) -> Iterator[tuple[str, Location, Edits]]:
+    """Yield the words for which ROS 2 rejects a robot, corrected."""
+    for robot in look.opened.robots:
+        reading = robot.reading if isinstance(robot, Read) else None
+        draft = Draft.of(reading) if reading is not None else None
+        if reading is None or draft is None:
+            continue
+        for word in reading.undone:
+            edits = word_edits(draft, word)
+            if edits:
+                first = edits[0]
+                title = f"Change {quoted(first.old)} to {quoted(first.new)}"
+                yield title, Location(first.path, first.line, first.column), edits
 
 
 def _overlap(one: lsp.Range, other: lsp.Range) -> bool:

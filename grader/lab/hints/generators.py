@@ -258,7 +258,7 @@ def _repairs(reading: Reading) -> Iterator[Proposal]:
     if draft is not None and reading.undone:
         edits_of_words: list[Edit] = []
         for word in reading.undone:
-            edits_of_words += _word_edits(draft, word)
+            edits_of_words += word_edits(draft, word)
         written = dict.fromkeys(map(_word_in_words, reading.undone))
         cause = enumerated(written, MAX_IN_HINT)
         yield Proposal(tuple(edits_of_words), cause)
@@ -287,7 +287,7 @@ def _word_in_words(word: Word) -> str:
     return f"the attribute {attribute} of <{element.tag}>"
 
 
-def _word_edits(draft: Draft, word: Word) -> Edits:
+def word_edits(draft: Draft, word: Word) -> Edits:
     """Return the edits of a word: of a tag, of an attribute's name, or of its value."""
     element, attribute = word.element, word.attribute
     if attribute is None:
