@@ -104,6 +104,7 @@ OTHER_PROGRAMS = {  # commands of other programs in the text of the README and o
     "git clone https://github.com/urdf-grader/urdf-grader": "nothing is published yet",
     "pip install urdf-grader": "nothing is released yet",
     "pip install 'urdf-grader[editor]'": "nothing is released yet",
+    "pip install '.[editor]'": "walks/editor.md installs the wheel with this extra",
     "python -m tests.parameters.make_known CHECKOUT...": "needs checkouts of ros2_control and ros2_controllers",
     "gh repo edit YOUR-ORG/NAME --template": "needs GitHub",
     "python CHECKOUT/benchmarks/class_generator.py submissions --count 121 --kind mixed --layout canvas --lms canvas.csv": "classroom/test_walkthrough.py",
