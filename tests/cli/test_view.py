@@ -436,7 +436,7 @@ def test_pages_that_wait_are_told_of_the_end(file: Path) -> None:
 
 
 def test_what_is_asked_between_two_waits_is_not_lost() -> None:
-    """Whoever waits again and again sees each request, whenever it comes."""
+    """A loop that waits again and again sees each request, also one that comes between two waits."""
     interval = sys.getswitchinterval()
     sys.setswitchinterval(1e-6)
     try:

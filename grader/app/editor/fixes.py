@@ -6,7 +6,7 @@ from lsprotocol import types as lsp
 
 from grader.app.editor.look import Look
 from grader.app.editor.places import TextPlace
-from grader.base.source import Edits, Location
+from grader.base.source import Edit, Edits, Location
 from grader.base.text import quoted
 from grader.lab.hints.generators import word_edits
 from grader.lab.hints.name_edits import correction_edits
@@ -55,24 +55,25 @@ def _of_robots(look: Look, path: str) -> Iterator[tuple[str, Location, Edits]]:
     for robot in look.opened.robots:
         for slip in robot.slips if isinstance(robot, Read) else ():
             if slip.location.path == path and slip.edits:
-                first = slip.edits[0]
-                title = f"Change {quoted(first.old)} to {quoted(first.new)}"
-                yield title, slip.location, slip.edits
+                yield _change(slip.edits[0]), slip.location, slip.edits
 
 
 def _of_rejected(look: Look) -> Iterator[tuple[str, Location, Edits]]:
     """Yield the words for which ROS 2 rejects a robot, corrected."""
     for robot in look.opened.robots:
-        reading = robot.reading if isinstance(robot, Read) else None
-        draft = Draft.of(reading) if reading is not None else None
-        if reading is None or draft is None:
+        words = robot.reading.undone if isinstance(robot, Read) else ()
+        draft = Draft.of(robot.reading) if isinstance(robot, Read) and words else None
+        if draft is None:
             continue
-        for word in reading.undone:
+        for word in words:
             edits = word_edits(draft, word)
             if edits:
                 first = edits[0]
-                title = f"Change {quoted(first.old)} to {quoted(first.new)}"
-                yield title, Location(first.path, first.line, first.column), edits
+                yield _change(first), Location(first.path, first.line, first.column), edits
+
+
+def _change(edit: Edit) -> str:
+    return f"Change {quoted(edit.old)} to {quoted(edit.new)}"
 
 
 def _overlap(one: lsp.Range, other: lsp.Range) -> bool:
