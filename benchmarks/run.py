@@ -199,8 +199,8 @@ def hints(bench: Bench) -> Iterator[Row]:
     """Compare a cold `grade` of a URDF with mistakes with and without hints."""
     arguments = ("grade", _MISTAKES, "--hints")
     times = bench.compare(
-        hints=bench.grader(*arguments, "edit", code=1, word="Change `"),
-        none=bench.grader(*arguments, "none", code=1, word="42/70"),
+        hints=bench.grader(*arguments, "cause", code=1, word="Check line"),
+        none=bench.grader(*arguments, "none", code=1, word="43/70"),
     )
     yield Row(
         "several mistakes with hints, cold, against without", ratio(times["hints"], times["none"])

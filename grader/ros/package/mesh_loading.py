@@ -4,11 +4,11 @@ it.
 
 import posixpath
 from collections.abc import Callable, Collection
-from hashlib import sha256
 from typing import TYPE_CHECKING
 
 from grader.base.errors import InputError, NotDecided
 from grader.base.text import quoted, size_text
+from grader.files.reading import sha256_of
 from grader.files.tree import File, Tree
 from grader.ros.package.installed_files import look_up
 from grader.ros.package.mesh_content import LFS_POINTER
@@ -97,7 +97,7 @@ class MeshLoader:
             return f"cannot be read: {error}"
         if data.startswith(LFS_POINTER):
             return "is not here: this download holds only the pointer of Git LFS"
-        content = (sha256(data).digest(), posixpath.splitext(path)[1])
+        content = (sha256_of(data), posixpath.splitext(path)[1])
         if content not in self.kept:
             self.kept[content] = read_triangles(data, path)
         triangles = self.kept[content]

@@ -10,10 +10,10 @@ for a type of joint.
 
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import fields, is_dataclass
-from hashlib import sha256
 from typing import Any, NamedTuple
 
 from grader.base.transforms import AXES, unit
+from grader.files.reading import sha256_of
 from grader.ros.urdf.model import (
     Collision,
     Cylinder,
@@ -85,7 +85,7 @@ def written_form(root: Element | None, *, is_handed_out: bool = False) -> str:
 
 
 def _hash(content: object) -> str:
-    return sha256(repr(content).encode("utf-8", "backslashreplace")).hexdigest()
+    return sha256_of(repr(content).encode("utf-8", "backslashreplace"))
 
 
 def _extensions(root: Element | None) -> list[tuple[Any, ...]]:
