@@ -370,7 +370,8 @@ def generate_launch_description():
             "diff_drive_controller/DiffDriveController",
             "humble",
             {"left_wheel_names": ["text"], "right_wheel_names": ["text"]}
-            | {"wheel_separation": 0.3, "wheel_radius": 0.0, "linear.x.max_velocity": 1.0},
+            | {"wheel_separation": 0.3, "wheel_radius": 0.0, "linear.x.max_velocity": 1.0}
+            | {"angular.z.max_velocity": 0.0},  # off, as its switch
             [
                 "the parameter 'wheel_radius' is 0; 'n0' needs more than 0, and stops",
                 (

@@ -450,7 +450,9 @@ def _batch(
             terminal.warn(f"stopped: {graded}; rerun the same command to resume")
             raise
     errored = f" ({done.errored} errored)" if done.errored else ""
-    terminal.warn(f"{done.graded} graded{errored}, {done.unchanged} unchanged")
+    unreadable = f", {done.unreadable} unreadable" if done.unreadable else ""
+    graded = f"{done.graded - done.unreadable} graded{errored}{unreadable}"
+    terminal.warn(f"{graded}, {done.unchanged} unchanged")
     return done
 
 

@@ -198,8 +198,10 @@ class _NodeReader:
                 unmatched[name] = value
                 continue
             switch = self._switch_off(match)
-            # The default says nothing, whether it is read or not.
-            is_default = value.value == match.row.default and not isinstance(value.value, bool)
+            # The default says nothing, whether it is read or not; nor does zero, which generators
+            # write for a limit that is off.
+            is_number = not isinstance(value.value, bool)
+            is_default = is_number and value.value in (match.row.default, 0)
             if switch is None:
                 yield from self._value_findings(name, value, match)
             elif switch.name not in said and not is_default:
