@@ -292,6 +292,14 @@ def test_the_package_of_a_launch_file_declares_what_it_starts() -> None:
     assert found.startswith("REF008 package.xml of 'kit' does not declare 'rqt_robot_steering'")
 
 
+def test_a_dependency_within_export_does_not_count() -> None:
+    """It is said where the dependency is."""
+    exported = "<export><exec_depend>rqt_robot_steering</exec_depend>"
+    manifest = _MANIFEST.replace("<export>", exported)
+    [found] = _names(_kit({"src/kit/package.xml": manifest}, launch=_GUI))
+    assert "is used here: <export> has it (line 8), where it has no effect" in found
+
+
 def test_the_package_of_a_controller_need_not_be_the_start_of_its_type() -> None:
     """The gripper's controllers are those of gripper_controllers."""
     text = _CONTROLLER.replace(

@@ -29,7 +29,7 @@ class MeshStore:
     """What is served of the meshes of robots that are shown again and again."""
 
     def __init__(self) -> None:
-        self._read: dict[tuple[bytes, str], Any] = {}  # the triangles of files
+        self._read: dict[tuple[str, str], Any] = {}  # the triangles of files
         self._packed: dict[tuple[object, ...], _PackedMesh] = {}
         self._data: dict[str, bytes] = {}
 

@@ -1,6 +1,6 @@
 """package.xml: name, build type and problems of a package (REP 127, 140 and 149)."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from grader.base.merge_conflicts import resolve_conflicts
@@ -30,6 +30,7 @@ class Manifest(NamedTuple):
     unread: str = ""  # why the file was not read at all: too large, damaged
     dependencies: frozenset[str] = frozenset()  # the packages that it depends on, in any way
     groups: frozenset[str] = frozenset()  # of packages, of which it is a member
+    misplaced: Mapping[str, Location] = {}  # dependencies in <export>, which do not count
 
     @property
     def refusals(self) -> tuple[Problem, ...]:
@@ -71,6 +72,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         is_used = evaluate_condition(element.get("condition")) is not False
         if tag_of(element) == "build_type" and is_used:
             build_types.append(element)
+    exported = [it for it in _exports(root) if tag_of(it).endswith("depend")]
     dependencies, groups = set[str](), set[str]()
     for element in root.iterchildren("*"):
         if tag_of(element) == "member_of_group":
@@ -91,6 +93,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         file.location(build_types[0] if build_types else root),
         dependencies=frozenset(dependencies),
         groups=frozenset(groups),
+        misplaced={text_of(element): file.location(element) for element in exported},
     )
 
 

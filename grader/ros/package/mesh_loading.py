@@ -37,7 +37,7 @@ class MeshLoader:
     """
 
     def __init__(self, robot: Read, read_around: Around) -> None:
-        self.kept: dict[tuple[bytes, str], Triangles | str] = {}
+        self.kept: dict[tuple[str, str], Triangles | str] = {}
         self._robot = robot
         self._read_around = read_around
         self._around: tuple[tuple[Package, ...], Tree] | None = None

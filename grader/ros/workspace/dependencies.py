@@ -45,6 +45,9 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
             workspace.charge(cost_of_guess(len(declared)))
             meant = near(name, declared)
             guess = f"; did you mean {meant!r}?" if meant is not None else ""
+            misplaced = package.manifest.misplaced.get(name)
+            if misplaced is not None:
+                guess = f": <export> has it (line {misplaced.line}), where it has no effect"
             message = (
                 f"package.xml of {package.name!r} does not declare {name!r}, which is used "
                 f"here{guess}"
