@@ -106,6 +106,10 @@ ament_package()
 </package>
 """,
 }
+_EYE = (
+    '<model name="post"><link name="post_link"><sensor name="eye" type="camera">'
+    "<gz_frame_id>{}</gz_frame_id></sensor></link></model></world>"
+)
 _LASER = (
     "{topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan, gz_type_name: gz.msgs.LaserScan"
 )
@@ -123,7 +127,7 @@ def problems(*edits: tuple[str, str, str]) -> list[str]:
         assert old in texts[f"scout/{name}"]
         texts[f"scout/{name}"] = texts[f"scout/{name}"].replace(old, new)
     found = sure(agreement_of(texts))
-    assert {it.family for it in found} <= {"topics", "programs", "files", "parameters"}
+    assert {it.family for it in found} <= {"topics", "programs", "files", "parameters", "frames"}
     return [it.message for it in found]
 
 
@@ -299,6 +303,10 @@ def problems(*edits: tuple[str, str, str]) -> list[str]:
             "there is no model 'shelv'; did you mean 'shelf'?",
         ),
         (
+            [("arena.sdf", "  </world>", _EYE.format("base_lnik"))],
+            "<gz_frame_id>: there is no frame 'base_lnik'; did you mean 'base_link' (scout/scout.urdf:2)?",
+        ),
+        (
             [("drive.py", "#!/usr/bin/env python3\n", "")],
             "Linux cannot execute drive.py: its first line is not #!/usr/bin/env python3",
         ),
@@ -324,6 +332,9 @@ def test_what_gazebo_does_not_do_is_named(edits: list[tuple[str, str, str]], mes
         [("bridge.yaml", "direction: ROS_TO_GZ", "direction: BIDIRECTIONAL")],
         [("bridge.yaml", "gz.msgs.IMU", "ignition.msgs.IMU")],
         [("scout.launch.py", '"-world", "arena", ', "")],
+        [("arena.sdf", "  </world>", _EYE.format("post_link"))],
+        [("arena.sdf", "  </world>", _EYE.format("base_link"))],
+        [("arena.sdf", "  </world>", _EYE.format("tower"))],
         [
             (
                 "arena.sdf",

@@ -1,6 +1,6 @@
 """package.xml: name, build type and problems of a package (REP 127, 140 and 149)."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.base.merge_conflicts import resolve_conflicts
@@ -11,6 +11,8 @@ from grader.ros.build import package_problems as kinds
 from grader.ros.build.manifest_conditions import evaluate_condition
 from grader.ros.build.manifest_rules import email_of, find_refusals, tag_of, text_of
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile, recover_xml
+
+_MAX_MISPLACED = 100  # dependencies in <export>
 
 
 class Manifest(NamedTuple):
@@ -67,12 +69,12 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         )
         return Manifest(source, None, "", (problem,), start, start)
     name = next((it for it in root.iterchildren("*") if tag_of(it) == "name"), None)
-    build_types = []
-    for element in _exports(root):
+    build_types, exports = [], _exports(root)
+    for element in exports:
         is_used = evaluate_condition(element.get("condition")) is not False
         if tag_of(element) == "build_type" and is_used:
             build_types.append(element)
-    exported = [it for it in _exports(root) if tag_of(it).endswith("depend")]
+    exported = [it for it in exports if tag_of(it).endswith("depend")][:_MAX_MISPLACED]
     dependencies, groups = set[str](), set[str]()
     for element in root.iterchildren("*"):
         if tag_of(element) == "member_of_group":
@@ -88,7 +90,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         source,
         (text_of(name) or None) if name is not None else None,
         " and ".join(map(text_of, build_types)) if build_types else "catkin",
-        (*problems, *_condition_problems(file)),
+        (*problems, *_condition_problems(file, exports)),
         file.location(name if name is not None else root),
         file.location(build_types[0] if build_types else root),
         dependencies=frozenset(dependencies),
@@ -145,8 +147,8 @@ def _problems(file: XmlFile) -> Iterator[Problem]:
         yield Problem(kinds.OLD_FORMAT, message, file.location(root))
 
 
-def _condition_problems(file: XmlFile) -> Iterator[Problem]:
-    for element in (*file.root.iterchildren("*"), *_exports(file.root)):
+def _condition_problems(file: XmlFile, exports: Sequence[Element]) -> Iterator[Problem]:
+    for element in (*file.root.iterchildren("*"), *exports):
         condition = element.get("condition")
         if condition is not None and evaluate_condition(condition) is None:
             words = f"condition '{condition[:100]}' failed to parse: write it as $ROS_VERSION == 2"

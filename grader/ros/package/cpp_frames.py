@@ -26,7 +26,7 @@ def frames_in(
         if short in _LOOKING_UP and len(given) > 1:
             second = given[2] if len(given) >= _FULL_FORM else given[1]
             for node in (given[0], second):
-                yield _frame("looks up", node, evaluation)
+                yield _frame("looks up", node, evaluation)._replace(lookup=call.location)
         elif short == "sendTransform" and not _is_known_transform(given, function, unit):
             yield NodeFrame("publishes", None, call.location)
     for name in ("frame_id", "child_frame_id"):

@@ -78,12 +78,15 @@ FrameUse = Literal["publishes", "is above", "looks up", "names"]
 class NodeFrame(NamedTuple):
     """A frame that a node publishes, or that is above one; or that it looks up, or that its
     messages name. Without a name and `parts` it is not known.
+
+    `lookup` is the place of the call that looks up the transform between it and another frame.
     """
 
     use: FrameUse
     name: str | None
     location: Location
     parts: tuple[NamePart, ...] = ()
+    lookup: Location | None = None
 
 
 class Timer(NamedTuple):

@@ -31,7 +31,9 @@ from grader.ros.package.node_facts import (
     EndpointKind,
     FieldUse,
     ImageEncoding,
+    NamePart,
     NodeFacts,
+    NodeFrame,
     NodeParameter,
     NodeProgram,
     PackageNodes,
@@ -90,6 +92,13 @@ _READS_IF_DECLARED = ("get_parameter_or", "has_parameter")
 _READS = ("get_parameter", *_READS_IF_DECLARED)
 _DECLARES = ("declare_parameter", "declare_parameters")
 _METHODS = frozenset({*_KINDS, *_READS, *_DECLARES, "create_timer"})
+# Of tf2_ros.Buffer of Jazzy, with the position of the source frame behind the target frame.
+_LOOKUPS = {
+    **dict.fromkeys(("lookup_transform", "lookup_transform_async"), 1),
+    **dict.fromkeys(("lookup_transform_full", "lookup_transform_full_async"), 2),
+    **dict.fromkeys(("can_transform", "wait_for_transform_async"), 1),
+    **dict.fromkeys(("can_transform_full", "wait_for_transform_full_async"), 2),
+}
 # What may be given a node, and declares and opens nothing but actions and the topics of tf2.
 _HARMLESS = frozenset(
     {
@@ -143,7 +152,7 @@ class _Name(NamedTuple):
     name: str | None
 
 
-_Fact = Endpoint | NodeParameter | Timer | Doubt | _Name
+_Fact = Endpoint | NodeParameter | NodeFrame | Timer | Doubt | _Name
 
 
 def read_nodes(package: Package) -> PackageNodes:
@@ -468,7 +477,7 @@ class _Module:
         encodings: Mapping[Location, tuple[ImageEncoding, ...]],
     ) -> NodeFacts:
         names: set[str | None] = set()
-        endpoints, parameters, timers, doubts = [], [], [], []
+        endpoints, parameters, frames, timers, doubts = [], [], [], [], []
         for fact in facts:
             match fact:
                 case _Name():
@@ -478,6 +487,8 @@ class _Module:
                     endpoints.append(fact._replace(encodings=known))
                 case NodeParameter():
                     parameters.append(fact)
+                case NodeFrame():
+                    frames.append(fact)
                 case Timer():
                     timers.append(fact)
                 case Doubt():
@@ -490,6 +501,7 @@ class _Module:
             parameters=tuple(parameters),
             timers=tuple(timers),
             doubts=tuple(doubts),
+            frames=tuple(frames),
         )
 
     def calls_in(self, function: str) -> Sequence[tuple[str, Location]]:
@@ -529,18 +541,25 @@ class _Module:
         self, part: CodePart, call: ast.Call, position: int, name: str, endpoint: Endpoint
     ) -> Iterator[Endpoint]:
         """Yield an endpoint for each name that an argument of a call gives it."""
+        for text, parts in self._names(part, call, position, name):
+            yield endpoint._replace(name=text, parts=parts)
+
+    def _names(
+        self, part: CodePart, call: ast.Call, position: int, name: str
+    ) -> Iterator[tuple[str | None, tuple[NamePart, ...]]]:
+        """Yield each name that an argument of a call is, as its text or its parts."""
         value = self._argument(part, call, position, name)
         given = given_argument(call, position, name)
         if isinstance(value, str) or given is None:
-            yield endpoint._replace(name=_text(value))
+            yield _text(value), ()
             return
         names = EndpointNames(self._bindings_around(part), partial(self._value_in, part.scope))
         for parts in names.read(given):
             kinds = {it.kind for it in parts}
             if kinds == {"text"}:
-                yield endpoint._replace(name=parts[0].text)
+                yield parts[0].text, ()
             else:
-                yield endpoint._replace(parts=parts if kinds != {"unknown"} else ())
+                yield None, parts if kinds != {"unknown"} else ()
 
     def _value_in(self, scope: Scope, node: ast.expr) -> Value:
         return self._constants.value_of(node, scope)
@@ -586,6 +605,8 @@ class _Module:
                     self.doubts.append(Doubt(reason, self._at(call)))
                 else:
                     facts += self._read_method(part, call, method)
+            case ast.Attribute(attr=method) if method in _LOOKUPS and part.of in self._facts:
+                self._facts[part.of] += self._looked_up(part, call, _LOOKUPS[method])
             case function:
                 name = (dotted(function) or "this call").rpartition(".")[2]
                 for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
@@ -598,6 +619,14 @@ class _Module:
                         self._facts[at] += self._action(part, call, _ACTIONS[name])
                     elif name not in _HARMLESS:
                         self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
+
+    def _looked_up(self, part: CodePart, call: ast.Call, second: int) -> Iterator[NodeFrame]:
+        """Yield the frames between which a call looks up the transform."""
+        for position, name in ((0, "target_frame"), (second, "source_frame")):
+            given = given_argument(call, position, name)
+            at = self._at(given if given is not None else call)
+            for text, parts in self._names(part, call, position, name):
+                yield NodeFrame("looks up", text, at, parts, lookup=self._at(call))
 
     def _filtered(self, part: CodePart, call: ast.Call) -> Iterator[Endpoint]:
         """Yield the subscription of a filter: Subscriber(node, type, topic, qos_profile=...)."""

@@ -12,6 +12,7 @@ from grader.base.source import LazyLocation, Location
 from grader.ros.config.yaml_values import YamlValue, is_parameters, values_in
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.package.node_facts import NodeFrame
 from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
@@ -33,6 +34,7 @@ from grader.ros.xml.parsing import Element
 
 _JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
 _FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
+_SENSOR_FRAMES = ("gz_frame_id", "ignition_frame_id")
 _FRAME_FIELDS = ("frame_id", "child_frame_id")  # of messages
 # What a program calls the frames that it makes itself.
 _OWN_FRAMES = re.compile(
@@ -55,7 +57,7 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
             yield Definition("joint", joint.name, _place(joint.location))
     start = _place(robots[0].links[0].location)
     yield from (Definition("frame", name, start) for name in known()["frames"])
-    yield from _openings(workspace)
+    yield from openings(workspace)
     yield from _static_transforms(workspace, robots)
     yield from _frames_in_code(workspace, robots)
     controllers = workspace.typed_sections
@@ -66,6 +68,7 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
     for found in workspace.robots:
         yield from _in_robot(found)
     yield from _odometry_frames(workspace, robots)
+    yield from _sensor_frames(workspace)
 
 
 def _place(location: LazyLocation | None) -> Location:
@@ -74,7 +77,7 @@ def _place(location: LazyLocation | None) -> Location:
     return Location("", 1, 1)
 
 
-def _openings(workspace: Workspace) -> Iterator[Fact]:
+def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
     """Yield that there may be other names: of other robots, under other arguments, and of programs
     that may publish frames.
     """
@@ -126,16 +129,36 @@ def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[F
                 named.append(_NamedFrame(name.removeprefix("/"), frame, node))
             elif name is None and frame.use == "publishes":
                 yield Open("frame", reason=f"the frames of {node.executable} are computed")
+    if named:
+        yield from _frames_of_placing(workspace)
     for each in named:
         at = each.frame.location
         if each.frame.use in ("publishes", "is above"):
             yield Definition("frame", each.name, at)
         elif each.frame.use == "looks up":
-            yield Use("frame", each.name, at, "lookupTransform")
+            yield Use("frame", each.name, at, "the lookup of a transform")
         else:
             yield Use("frame", each.name, at, "frame_id")
     yield from _misspelt_roots(named, robots)
     yield from _frames_in_fields(workspace)
+
+
+def _frames_of_placing(workspace: Workspace) -> Iterator[Definition | Open]:
+    """Yield the frames that the parameters of nodes of others name, which publish them."""
+    for package, node in workspace.nodes:
+        if node.package in known()["placing"]:
+            given = workspace.parameters_given(package, node)
+            if given.unknown:
+                yield Open("frame", reason=f"the frames of {node.executable}: {given.unknown}")
+            for name, at in own_frames(given):
+                yield Definition("frame", name, at)
+
+
+def own_frames(given: NodeParameters) -> Iterator[tuple[str, Location]]:
+    """Yield the frames that parameters name and that their node makes itself."""
+    for name, value in given.values.items():
+        if _OWN_FRAMES.search(name.rpartition(".")[2]) and isinstance(value.value, str):
+            yield value.value.removeprefix("/"), value.location
 
 
 def _frames_in_fields(workspace: Workspace) -> Iterator[Use]:
@@ -215,10 +238,13 @@ def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
         for text, node in value.texts():
             if text and "/" not in text and "$" not in text:
                 yield Use("joint", text, node.location, value.said, optional=not is_of_controller)
-    elif _FRAMES.search(key) and not _OWN_FRAMES.search(key):
+    elif _FRAMES.search(key):
+        is_made = _OWN_FRAMES.search(key) is not None
         for text, node in value.texts():
-            if text.strip("/") and "$" not in text:
-                yield Use("frame", text.removeprefix("/"), node.location, value.said)
+            name, at = text.removeprefix("/"), node.location
+            if name and "$" not in name:
+                is_own = Definition("frame", name, at)
+                yield is_own if is_made else Use("frame", name, at, value.said)
 
 
 def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
@@ -266,6 +292,20 @@ def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[
             for model in sorted(around | created):
                 for frame in defaults:
                     yield Definition("frame", f"{model}/{frame}", at)
+
+
+def _sensor_frames(workspace: Workspace) -> Iterator[Use]:
+    """Yield the frames of the sensors of models and worlds, but for links of these, whose poses
+    Gazebo may publish.
+    """
+    for file in workspace.sdf_files:
+        links = {link.get("name") for link in file.root.iter("link")}
+        for sensor in file.root.iter("sensor"):
+            for element in sensor.iterchildren(*_SENSOR_FRAMES):
+                name = (element.text or "").strip().removeprefix("/")
+                if name and name not in links:
+                    at = file.location(element)
+                    yield Use("frame", name, at, f"<{element.tag}>", optional=True)
 
 
 def _in_system(robot: KnownRobot, system: Element) -> Iterator[Fact]:

@@ -11,6 +11,7 @@ from grader.base.problems import Kind, Problem, kinds_in
 from grader.ros.workspace.names import (
     NO_EFFECT,
     OF_OTHER_RELEASE,
+    UNCONNECTED,
     UNKNOWN_PARAMETER,
     Agreement,
     AnyFamily,
@@ -46,6 +47,7 @@ _NO_MESSAGE = _warning("REF025", "Messages that their reader cannot use")
 _MOVES_NOTHING = _warning("REF026", "Controller that moves nothing")
 _NO_SUCH_PARAMETER = _warning("REF027", "Parameter that a well-known node does not have")
 _NO_EFFECT = _warning("REF028", "Parameter that has no effect")
+_UNCONNECTED = _warning("REF029", "Transform between frames that nothing connects")
 UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
 
 _KINDS: Mapping[AnyFamily, Kind] = {
@@ -86,6 +88,7 @@ _BY_RULE = {
     UNKNOWN_PARAMETER: _NO_SUCH_PARAMETER,
     NO_EFFECT: _NO_EFFECT,
     OF_OTHER_RELEASE: OTHER_RELEASE,
+    UNCONNECTED: _UNCONNECTED,
 }
 NAME_CATALOGUE = kinds_in(globals().values())
 

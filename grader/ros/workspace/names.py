@@ -55,6 +55,7 @@ FAMILY_OF: Mapping[_Kind, AnyFamily] = {
 
 # Rules of mismatches of parameters that are not certain.
 UNKNOWN_PARAMETER, NO_EFFECT, OF_OTHER_RELEASE = "unknown", "without effect", "other release"
+UNCONNECTED = "unconnected"
 _MAX_NEAR, _MAX_SIMILAR = 1000, 300  # known names that are compared in either way
 
 

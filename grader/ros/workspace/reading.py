@@ -24,6 +24,7 @@ from grader.ros.workspace.interfaces import interface_facts
 from grader.ros.workspace.known_ends import known_end_facts
 from grader.ros.workspace.known_parameters import known_parameter_facts
 from grader.ros.workspace.limit_values import limit_facts
+from grader.ros.workspace.looked_up_transforms import lookup_facts
 from grader.ros.workspace.moveit import moveit_facts
 from grader.ros.workspace.names import (
     FAMILY_OF,
@@ -76,6 +77,7 @@ _READERS = (
     rate_facts,
     footprint_facts,
     transform_facts,
+    lookup_facts,
     companion_facts,
     namespace_facts,
     machine_facts,
