@@ -7,7 +7,9 @@ from grader.ros.workspace.name_problems import name_problems
 from grader.ros.workspace.opened import OpenedWorkspace
 from grader.ros.workspace.reading import read_agreement
 
-Edit = tuple[str, str, str]  # a file, a text in it, and what replaces that
+Edit = tuple[
+    str, str, str
+]  # a file of the package, or with / of the workspace, a text in it, and what replaces that
 
 _SETUP = """\
 from glob import glob
@@ -245,7 +247,7 @@ def rover(*edits: Edit) -> OpenedWorkspace:
     """Return the workspace with some texts replaced."""
     files = dict(FILES)
     for file, old, new in edits:
-        path = f"rover/{file}"
+        path = file[1:] if file.startswith("/") else f"rover/{file}"
         assert old in files.setdefault(path, old), (file, old)
         files[path] = files[path].replace(old, new)
     tree = overlaid(make_tree("ws", (), ()), {path: text.encode() for path, text in files.items()})
@@ -259,7 +261,7 @@ def problems_of(*edits: Edit) -> list[str]:
     for problem in found:
         if problem.code not in _OTHERS:
             at = problem.location
-            texts.append(
-                f"{problem.code} {at.path.removeprefix('rover/')}:{at.line} {problem.message}"
-            )
+            is_own = at.path.startswith("rover/")
+            path = at.path.removeprefix("rover/") if is_own else f"/{at.path}"
+            texts.append(f"{problem.code} {path}:{at.line} {problem.message}")
     return texts

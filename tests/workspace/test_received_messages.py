@@ -50,7 +50,101 @@ def _converted(send: str = _SEND, heard: str = _HEARD) -> list[Edit]:
     return edits
 
 
+_CMAKE = """\
+project(viewer)
+find_package(ament_cmake REQUIRED)
+find_package(cv_bridge REQUIRED)
+find_package(geometry_msgs REQUIRED)
+find_package(message_filters REQUIRED)
+find_package(rclcpp REQUIRED)
+find_package(sensor_msgs REQUIRED)
+add_executable(viewer src/viewer.cpp)
+ament_target_dependencies(
+  viewer cv_bridge geometry_msgs message_filters rclcpp sensor_msgs)
+install(TARGETS viewer DESTINATION lib/viewer)
+ament_package()
+"""
+_MANIFEST = """\
+<package format="3">
+  <name>viewer</name>
+  <version>1.0.0</version>
+  <description>Shows images</description>
+  <maintainer email="a@example.org">A</maintainer>
+  <license>MIT</license>
+  <buildtool_depend>ament_cmake</buildtool_depend>
+  <depend>cv_bridge</depend>
+  <depend>geometry_msgs</depend>
+  <depend>message_filters</depend>
+  <depend>rclcpp</depend>
+  <depend>sensor_msgs</depend>
+  <export><build_type>ament_cmake</build_type></export>
+</package>
+"""
+_VIEWER = """\
+#include <cv_bridge/cv_bridge.hpp>
+#include <message_filters/subscriber.h>
+#include <message_filters/time_synchronizer.h>
+#include <rclcpp/rclcpp.hpp>
+
+namespace encodings = sensor_msgs::image_encodings;
+using geometry_msgs::msg::Twist;
+using sensor_msgs::msg::Image;
+
+class Viewer : public rclcpp::Node
+{
+public:
+  Viewer()
+  : Node("viewer")
+  {
+    CONSTRUCTOR
+  }
+
+private:
+  METHODS
+  rclcpp::Publisher<Image>::SharedPtr publisher_;
+  rclcpp::Subscription<Image>::SharedPtr subscription_;
+  message_filters::Subscriber<Image> images_;
+  message_filters::Subscriber<Twist> twists_;
+};
+
+int main(int argc, char ** argv)
+{
+  rclcpp::init(argc, argv);
+  rclcpp::spin(std::make_shared<Viewer>());
+}
+"""
+_CPP_HEARS = (
+    'subscription_ = create_subscription<Image>("drive", 10, '
+    "[this](Image::ConstSharedPtr message) { heard(message); });"
+)
+_CPP_HEARD = (
+    "void heard(Image::ConstSharedPtr message) "
+    "{ show(cv_bridge::toCvShare(message, encodings::BGR8)->image); }"
+)
+_CPP_SENDS = 'publisher_ = create_publisher<Image>("drive", 10);'
+_CPP_SENT = (
+    'void send() { Image message; message.encoding = "16UC1"; publisher_->publish(message); }'
+)
+_CPP_FUSED = (
+    'images_.subscribe(this, "image"); twists_.subscribe(this, "twist"); '
+    "auto pairs = std::make_shared<SYNCHRONISER>(10); "
+    "pairs->registerCallback(std::bind(&Viewer::both, this, std::placeholders::_1));"
+)
+_CPP_PAIRS = "message_filters::TimeSynchronizer<Image, Twist>"
+
+
+def _viewer(constructor: str, methods: str = "", started: str = "") -> list[Edit]:
+    """Return the edits that add a package with a node in C++."""
+    text = _VIEWER.replace("CONSTRUCTOR", constructor).replace("METHODS", methods)
+    files = {"package.xml": _MANIFEST, "CMakeLists.txt": _CMAKE, "src/viewer.cpp": text}
+    edits: list[Edit] = [(f"/viewer/{path}", it, it) for path, it in files.items()]
+    return [*edits, (LAUNCH, MORE, f"Node(package='viewer', executable='viewer'), {started}")]
+
+
 _PLAIN = "ApproximateTimeSynchronizer(filters, 10, 0.1)"
+_ALONE = {  # nodes in Python, of which a launch file starts one
+    name: f"Node(package='rover', executable='{name}')," for name in ("pilot", "horn")
+}
 WRONG: list[tuple[str, list[Edit]]] = [
     (
         (
@@ -105,6 +199,35 @@ WRONG: list[tuple[str, list[Edit]]] = [
             _HEARD.replace("bgr8", "mono8"),
         ),
     ),
+    (
+        (
+            "REF025 /viewer/src/viewer.cpp:20 the images of /drive have the encoding '16UC1' "
+            "(viewer/src/viewer.cpp:20), which cv_bridge does not convert to 'bgr8'"
+        ),
+        _viewer(f"{_CPP_SENDS} {_CPP_HEARS}", f"{_CPP_SENT} {_CPP_HEARD}"),
+    ),
+    (
+        (
+            "REF025 /viewer/src/viewer.cpp:20 the images of /drive have the encoding '16UC1' "
+            "(rover/rover/pilot.py:16), which cv_bridge does not convert to 'bgr8'"
+        ),
+        [*_converted()[1:], *_viewer(_CPP_HEARS, _CPP_HEARD, _ALONE["pilot"])],
+    ),
+    (
+        (
+            "REF025 rover/horn.py:15 the images of /drive have the encoding '16UC1' "
+            "(viewer/src/viewer.cpp:20), which cv_bridge does not convert to 'bgr8'"
+        ),
+        [*_converted()[1:], *_viewer(_CPP_SENDS, _CPP_SENT, _ALONE["horn"])],
+    ),
+    (
+        (
+            "REF025 /viewer/src/viewer.cpp:16 geometry_msgs.msg.Twist has no header with a time: "
+            "message_filters::TimeSynchronizer takes 0 in its place, and stops or finds no right "
+            "pairs"
+        ),
+        _viewer(_CPP_FUSED.replace("SYNCHRONISER", _CPP_PAIRS)),
+    ),
 ]
 
 
@@ -143,6 +266,33 @@ CORRECT: list[tuple[str, list[Edit]]] = [
     (
         "a second encoding",
         _converted(_SEND + _SEND.replace("16UC1", "bgr8")),
+    ),
+    (
+        "a callback with a second conversion",
+        _converted(heard=_HEARD + _HEARD.replace("bgr8", "16UC1")),
+    ),
+    (
+        "a colour of another order in C++",
+        [
+            *_converted(_SEND.replace("16UC1", "rgb8"))[1:],
+            *_viewer(_CPP_HEARS, _CPP_HEARD, _ALONE["pilot"]),
+        ],
+    ),
+    (
+        "a second publisher, of which nothing is known",
+        [
+            *_converted()[1:],
+            *_viewer(_CPP_SENDS, "void send() { publisher_->publish(made()); }", MORE),
+            (LAUNCH, MORE, _NODES),
+        ],
+    ),
+    (
+        "messages with headers in C++",
+        _viewer(_CPP_FUSED.replace("SYNCHRONISER", _CPP_PAIRS.replace("Twist", "Image"))),
+    ),
+    (
+        "messages in C++ of which none has a header",
+        _viewer(_CPP_FUSED.replace("SYNCHRONISER", _CPP_PAIRS.replace("Image", "Twist"))),
     ),
 ]
 

@@ -244,6 +244,22 @@ class CppEvaluation:
             self._locals[key] = _LocalVariable(declared, inside) if declared else None
         return self._locals[key]
 
+    def uses_of(self, name: CppNode) -> Sequence[CppNode] | None:
+        """Return where the variable is written that a name means at a place; None where that is
+        not known.
+        """
+        function = self.unit.function_around(name)
+        local = self._local_variable(name.text, function) if function is not None else None
+        if local is not None:
+            self._budget.charge(1 + len(local.uses))
+            return local.uses if len(local.declared) == 1 else None
+        variables = self._variables_at(name, name.text)
+        if len(variables) != 1:
+            return None
+        uses = self.unit.uses.get(name.text, ())
+        self._budget.charge(_OF_USE * len(uses))
+        return [use for use in uses if not self._is_of_another(use, variables[0])]
+
     def _value_of_local(self, node: CppNode, local: "_LocalVariable") -> CppValue:
         if len(local.declared) > 1:
             return not_known("the name is declared twice")
@@ -337,7 +353,7 @@ class CppEvaluation:
         is_local = self._local_variable(use.text, function) is not None
         if use.kind == "identifier" and is_local:
             return True
-        is_of_this = use.kind == "identifier" or _is_member_of_this(use)
+        is_of_this = use.kind == "identifier" or is_member_of_this(use)
         scopes = self.unit.scopes_of(function)
         found = self.unit.variables_named(use.text, scopes)
         return is_of_this and bool(found) and found[0] is not variable
@@ -366,7 +382,7 @@ class CppEvaluation:
         not known. `declaration` is that of a local one, whose methods may change it.
         """
         node = use
-        if _is_member_of_this(use) and use.parent is not None:
+        if is_member_of_this(use) and use.parent is not None:
             node = use.parent
         parent = node.parent
         if parent is None:
@@ -519,7 +535,8 @@ def _is_statement(node: CppNode) -> bool:
     return not is_conditional(node, above)
 
 
-def _is_member_of_this(use: CppNode) -> bool:
+def is_member_of_this(use: CppNode) -> bool:
+    """Return whether a name is that of a member in `this->name`."""
     parent = use.parent
     if parent is None or parent.kind != "field_expression" or use.field != "field":
         return False

@@ -168,7 +168,7 @@ class _Reader:
             yield from _inside(node.child("body"), place)
         elif node.kind == "template_declaration":
             yield from _inside(node, place._replace(is_template=True))
-        elif node.kind == "ERROR" or (node.kind in CONDITIONS and not _is_guard(node)):
+        elif node.kind == "ERROR" or (node.kind in CONDITIONS and not is_guard(node)):
             yield from _inside(node, place._replace(is_conditional=True))
         elif node.kind in CONDITIONS:
             yield from _inside(node, place)
@@ -281,7 +281,7 @@ def _inside(node: CppNode | None, place: _Around) -> Iterator[tuple[CppNode, _Ar
         yield child, place
 
 
-def _is_guard(node: CppNode) -> bool:
+def is_guard(node: CppNode) -> bool:
     """Return whether a condition only prevents that a header is read twice."""
     name = node.child("name")
     is_outermost = node.parent is not None and node.parent.parent is None
@@ -319,7 +319,8 @@ def is_argument(node: CppNode) -> bool:
     parameter: in a function, `Type name(argument);`.
     """
     parent = node.parent
-    if node.kind != "type_identifier" or parent is None or parent.kind != "parameter_declaration":
+    is_name = node.kind in ("type_identifier", "qualified_identifier")
+    if not is_name or parent is None or parent.kind != "parameter_declaration":
         return False
     around = list(islice(node.ancestors(), 5))
     return len(around) == 5 and around[4].kind == "compound_statement" and len(parent.children) == 1

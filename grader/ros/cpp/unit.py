@@ -12,6 +12,7 @@ from grader.ros.cpp.declarations import (
     CppFunction,
     CppMacro,
     CppVariable,
+    is_guard,
     plain_name,
 )
 from grader.ros.cpp.syntax import CppNode, CppSyntax
@@ -176,7 +177,7 @@ def is_conditional(node: CppNode, until: CppNode) -> bool:
     for around in node.ancestors():
         if around is until:
             return False
-        if around.kind in CONDITIONS:
+        if around.kind in CONDITIONS and not is_guard(around):
             return True
     return False
 

@@ -32,17 +32,20 @@ from grader.ros.known.known import rclcpp_words
 from grader.ros.package.cpp_faults import cpp_faults
 from grader.ros.package.cpp_files import CompiledTarget, CppFiles
 from grader.ros.package.cpp_frames import frames_in
+from grader.ros.package.cpp_message_content import CppContentReader
 from grader.ros.package.cpp_message_uses import cpp_field_uses
 from grader.ros.package.node_facts import (
     CodeFault,
     Doubt,
     Endpoint,
     FieldUse,
+    ImageEncoding,
     NodeFacts,
     NodeFrame,
     NodeParameter,
     NodeProgram,
     PackageNodes,
+    SynchronisedType,
     Timer,
 )
 from grader.ros.package.package import Package
@@ -52,11 +55,16 @@ from grader.ros.package.rclcpp_calls import (
     METHODS,
     endpoint_of,
     facts_of_method,
+    filter_subscription,
+    message_type,
 )
 from grader.ros.python.budget import Budget, OutOfBudget
 
 _SETTING = {"get_parameter": 1, "get_parameter_or": 1}
 _REGISTERED = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(\s*([\w:]+)\s*\)")
+_SUBSCRIBER = "message_filters::Subscriber"
+_FILTER = re.compile(r"(?P<class>[\w:]*\bSubscriber)\s*<\s*(?P<type>[\w:]+)\s*[,>]")
+_LISTS = ("argument_list", "initializer_list")
 _OF_NODE = 20  # parts of a class that may be that of a node
 _SELF = ("shared_from_this", "weak_from_this", "get_node_base_interface")
 
@@ -88,6 +96,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
     faults: dict[CodeFault, None] = {}
     loose_frames: dict[NodeFrame, None] = {}
     field_uses: dict[FieldUse, None] = {}
+    synchronised: dict[SynchronisedType, None] = {}
     is_loose, files = False, CppFiles(package)
     try:
         for compiled in files.compiled:
@@ -99,6 +108,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
             faults |= dict.fromkeys((*target.faults(), *target.unregistered(package)))
             loose_frames |= dict.fromkeys(target.loose_frames)
             field_uses |= dict.fromkeys(target.field_uses)
+            synchronised |= dict.fromkeys(target.content.synchronised_types())
             is_loose = is_loose or target.has_loose_declarations
     except OutOfBudget:
         start = Location(package.path("CMakeLists.txt"), 1, 1)
@@ -112,6 +122,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
         faults=tuple(faults),
         loose_frames=tuple(loose_frames),
         field_uses=tuple(field_uses),
+        synchronised=tuple(synchronised),
         texts=files.texts_with("package://"),
         cpp_files=files.read_paths,
     )
@@ -124,6 +135,7 @@ class _Target:
         self._compiled, self._unit, self._budget = compiled, compiled.unit, budget
         interface = LibraryCalls(rclcpp_words("reading"), _SETTING)
         self._evaluation = CppEvaluation(self._unit, interface, budget)
+        self.content = CppContentReader(self._unit, self._evaluation, budget)
         self.has_loose_declarations = False
         self.doubts: list[Doubt] = []
         self.loose_frames: list[NodeFrame] = []
@@ -386,9 +398,53 @@ class _Target:
         """Add that something is given the node itself, which may declare or open more."""
         if owner not in self._facts:
             return
+        subscription = self._subscription_of_filter(node)
+        if subscription is not None:
+            self._facts[owner].append(subscription)
+            return
         name = taker_of(node)
         if name is not None and not _is_harmless(name):
             self._facts[owner].append(Doubt(f"{name} is given the node", node.location))
+
+    def _subscription_of_filter(self, node: CppNode) -> Endpoint | None:
+        """Return the subscription of a filter of message_filters that is given a node; None where
+        something else is.
+        """
+        given = node.parent
+        taker = given.parent if given is not None and given.kind in _LISTS else None
+        function = self._unit.function_around(node)
+        if given is None or taker is None or function is None:
+            return None
+        scopes = self._unit.scopes_of(function)
+        match = _FILTER.search(self._type_given(taker, scopes))
+        arguments = [it for it in given.children if it.kind != "comment"]
+        if match is None or arguments[:1] != [node]:
+            return None
+        if _SUBSCRIBER not in self._unit.meanings(match["class"], scopes):
+            return None
+        type_name = message_type(match["type"], self._unit, scopes)
+        values = [self._evaluation.value_of(it) for it in arguments]
+        return filter_subscription(type_name, values, taker.location)
+
+    def _type_given(self, taker: CppNode, scopes: Sequence[str]) -> str:
+        """Return the type, as it is written, of what gets the arguments of a call, of an
+        initializer or of a declaration; empty where it is not known.
+        """
+        name: CppNode | None = None
+        if taker.kind == "call_expression" and called_name(taker) == "subscribe":
+            called = taker.child("function")
+            owner = called.child("argument") if called is not None else None
+            is_member = owner is not None and owner.kind == "field_expression"
+            name = owner.child("field") if owner is not None and is_member else owner
+        elif taker.kind == "field_initializer":
+            name = taker.children[0]
+        elif taker.kind == "init_declarator" and taker.parent is not None:
+            kind = taker.parent.child("type")
+            return kind.text if kind is not None else ""
+        else:
+            return class_written(taker)
+        variables = self._unit.variables_named(name.text, scopes) if name is not None else ()
+        return variables[0].type if len(variables) == 1 else ""
 
     # --- Results
     # ----------------------------------------------------------------------
@@ -413,7 +469,8 @@ class _Target:
         for fact in self._facts[key]:
             match fact:
                 case Endpoint():
-                    endpoints.append(fact)
+                    known = self._encodings.get(fact.location, ())
+                    endpoints.append(fact._replace(encodings=known))
                 case NodeParameter():
                     parameters.append(fact)
                 case Timer():
@@ -437,6 +494,11 @@ class _Target:
             doubts=tuple(dict.fromkeys(doubts)),
             frames=tuple(frames),
         )
+
+    @cached_property
+    def _encodings(self) -> Mapping[Location, tuple[ImageEncoding, ...]]:
+        """The encodings of images, by the places of the endpoints that send or get them."""
+        return self.content.encodings()
 
     def _name_of_object(self, node: CppNode) -> str | None:
         """Return the name that a node of rclcpp's own class is given."""

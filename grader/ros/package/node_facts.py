@@ -126,11 +126,15 @@ class FieldUse(NamedTuple):
 
 
 class SynchronisedType(NamedTuple):
-    """A type of messages whose times a synchroniser compares, and the class of that."""
+    """A type of messages whose times a synchroniser compares, and the class of that.
+
+    `together` are the types of all its messages, for a class of C++ that takes any.
+    """
 
     type: str
     by: str
     location: Location
+    together: tuple[str, ...] = ()
 
 
 _CodeRule = Literal[

@@ -63,7 +63,10 @@ _VALUES = {
     "transientlocal": "transient_local",
     "volatile": "volatile",
 }
-_WITHOUT_EFFECT = ("avoid_ros_namespace_conventions", "deadline", "lifespan", "liveliness")
+_WITHOUT_EFFECT = (
+    *("avoid_ros_namespace_conventions", "deadline", "lifespan", "liveliness"),
+    "get_rmw_qos_profile",
+)
 _VALUE_METHODS = frozenset(
     {
         *("as_string", "as_double", "as_int", "as_bool", "as_string_array", "get_value", "get"),
@@ -82,11 +85,24 @@ def endpoint_of(
     qos = Qos()
     if kind in ("publisher", "subscription"):
         qos = _qos(call.argument(1))
-    kind_of_message = _message_type(call.types[0], unit, scopes) if call.types else None
+    kind_of_message = message_type(call.types[0], unit, scopes) if call.types else None
     return Endpoint(kind, kind_of_message, name, call.node.location, qos, parts)
 
 
-def _message_type(written: str, unit: CppUnit, scopes: Sequence[str]) -> str | None:
+def filter_subscription(
+    type_name: str | None, given: Sequence[CppValue], at: Location
+) -> Endpoint | None:
+    """Return the subscription of a filter that is given a node, a topic and perhaps a QoS; None
+    where it is given something else.
+    """
+    if len(given) not in (2, 3, 4):
+        return None
+    name, parts = name_of(given[1])
+    qos = _qos(given[2]) if len(given) > 2 else _preset("rmw_qos_profile_default")
+    return Endpoint("subscription", type_name, name, at, qos, parts)
+
+
+def message_type(written: str, unit: CppUnit, scopes: Sequence[str]) -> str | None:
     """Return the full name of a message, service or action; None for one that is not known."""
     found = set()
     for meaning in unit.meanings(plain(written), scopes):

@@ -3,7 +3,7 @@ compares times, or images with an encoding that cannot be converted; and queues 
 """
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from grader.base.text import quoted
 from grader.ros.interfaces.known_interfaces import known_interfaces
@@ -16,6 +16,12 @@ from grader.ros.workspace.workspace import Workspace
 _HEADER = "header"
 # An encoding without colours: the type of a channel, and how many there are.
 _PLAIN_ENCODING = re.compile(r"(?:8U|8S|16U|16S|32S|32F|64F)(?:C(\d{1,2}))?")
+# What the synchronisers of Python do with messages without a header. Those of C++ take a time of 0:
+# that is one of another clock up to Jazzy, which rclcpp does not compare (message_traits.h).
+_EFFECTS = {
+    "TimeSynchronizer": "stops at messages",
+    "ApproximateTimeSynchronizer": "drops messages without allow_headerless",
+}
 _ENDS = ("publisher", "subscription")
 
 
@@ -32,10 +38,9 @@ def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
     for each in workspace.nodes_by_package[package].synchronised:
         if _has_header(workspace, each.type) is not False:
             continue
-        if each.by == "TimeSynchronizer":
-            effect = "stops at messages"
-        else:
-            effect = "drops messages without allow_headerless"
+        if each.together and not any(_has_header(workspace, it) for it in each.together):
+            continue  # all have the same time in C++, and each pair fits
+        effect = _EFFECTS.get(each.by, "takes 0 in its place, and stops or finds no right pairs")
         message = f"{each.type} has no header with a time: {each.by} {effect}"
         yield warning("messages", message, each.location)
 
@@ -81,12 +86,20 @@ def _other_encodings(workspace: Workspace) -> Iterator[Fact]:
         if not publishers or not all(publisher.encodings for publisher in publishers):
             continue
         made = [encoding for publisher in publishers for encoding in publisher.encodings]
-        asked = [encoding for each in subscriptions for encoding in each.encodings]
-        workspace.charge(len(made) * len(asked))
-        for encoding in asked:
-            yield Compared("messages")
-            if all(_is_lost(each.name, encoding.name) for each in made):
-                yield _cannot_convert(key[1], made[0], encoding)
+        for subscription in subscriptions:
+            workspace.charge(len(made) * len(subscription.encodings))
+            yield from _not_converted(key[1], made, subscription.encodings)
+
+
+def _not_converted(
+    topic: str, made: Sequence[ImageEncoding], asked: Sequence[ImageEncoding]
+) -> Iterator[Fact]:
+    """Yield the conversions of a callback that fail, unless it has one that may succeed."""
+    are_lost = all(_is_lost(each.name, encoding.name) for each in made for encoding in asked)
+    for encoding in asked:
+        yield Compared("messages")
+        if are_lost:
+            yield _cannot_convert(topic, made[0], encoding)
 
 
 def _cannot_convert(topic: str, made: ImageEncoding, asked: ImageEncoding) -> Mismatch:

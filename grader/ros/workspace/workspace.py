@@ -787,6 +787,7 @@ def _nodes_of(package: Package) -> PackageNodes:
         imports=(*found.imports, *compiled.imports),
         field_uses=(*found.field_uses, *compiled.field_uses),
         faults=(*found.faults, *compiled.faults),
+        synchronised=(*found.synchronised, *compiled.synchronised),
         loose_frames=compiled.loose_frames,
         texts=compiled.texts,
         cpp_files=compiled.cpp_files,
