@@ -57,6 +57,13 @@ def sections_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[_Section
     yield from _sections_below(node, keys, Visits(), {})
 
 
+def keys_of_sections(node: YamlNode) -> dict[str, tuple[str, ...]]:
+    """Return the keys of the sections of a parameter file by the full names of their nodes:
+    /ns/node.
+    """
+    return {f"/{'/'.join(keys).strip('/')}": keys for keys, _ in sections_in(node) if keys}
+
+
 def _sections_below(
     node: YamlNode, keys: tuple[str, ...], visits: Visits, nested: dict[YamlNode, YamlNode]
 ) -> Iterator[_Section]:

@@ -60,7 +60,15 @@ def _add_components(
         plugin = _text_if_known(item.kwargs["plugin"], context, item)
         at = findings.locate(item.at)
         findings.components.append(
-            LoadedComponent(package, plugin, is_loaded, at, loaded_at, container)
+            LoadedComponent(
+                package,
+                plugin,
+                is_loaded,
+                at,
+                loaded_at,
+                container,
+                has_parameters=bool(item.kwargs.get("parameters")),
+            )
         )
 
 

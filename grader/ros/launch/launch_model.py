@@ -248,6 +248,7 @@ class LoadedComponent(NamedTuple):
     location: Location
     loaded_at: Location  # by which action
     container: str | None = ""
+    has_parameters: bool = False  # perhaps from files, which are not evaluated
 
 
 class Container(NamedTuple):

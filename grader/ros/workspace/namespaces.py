@@ -1,11 +1,11 @@
 """Namespaces: parameter files whose keys are of another namespace than the node that gets them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
-from grader.ros.config.yaml_values import sections_in
+from grader.ros.config.yaml_values import keys_of_sections
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import is_key_of
@@ -20,7 +20,7 @@ def namespace_facts(workspace: Workspace) -> Iterator[Fact]:
     for path, nodes in workspace.parameter_files.items():
         tree = workspace.yaml_files.get(path)
         if isinstance(tree, YamlNode):
-            keys = {f"/{'/'.join(keys).strip('/')}": keys for keys, _ in sections_in(tree) if keys}
+            keys = keys_of_sections(tree)
             said: set[Location] = set()  # of several nodes that do not get a section, the first
             for node in nodes:
                 workspace.charge(1 + len(keys))
@@ -32,7 +32,7 @@ def namespace_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _other_namespace(
-    workspace: Workspace, tree: YamlNode, node: StartedNode, keys: dict[str, tuple[str, ...]]
+    workspace: Workspace, tree: YamlNode, node: StartedNode, keys: Mapping[str, tuple[str, ...]]
 ) -> Iterator[Compared | Mismatch]:
     name = workspace.name_of(node)
     if not name or node.namespace is None or node.package in known()["containers"]:

@@ -14,6 +14,7 @@ from grader.ros.config.yaml_values import (
     PARAMETERS,
     is_misspelt_key,
     is_parameters,
+    keys_of_sections,
     sections_in,
     values_in,
 )
@@ -37,6 +38,7 @@ from grader.ros.workspace.names import (
     cost_of_guess,
 )
 from grader.ros.workspace.parameter_rules import type_in_words
+from grader.ros.workspace.renamed_nodes import key_of_program_name
 from grader.ros.workspace.workspace import Workspace
 
 _OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
@@ -146,7 +148,11 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
     if not lacking or not unread:
         return
     is_passed = _is_passed_to_include(workspace, path)
+    keys = keys_of_sections(tree)
     for node, name in zip(nodes, known_names, strict=True):
+        workspace.charge(len(keys))
+        if key_of_program_name(workspace, node, keys) is not None:
+            continue  # that is said for the name of its program
         workspace.charge(cost_of_guess(len(unread)))
         meant = near(name, unread)
         is_known = (
@@ -273,19 +279,26 @@ def _given(
     if workspace.name_of(node) is None and any(it.path for it in node.parameters or ()):
         yield Undecided("parameters", f"the name of {node.executable} is computed")
         return
-    given = workspace.read_given(package, node, own_node.name or "")
+    given = workspace.read_given(package, node, workspace.name_of(node) or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
-    # What a file gives to every node need not be declared by this one.
-    for_all = workspace.wildcard_places(node)
+    # What a file gives to every node, or to another of the same name, need not be declared by this.
+    shared = {*workspace.wildcard_places(node), *_places_of_others(workspace, node)}
     for name, value in given.values.items():
-        if value.location not in for_all and not name.startswith("qos_overrides."):
+        if value.location not in shared and not name.startswith("qos_overrides."):
             said = f"the node {workspace.name_of(node) or node.executable!r}"
             yield Use("parameter", name, value.named_at or value.location, said, owner)
     yield from _types_given(own_node, given.values)
-    has_own_name = node.node_name in ("", own_node.name)
-    if not given.unknown and node.arguments == () and has_own_name:
+    if not given.unknown and node.arguments == () and workspace.name_of(node) is not None:
         yield from _not_given(workspace, node, own_node, given.values)
+
+
+def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Location]:
+    """Yield the places of what nodes of other programs, and controllers, of the same name get."""
+    for given in workspace.parameter_owners.get(workspace.name_of(node) or "", ()):
+        if (given.node.package, given.node.executable) != (node.package, node.executable):
+            workspace.charge(len(given.values))
+            yield from (value.location for value in given.values.values())
 
 
 def _not_given(

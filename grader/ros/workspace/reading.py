@@ -44,6 +44,7 @@ from grader.ros.workspace.programs import program_facts
 from grader.ros.workspace.published_transforms import transform_facts
 from grader.ros.workspace.rate_values import rate_facts
 from grader.ros.workspace.received_messages import received_message_facts
+from grader.ros.workspace.renamed_nodes import renamed_node_facts
 from grader.ros.workspace.services import service_facts
 from grader.ros.workspace.spawners import spawner_facts
 from grader.ros.workspace.srdf import srdf_facts
@@ -80,6 +81,7 @@ _READERS = (
     lookup_facts,
     companion_facts,
     namespace_facts,
+    renamed_node_facts,
     machine_facts,
     topic_wiring_facts,
     received_message_facts,

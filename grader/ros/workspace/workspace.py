@@ -412,6 +412,10 @@ class Workspace:
         """Return the name that a node has, without its namespace; None where it is not known."""
         if node.node_name is None or node.node_name:
             return node.node_name
+        return self.name_in_program(node)
+
+    def name_in_program(self, node: StartedNode) -> str | None:
+        """Return the name that the program of a node gives it; None where it is not known."""
         own = self.own_node(node)
         if own is not None:
             return own.name
@@ -480,11 +484,16 @@ class Workspace:
         """
         nodes: dict[str, list[StartedNode]] = {}
         for _, node in self.nodes:
-            for given in node.parameters or ():
-                path = self.source_of(given.path) if given.path and given.is_plain else None
-                if path is not None:
-                    nodes.setdefault(path, []).append(node)
+            for path in self.files_given(node):
+                nodes.setdefault(path, []).append(node)
         return nodes
+
+    def files_given(self, node: StartedNode) -> Iterator[str]:
+        """Yield the parameter files that a node is given, by their paths in the submission."""
+        for given in node.parameters or ():
+            path = self.source_of(given.path) if given.path and given.is_plain else None
+            if path is not None:
+                yield path
 
     @cached_property
     def parameter_owners(self) -> Mapping[str, list[NodeParameters]]:

@@ -1,0 +1,99 @@
+"""Renamed nodes: parameter files whose keys are the name that a program gives its node, where a
+launch file gives it another one.
+"""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+
+from grader.base.text import quoted
+from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.config.yaml_values import keys_of_sections
+from grader.ros.known.known import known
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.node_parameters import is_key_of
+from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections
+from grader.ros.workspace.workspace import Workspace
+
+_ANY_NAMES = ("*", "**")
+_Keys = Mapping[str, tuple[str, ...]]  # of the sections of a file, by the full names that they are
+
+
+def renamed_node_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the parameter files that have parameters of the name that a node has in its program
+    only: rcl compares the name that the launch file gives it, so the node gets none of them.
+    """
+    given: dict[tuple[str, int], list[StartedNode]] = {}
+    for launch, node in workspace.launched:
+        for path in dict.fromkeys(workspace.files_given(node)):
+            given.setdefault((path, launch), []).append(node)
+    # What components get is not evaluated; a container gives them the files that it gets itself.
+    components = [any(it.has_parameters for it in root.components) for _, root in workspace.roots]
+    for (path, launch), nodes in given.items():
+        tree, others = workspace.yaml_files.get(path), workspace.parameter_files[path]
+        workspace.charge(len(others))
+        has_container = any(node.package in known()["containers"] for node in others)
+        if not isinstance(tree, YamlNode) or components[launch] or has_container:
+            continue
+        elsewhere = _names_read(workspace, others)
+        if any(components):
+            elsewhere.add(None)
+        yield from _unread_sections(workspace, tree, nodes, elsewhere)
+
+
+def _unread_sections(
+    workspace: Workspace,
+    tree: YamlNode,
+    nodes: Sequence[StartedNode],
+    elsewhere: Collection[str | None],
+) -> Iterator[Compared | Mismatch]:
+    """Yield the sections that no node of a launch file gets, for each of its nodes that would get
+    one by the name of its program. One that gets other sections may lack what a node of any launch
+    file gets, of which `elsewhere` are the names.
+    """
+    keys = keys_of_sections(tree)
+    workspace.charge(len(nodes) * (1 + len(keys)))
+    read = _names_read(workspace, nodes)
+    unread = []
+    for node in nodes:
+        key = key_of_program_name(workspace, node, keys)
+        full = node.full_name(node.node_name or "")
+        names = elsewhere if any(is_key_of(it, full) for it in keys) else read
+        if key is not None and None not in names and key.rpartition("/")[2] not in names:
+            unread.append((node, key))
+    for node, key in unread:
+        yield Compared("parameters")
+        old, name, at = key.rpartition("/")[2], node.node_name or "", tree.key_location(*keys[key])
+        message = (
+            f"the node {name!r} gets nothing of {quoted(old)}, which is its name in its program "
+            f"only: write {quoted(name)}"
+        )
+        is_only_one = len(unread) == 1 and old not in elsewhere
+        either = corrections(old, at, name if is_only_one else None)
+        yield Mismatch("parameters", message, at, node.location, node.when is True, either)
+
+
+def _names_read(workspace: Workspace, nodes: Sequence[StartedNode]) -> set[str | None]:
+    """Return the names of nodes and of those that they make in their processes; with None where one
+    is not known.
+    """
+    names: set[str | None] = set()
+    for name in {workspace.name_of(node) for node in nodes}:
+        names |= {name, *workspace.children_of(name or "")}
+    return names
+
+
+def key_of_program_name(workspace: Workspace, node: StartedNode, keys: _Keys) -> str | None:
+    """Return the section that a node would get if it had the name of its program; None where there
+    is none, or one for the name that it has.
+    """
+    name, old = node.node_name, workspace.name_in_program(node)
+    if not name or not old or name == old or node.namespace is None:
+        return None
+    full, full_name = node.full_name(name), node.full_name(old)
+    found = None
+    for key in keys:
+        last = key.rpartition("/")[2]
+        if last == name or (last not in _ANY_NAMES and is_key_of(key, full)):
+            return None
+        if last == old and is_key_of(key, full_name):
+            found = key
+    return found
