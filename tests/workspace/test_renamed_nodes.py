@@ -131,6 +131,17 @@ CORRECT: list[tuple[str, list[Edit]]] = [
     ),
     ("a container", _given(_PILOT, _NODE + _CONTAINER)),
     ("a component", [*_given(_PILOT, _NODE + _COMPONENTS), *_IMPORTS]),
+    (
+        "another program of the same name that declares the parameter",
+        _given(_FRONT, _NODE + _NODE.replace("executable='pilot'", "executable='horn'")),
+    ),
+    (
+        "another program of the same name that is not known",
+        _given(
+            _FRONT.replace("speed", "sped"),
+            _NODE + _NODE.replace("'rover', executable='pilot'", "'halls', executable='hall'"),
+        ),
+    ),
     ("a parameter of the other section", _given(_PILOT.replace("speed", "sped") + _FRONT)),
 ]  # fmt: skip
 
@@ -139,6 +150,15 @@ CORRECT: list[tuple[str, list[Edit]]] = [
 def test_sections_that_a_renamed_node_may_get(edits: list[Edit]) -> None:
     """The node gets its section, or what it gets is not known."""
     assert [it for it in problems_of(*edits) if "REF004" in it] == []
+
+
+def test_a_parameter_that_no_program_of_a_name_declares() -> None:
+    """Each of the two is given it, and the place is the same."""
+    both = _NODE + _NODE.replace("executable='pilot'", "executable='horn'")
+    edits = _given(_FRONT.replace("speed", "sped"), both)
+    found = [it for it in problems_of(*edits) if "REF004" in it]
+    said = f"REF004 {_FILE}:3 the node 'front': there is no parameter 'sped'"
+    assert [it.partition(";")[0] for it in found] == [said, said]
 
 
 def test_a_value_that_a_renamed_node_gets() -> None:

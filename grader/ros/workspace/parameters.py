@@ -294,11 +294,20 @@ def _given(
 
 
 def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Location]:
-    """Yield the places of what nodes of other programs, and controllers, of the same name get."""
+    """Yield the places in files of what nodes of other programs, and controllers, of the same name
+    get, unless they certainly do not declare it.
+    """
     for given in workspace.parameter_owners.get(workspace.name_of(node) or "", ()):
-        if (given.node.package, given.node.executable) != (node.package, node.executable):
-            workspace.charge(len(given.values))
-            yield from (value.location for value in given.values.values())
+        if (given.node.package, given.node.executable) == (node.package, node.executable):
+            continue
+        workspace.charge(len(given.values))
+        other = workspace.own_node(given.node)
+        is_known = other is not None and not other.doubts
+        declared = {it.name for it in other.parameters} if other is not None else set()
+        for name, value in given.values.items():
+            may_be_declared = not is_known or not declared.isdisjoint({name, None})
+            if may_be_declared and value.location.path in workspace.yaml_files:
+                yield value.location
 
 
 def _not_given(

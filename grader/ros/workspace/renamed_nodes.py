@@ -26,15 +26,18 @@ def renamed_node_facts(workspace: Workspace) -> Iterator[Fact]:
         for path in dict.fromkeys(workspace.files_given(node)):
             given.setdefault((path, launch), []).append(node)
     # What components get is not evaluated; a container gives them the files that it gets itself.
-    components = [any(it.has_parameters for it in root.components) for _, root in workspace.roots]
+    with_components: set[int] = set()
+    for launch, (_, root) in enumerate(workspace.roots):
+        if any(component.has_parameters for component in root.components):
+            with_components.add(launch)
     for (path, launch), nodes in given.items():
         tree, others = workspace.yaml_files.get(path), workspace.parameter_files[path]
         workspace.charge(len(others))
         has_container = any(node.package in known()["containers"] for node in others)
-        if not isinstance(tree, YamlNode) or components[launch] or has_container:
+        if not isinstance(tree, YamlNode) or launch in with_components or has_container:
             continue
         elsewhere = _names_read(workspace, others)
-        if any(components):
+        if with_components:
             elsewhere.add(None)
         yield from _unread_sections(workspace, tree, nodes, elsewhere)
 
