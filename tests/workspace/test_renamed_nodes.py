@@ -100,6 +100,22 @@ _IMPORTS: list[Edit] = [
     (LAUNCH, "import Node\n", "import ComposableNodeContainer, Node\n"),
     (LAUNCH, "from launch_ros.substitutions", "from launch_ros.descriptions import ComposableNode\nfrom launch_ros.substitutions"),
 ]  # fmt: skip
+_XML = "launch/second.launch.xml"
+_XML_PARAMETERS = '<param from="$(find-pkg-share rover)/config/pilot.yaml"/>'
+_XML_NODE = f'<node pkg="rover" exec="pilot" name="front">{_XML_PARAMETERS}</node>'
+_XML_COMPONENTS = (
+    '<node_container pkg="rclcpp_components" exec="component_container" name="hall" namespace="">'
+    f'<composable_node pkg="halls" plugin="halls::Hall" name="pilot">{_XML_PARAMETERS}'
+    "</composable_node></node_container>"
+)
+
+
+def _xml(text: str) -> list[Edit]:
+    """Return a launch file in XML as the only one that starts the pilot."""
+    text = f"<launch>{text}</launch>"
+    return [*_given(_PILOT, MORE), (_XML, text, text)]
+
+
 _CONTAINER = (
     f"Node(package='rclcpp_components', executable='component_container', parameters=[{_GIVEN}]),"
 )
@@ -130,6 +146,11 @@ CORRECT: list[tuple[str, list[Edit]]] = [
         [*_given(_PILOT + _ALL, _COMPONENTS), *_IMPORTS, _second(_NODE)],
     ),
     ("a container", _given(_PILOT, _NODE + _CONTAINER)),
+    ("a component in XML", _xml(_XML_NODE + _XML_COMPONENTS)),
+    (
+        "a name that is an argument in XML",
+        _xml(f'<arg name="name"/>{_XML_NODE.replace("front", "$(var name)")}'),
+    ),
     ("a component", [*_given(_PILOT, _NODE + _COMPONENTS), *_IMPORTS]),
     (
         "another program of the same name that declares the parameter",
@@ -150,6 +171,11 @@ CORRECT: list[tuple[str, list[Edit]]] = [
 def test_sections_that_a_renamed_node_may_get(edits: list[Edit]) -> None:
     """The node gets its section, or what it gets is not known."""
     assert [it for it in problems_of(*edits) if "REF004" in it] == []
+
+
+def test_a_node_that_a_launch_file_in_xml_renames() -> None:
+    """Its sections are those of the name in <node>."""
+    assert problems_of(*_xml(_XML_NODE)) == [_said("front")]
 
 
 def test_a_parameter_that_no_program_of_a_name_declares() -> None:

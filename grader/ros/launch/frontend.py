@@ -29,6 +29,7 @@ from grader.ros.python.values import (
     EvaluationFails,
     EvaluationSignal,
     Undetermined,
+    Unknown,
     Value,
 )
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile
@@ -519,7 +520,9 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
 
 
 def _read_component(entity: _Entity) -> Call:
-    """Return a component without its parameters and remappings. Raises EvaluationSignal."""
+    """Return a component, whose parameters are not evaluated, without its remappings. Raises
+    EvaluationSignal.
+    """
     given = _read_attributes(entity, _NESTED[entity.kind])
     condition = _take_condition(given, entity)
     kwargs: dict[str, Value] = {}
@@ -527,7 +530,11 @@ def _read_component(entity: _Entity) -> Call:
         kwargs[_ARGUMENTS.get(name, name)] = _read_argument(entity, name, value)
     if condition is not None:
         kwargs["condition"] = condition
-    return _checked_call(Call(COMPONENT, [], kwargs, entity.place("plugin")))
+    component = _checked_call(Call(COMPONENT, [], kwargs, entity.place("plugin")))
+    if "param" in entity.nested:
+        unknown = Unknown("parameters of components are not evaluated", entity.at)
+        component.kwargs["parameters"] = unknown  # the check would leave out the whole component
+    return component
 
 
 def _read_pairs(elements: list[_Entity], *names: str) -> list[tuple[list[Value], ...]]:
