@@ -597,28 +597,38 @@ class _Module:
             ):
                 self._facts[part.of] += self._read_init(part, call, owner)
             case ast.Attribute(value=owner, attr=method) if method in _METHODS:
-                at = self._receiver(part, owner)
-                facts = self._facts.get(at) if at is not None else None
-                if facts is None:
-                    self.has_loose_declarations |= method in _DECLARES
-                    reason = f"the node of this {method}() is not known"
-                    self.doubts.append(Doubt(reason, self._at(call)))
-                else:
-                    facts += self._read_method(part, call, method)
+                self._read_method_of(self._receiver(part, owner), part, call, method)
             case ast.Attribute(attr=method) if method in _LOOKUPS and part.of in self._facts:
                 self._facts[part.of] += self._looked_up(part, call, _LOOKUPS[method])
             case function:
-                name = (dotted(function) or "this call").rpartition(".")[2]
-                for argument in (*call.args, *(keyword.value for keyword in call.keywords)):
-                    at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
-                    if at is None:
-                        continue
-                    if self._called(part, call) == SUBSCRIBER:
-                        self._facts[at] += self._filtered(part, call)
-                    elif name in _ACTIONS:
-                        self._facts[at] += self._action(part, call, _ACTIONS[name])
-                    elif name not in _HARMLESS:
-                        self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
+                self._read_given_nodes(part, call, dotted(function) or "this call")
+
+    def _read_method_of(
+        self, at: Location | None, part: CodePart, call: ast.Call, method: str
+    ) -> None:
+        """Add what the call of a method declares or opens to the facts of the node at a place."""
+        facts = self._facts.get(at) if at is not None else None
+        if facts is not None:
+            facts += self._read_method(part, call, method)
+            return
+        self.has_loose_declarations |= method in _DECLARES
+        reason = f"the node of this {method}() is not known"
+        self.doubts.append(Doubt(reason, self._at(call)))
+
+    def _read_given_nodes(self, part: CodePart, call: ast.Call, function: str) -> None:
+        """Add what a call makes of the nodes that it is given."""
+        name = function.rpartition(".")[2]
+        arguments = [*call.args, *(keyword.value for keyword in call.keywords)]
+        for argument in arguments:
+            at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
+            if at is None:
+                continue
+            if self._called(part, call) == SUBSCRIBER:
+                self._facts[at] += self._filtered(part, call)
+            elif name in _ACTIONS:
+                self._facts[at] += self._action(part, call, _ACTIONS[name])
+            elif name not in _HARMLESS:
+                self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
 
     def _looked_up(self, part: CodePart, call: ast.Call, second: int) -> Iterator[NodeFrame]:
         """Yield the frames between which a call looks up the transform."""
