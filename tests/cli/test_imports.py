@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -52,18 +53,29 @@ UNUSED = {
 )
 def test_a_cold_grading_imports_few_modules(options: list[str], more: set[str]) -> None:
     """A single URDF without mistakes is graded without what only others need."""
+    modules = _imported("grade", URDF, *options)
+    assert not [name for name in UNUSED | more if name in modules]
+
+
+def test_a_class_without_reports_imports_no_numpy(tmp_path: Path) -> None:
+    """Only workers, and the small pictures of the class's page, need it."""
+    folder = ROOT / "submissions/class/files"
+    assert "numpy" not in _imported("batch", str(folder), "--gradebook", str(tmp_path / "book"))
+
+
+def _imported(*arguments: str) -> list[str]:
+    """Return the modules that a command of the grader imports."""
     variables = {
         name: text
         for name, text in os.environ.items()
         if not name.startswith(("COV_", "COVERAGE", "GITHUB_"))
     }
     done = subprocess.run(
-        [sys.executable, "-P", "-c", _PROGRAM, "grade", URDF, *options],
+        [sys.executable, "-P", "-c", _PROGRAM, *arguments],
         cwd=ROOT,
         check=True,
         capture_output=True,
         text=True,
         env={**variables, "PYTHONPATH": str(ROOT)},
     )
-    modules = done.stderr.split()
-    assert not [name for name in UNUSED | more if name in modules]
+    return done.stderr.split()

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 from urllib.parse import quote
 
 from grader import __version__
@@ -33,13 +33,14 @@ from grader.lab.checks.outcome import Outcome
 from grader.lab.grading.grade import grade as grade_submission
 from grader.lab.grading.report import Grade, Report, Result
 from grader.lab.submission.submission import Submission
-from grader.report.drawing.picture import picture_of
-from grader.report.drawing.still import Still, still_of
 from grader.report.formats import Format, render
 from grader.report.writing import Terminal, make_folder, refuse_symlinks, save
 from grader.ros.package.robot_file import Absent
 from grader.workers.pool import Processes, WorkerError, processors
 from grader.workers.queue import Progress, Queue
+
+if TYPE_CHECKING:
+    from grader.report.drawing.still import Still
 
 # No device of Windows, no class's page, and nothing that ends like a name with a digest.
 _SAFE = re.compile(
@@ -75,7 +76,7 @@ class _Done(NamedTuple):
     hints: str = ""  # their key
     new_hints: Mapping[str, Mapping[str, Any]] = {}
     is_final: bool = False  # whether it would be the same in the next run
-    still: Still = ()  # the small picture of the robot for the class's page
+    still: "Still" = ()  # the small picture of the robot for the class's page
 
 
 class _ReportTask(NamedTuple):
@@ -320,12 +321,18 @@ def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[_Done]:
             save(Path(run.folder, f"{task.name}.{kind.ending}"), render(report, kind))
         # Also those of an earlier task, which may have failed to write its report.
         new = {kept.used: kept.new[kept.used]} if kept.used in kept.new else {}
-        still: Still = ()
-        if Format.HTML in run.formats:
-            picture = picture_of(report)
-            still = still_of(picture.scene) if picture is not None else ()
+        still = _still_of(report) if Format.HTML in run.formats else ()
         done.append(_Done(task.key, "", kept.used, new, not kept.is_lost, still))
     return done
+
+
+def _still_of(report: Report) -> "Still":
+    """Return the small picture of the robot of a report."""
+    from grader.report.drawing.picture import picture_of  # late: only the class's page needs numpy
+    from grader.report.drawing.still import still_of
+
+    picture = picture_of(report)
+    return still_of(picture.scene) if picture is not None else ()
 
 
 @lru_cache(maxsize=1)
@@ -355,7 +362,7 @@ def _with_digest(key: str) -> str:
 
 
 def write_class_page(
-    book: Gradebook, folder: Path, pages: Mapping[str, str], stills: Mapping[str, Still] = {}
+    book: Gradebook, folder: Path, pages: Mapping[str, str], stills: Mapping[str, "Still"] = {}
 ) -> None:
     """Write the class's page into a folder, with links to the pages of students, by their names
     from there, and small pictures of their robots.

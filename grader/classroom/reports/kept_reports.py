@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping
 from contextlib import suppress
 from decimal import Decimal
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from grader.base.errors import InputError, OutOfTime
 from grader.base.source import Edit, Location
@@ -20,8 +20,10 @@ from grader.lab.grading.report import Hint, Report
 from grader.lab.hints.hinting import hinted
 from grader.lab.submission.edited import content
 from grader.lab.submission.submission import Submission
-from grader.report.drawing.still import Still
 from grader.report.writing import save_bytes
+
+if TYPE_CHECKING:
+    from grader.report.drawing.still import Still
 
 _FILE = "reports.jsonl"
 _PRIVATE = 0o600
@@ -36,7 +38,7 @@ class WrittenReport(NamedTuple):
     shows: str
     sha256: str
     hints: str
-    still: Still = ()
+    still: "Still" = ()
 
 
 class KeptReports:
