@@ -3,6 +3,7 @@
 import pytest
 
 from grader.lab.grading.grade import grade
+from grader.lab.hints import search
 from grader.lab.hints.hinting import hinted
 from grader.lab.submission.opening import read_submission
 from grader.report.content import failures
@@ -26,6 +27,31 @@ def test_an_earlier_edit_is_named_by_the_entry_that_shows_it(name: str) -> None:
     assert references
     assert named
     assert named <= {failure.result.criterion.id for failure in found if not failure.first}
+
+
+_SAMPLE = SAMPLES["wheel-axes-along-x"]
+_FORWARD = "left-wheel-forward", "right-wheel-forward"
+
+
+def _edits_named() -> list[str]:
+    report = hinted(_SAMPLE.grade(), _SAMPLE.open(), "edit").report
+    hints = [result.hint for result in report.results if result.criterion.id in _FORWARD]
+    return [hint.message for hint in hints if hint is not None]
+
+
+def test_a_criterion_names_the_edits_that_it_needs() -> None:
+    """A wheel needs the edits of its own joint, not those of the other wheel."""
+    assert _edits_named() == [
+        "Make the edits for left-wheel-placed and left-wheel-spins.",
+        "Make the edits for right-wheel-placed and right-wheel-spins.",
+    ]
+
+
+def test_all_edits_are_named_where_no_trials_are_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Which of them are needed is not known then, and all are enough."""
+    monkeypatch.setattr(search, "_MAX_WITHOUT", 0)
+    every = "left-wheel-placed, right-wheel-placed, left-wheel-spins and right-wheel-spins"
+    assert _edits_named() == [f"Make the edits for {every}."] * 2
 
 
 def _names(text: str, criterion: str) -> bool:

@@ -43,8 +43,8 @@ def test_hints_gain_what_they_promise_and_lose_nothing(data: bytes) -> None:
     before = graded(submission)
     search = search_for(submission, before)
     for index, found in enumerate([*search.found, None]):
-        earlier = search.found[:index] if found is None or found.is_late else []
-        needed = tuple(edit for it in earlier for edit in it.edits)
+        earlier = [it.edits for it in search.found] if found is None else found.after
+        needed = tuple(edit for edits in earlier for edit in edits)
         edits = (*needed, *(found.edits if found is not None else ()))
         gains = found.gains if found is not None else {}
         files = edited_files(submission, edits) or {}

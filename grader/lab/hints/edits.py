@@ -54,7 +54,8 @@ class FoundHint(NamedTuple):
     proposal: Proposal
     gains: Mapping[str, Decimal]  # the criteria that pass with it, each with the points
     certainty: Certainty = "preferred"
-    is_late: bool = False  # whether the gains are those after the edits of earlier hints
+    # the edits of the earlier hints that it needs: the gains are those after them
+    after: tuple[Edits, ...] = ()
     words: str = ""  # that say what is missing, for which there is no edit
     # another edit that cannot be told apart: both are named, neither is made
     alternative: Proposal | None = None

@@ -1,6 +1,6 @@
 """Reports with hints, in the words of each level, and submissions with the edits of all hints."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from functools import partial
@@ -79,10 +79,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
             continue  # the message says what is missing, and the student writes it
         with trials.isolated():
             entry = entries.get(found.edits, name)
-            earlier: tuple[str, ...] = ()
-            if found.is_late:
-                found_before = showing[: showing.index(found)]
-                earlier = tuple(dict.fromkeys(entries[before.edits] for before in found_before))
+            earlier = _entries_of(found.after, entries)
             # A hint that is shown at a skipped criterion is not where a reader would look for it.
             named = [it for it in earlier if results[it].outcome.status == "failed"]
             in_order = _first_at(found, results[entry].outcome.location)
@@ -95,9 +92,9 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
             hint = _hint(in_order, text, entry, results[name], keeps_edits=keeps_edits)
             hints[name] = hint._replace(after=earlier)
     if level == "edit":
-        edited = list(dict.fromkeys(entries.values()))
-        passing = [name for name in costs if name not in hints and name not in edited]
-        hints |= _hints_of_others([results[it] for it in passing], search.results, edited)
+        others = [name for name in costs if name not in hints and name not in entries.values()]
+        with trials.isolated():
+            hints |= _hints_of_others([results[name] for name in others], search, entries)
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete)
     edits: list[Edit] = []
@@ -107,28 +104,35 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
 
 
 def _hints_of_others(
-    results: Sequence[Result], after: Mapping[str, Result], edited: Sequence[str]
+    results: Iterable[Result], search: HintSearch, entries: Mapping[Edits, str]
 ) -> dict[str, Hint]:
-    """Return the hints of criteria that pass only after all edits, which other ones show."""
-    text = f"Make the edits for {enumerated(edited, MAX_IN_HINT)}."
+    """Return the hints of criteria that pass only after several edits, which other ones show."""
     hints = {}
     for result in results:
         name = result.criterion.id
-        if name in after and not after[name].is_lost:
-            hints[name] = Hint(text, result.outcome.location or Location("", 1, 1), {})
+        if name in search.results and not search.results[name].is_lost:
+            edited = _entries_of(search.edits_needed_for(name), entries)
+            if edited:
+                text = f"Make the edits for {enumerated(edited, MAX_IN_HINT)}."
+                hints[name] = Hint(text, result.outcome.location or Location("", 1, 1), {})
     return hints
 
 
+def _entries_of(hints_edits: Iterable[Edits], entries: Mapping[Edits, str]) -> tuple[str, ...]:
+    """Return the criteria that show the hints with these edits, each once."""
+    return tuple(dict.fromkeys(entries[edits] for edits in hints_edits if edits in entries))
+
+
 def _written(found: Sequence[FoundHint]) -> list[FoundHint]:
-    """Return the hints whose edits may be written: none that is left to words, and none after it
-    that may need it.
+    """Return the hints whose edits may be written: none that is left to words, and none that
+    needs it.
     """
     kept: list[FoundHint] = []
-    is_cut = False
+    cut: set[Edits] = set()
     for one in found:
         is_left_to_words = bool(one.words) or any(map(_loses_expression, one.edits))
-        if is_left_to_words or (one.is_late and is_cut):
-            is_cut = True
+        if is_left_to_words or not cut.isdisjoint(one.after):
+            cut.add(one.edits)
         else:
             kept.append(one)
     return kept

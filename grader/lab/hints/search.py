@@ -42,6 +42,7 @@ _RESERVE = 20  # gradings for proofs
 _AROUND = " ,\r\n"  # of a text that is added
 _MAX_REACTIONS = 3
 _MAX_PARTS = 5  # edits of a hint of which each is tried without
+_MAX_WITHOUT = 30  # gradings that say which of the hints another one needs
 
 
 class _NoTrialsLeft(Exception):
@@ -284,7 +285,7 @@ class _Proof(NamedTuple):
     proposal: Proposal
     gains: Mapping[str, Decimal]
     together: Mapping[str, Decimal]
-    after: _Results
+    results: _Results
     is_late: bool
 
 
@@ -292,6 +293,19 @@ def _is_reverse(one: Proposal, other: Proposal) -> bool:
     """Return whether the edits change texts of which the other ones make the old ones."""
     reversed_changes = {(edit.new, edit.old) for edit in other.edits}
     return {(edit.old, edit.new) for edit in one.edits} == reversed_changes
+
+
+def _leave_out(groups: Sequence[Edits], is_enough: Callable[[Edits], bool]) -> tuple[Edits, ...]:
+    """Return the groups of edits without those that are not needed: the last ones are left out
+    first, because the first gain most. Without trials, the rest stay.
+    """
+    kept = tuple(groups)
+    with suppress(_NoTrialsLeft):
+        for group in reversed(groups):
+            others = tuple(one for one in kept if one != group)
+            if others and is_enough(tuple(edit for one in others for edit in one)):
+                kept = others
+    return kept
 
 
 class HintSearch:
@@ -347,6 +361,9 @@ class HintSearch:
         self.trials.left = max(self.trials.left, 1 + self.trials.submission.cost)
         with self.trials.isolated():
             self._verify()
+        self.trials.left = _MAX_WITHOUT
+        with self.trials.isolated():
+            self._name_needed_hints()
         with self.trials.isolated():
             explained = {name for found in self.found for name in found.gains}
             explained |= self.missing.keys()
@@ -370,6 +387,26 @@ class HintSearch:
         """Take no hint back only if all together hold where the submission is read from scratch."""
         if self.found and not self.trials.graded(self.edits, self.results, whole=True):
             self.found, self.results = [*self._slips], self.trials.results
+
+    def _name_needed_hints(self) -> None:
+        """Keep of the hints that come before a late one those that it needs."""
+        corrected = tuple(edit for slip in self._slips for edit in slip.edits)
+        for index, found in enumerate(self.found):
+
+            def still_gains(before: Edits, found: FoundHint = found) -> bool:
+                gains, _ = self._gains((*corrected, *before), found.edits, self.trials.results)
+                return found.gains.keys() <= gains.keys()
+
+            self.found[index] = found._replace(after=_leave_out(found.after, still_gains))
+
+    def edits_needed_for(self, name: str) -> tuple[Edits, ...]:
+        """Return the edits of the hints after which a criterion passes that no hint is for."""
+
+        def passes(edits: Edits) -> bool:
+            results = self.trials.graded(edits, [name])
+            return name in results and not results[name].is_lost
+
+        return _leave_out([found.edits for found in self.found], passes)
 
     @property
     def _lost(self) -> list[str]:
@@ -445,7 +482,7 @@ class HintSearch:
         """Add the hint of a proposal if it is proven, and return whether it was added."""
         wanted = best.passes & {*self._lost}
         proof = self._proof_of(best.proposal, wanted)
-        if proof is None or self._is_half(best, proof.after):
+        if proof is None or self._is_half(best, proof.results):
             return False
         best = best._replace(proposal=proof.proposal)
         equal = self._equal_to(best, proof.together, wanted, tried)
@@ -458,8 +495,11 @@ class HintSearch:
             self._told |= wanted
             return False
         certainty: Certainty = "preferred" if equal is None else "one of several"
-        self.found.append(FoundHint(proof.proposal, proof.gains, certainty, proof.is_late))
-        self.results = proof.after
+        after: tuple[Edits, ...] = ()
+        if proof.is_late:
+            after = tuple(found.edits for found in self.found if found not in self._slips)
+        self.found.append(FoundHint(proof.proposal, proof.gains, certainty, after))
+        self.results = proof.results
         self._refused = set()
         return True
 
