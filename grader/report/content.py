@@ -547,6 +547,10 @@ def other_problems(report: Report) -> list[Problem]:
     """Return the problems that no failed criterion has reported."""
     failed = [result for result in report.results if result.outcome.status == "failed"]
     reported = {(it.outcome.location, it.outcome.problem or it.outcome.message) for it in failed}
+    payers = {it.criterion.id for it in failed}
+    for paid in report.meant.paid if report.meant is not None else ():
+        if paid.payer in payers:
+            reported.add((paid.slip.location, paid.slip.assumption))
     told = [(RECOVERED, "") for it in failed if it.criterion.check.function is urdf_loads]
     left = (problem for problem in report.problems if (problem.kind, problem.subject) not in told)
     return [problem for problem in left if (problem.location, problem.message) not in reported]

@@ -13,8 +13,8 @@ from grader.base.text import printable
 from grader.files.reading import sha256_of
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import Criterion
-from grader.report.content import entries, other_problems
-from grader.report.criteria import Entry, is_absent, is_failure, sentence
+from grader.report.content import entries, other_problems, report_sections
+from grader.report.criteria import Entry, is_absent, is_failure, points_of, sentence
 from grader.report.examples import explanation_of
 from grader.report.inspection import Inspection
 from grader.report.locations import archive_around, calls_text, location_text
@@ -52,6 +52,54 @@ def findings_in_report(report: Report) -> list[Finding]:
         if is_mistake or entry.id in undecided:
             found.append(_criterion_finding(entry, report))
     return sorted(found, key=_place)
+
+
+class Mistake(NamedTuple):
+    """What is lost by one mistake, which a report says once."""
+
+    finding: Finding  # of the criterion that shows it
+    besides: tuple[Finding, ...]  # of the other criteria that fail by it
+    # messages and places of the problems of files that these report
+    reported: frozenset[tuple[str, Location]]
+    advice: str  # the hint, and a grader's comment
+    cost: str  # in all: -8 points
+    names: str  # of the criteria that cost these: lidar-frame 6, lidar-on-top 2
+
+
+def mistakes_in_report(report: Report) -> list[Mistake]:
+    """Return the mistakes in the order of a report, then the criteria that cannot be decided."""
+    sections = report_sections(report)
+    found = [
+        _mistake(entry, report)
+        for entry in (*sections.mistakes, *sections.unbuilt)
+        if is_failure(entry.result)
+    ]
+    known = entries(report)
+    for result in report.pending_automatic:
+        entry = known[result.criterion.id]
+        mistake = _mistake(entry, report)
+        found.append(mistake._replace(cost=points_of([result])))
+    return found
+
+
+def _mistake(entry: Entry, report: Report) -> Mistake:
+    besides = []
+    for other in entry.also:
+        message = " ".join(other.texts("finding", "comment"))
+        besides.append(_criterion_finding(other, report)._replace(message=message))
+    reported = set()
+    for result in entry.results:
+        at, problem = result.outcome.location, result.outcome.problem or result.outcome.message
+        if at is not None:
+            reported.add((printable(problem) + calls_text(at), at))
+    return Mistake(
+        _criterion_finding(entry, report),
+        tuple(besides),
+        frozenset(reported),
+        " ".join(entry.texts("comment", "hint")),
+        entry.cost,
+        entry.names,
+    )
 
 
 def findings_in_inspection(inspection: Inspection) -> list[Finding]:

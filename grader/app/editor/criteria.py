@@ -3,12 +3,11 @@
 from grader.app.editor.look import Graded, ProvenFix
 from grader.app.hints_and_fix import add_hints
 from grader.base.source import Edits
-from grader.base.text import counted_points
 from grader.files.tree import Tree
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric_files import load_named
 from grader.lab.submission.opening import submission_of
-from grader.report.findings import findings_in_report
+from grader.report.findings import mistakes_in_report
 
 
 def grade_files(name: str, tree: Tree, identity: str) -> Graded:
@@ -26,16 +25,9 @@ def grade_files(name: str, tree: Tree, identity: str) -> Graded:
     submission = submission_of(tree, identity, rubric.lab)
     report = grade(rubric, submission)
     report, _ = add_hints(report, submission, None, lambda _: None, is_fixed=False)
-    lost = {}
     fixes: dict[Edits, ProvenFix] = {}
     for result in report.results:
-        lost[result.criterion.id] = result.criterion.points - result.points
         hint = result.hint
         if hint is not None and hint.edits:
             fixes[hint.edits] = ProvenFix(hint.message, hint.at, hint.edits)
-    findings = []
-    for finding in findings_in_report(report):
-        if finding.rule.id in lost:
-            points = counted_points(lost[finding.rule.id])
-            findings.append(finding._replace(message=f"{finding.message} ({points})"))
-    return Graded(tuple(findings), tuple(fixes.values()))
+    return Graded(tuple(mistakes_in_report(report)), tuple(fixes.values()))

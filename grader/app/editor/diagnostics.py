@@ -1,6 +1,7 @@
 """What is wrong in a workspace, as an editor lists it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from lsprotocol import types as lsp
@@ -8,7 +9,10 @@ from lsprotocol import types as lsp
 from grader.app.editor.look import Look
 from grader.app.editor.text_ranges import TextRanges
 from grader.base.source import Base, Location
-from grader.report.findings import Finding, place_in_repository
+from grader.files.limits import ROBOT_ENDINGS
+from grader.report.findings import Finding, Mistake, place_in_repository
+from grader.report.locations import SourceOf
+from grader.ros.xml.xml_problems import RECOVERED
 
 SOURCE = "grader"
 _SEVERITIES = {
@@ -19,47 +23,147 @@ _SEVERITIES = {
 _MAX_SHOWN = 300  # in one file
 
 
+@dataclass
+class _Shown:
+    """One diagnostic: what is wrong, what else is said about it and where, and what it costs."""
+
+    finding: Finding
+    notes: list[tuple[Location, str]] = field(default_factory=list)
+    costs: list[str] = field(default_factory=list)
+
+    @property
+    def key(self) -> tuple[str, Location]:
+        """The message and the place of what is wrong."""
+        return self.finding.message, self.finding.location
+
+    @property
+    def message(self) -> str:
+        """What is wrong, with the points that it costs in parentheses."""
+        if self.costs:
+            return f"{self.finding.message} ({'; '.join(self.costs)})"
+        return self.finding.message
+
+
 def diagnostics_of(
-    look: Look, root: Path, graded: Sequence[Finding] = ()
+    look: Look, root: Path, graded: Sequence[Mistake] = ()
 ) -> dict[str, list[lsp.Diagnostic]]:
     """Return what is wrong with the files of a folder, by their paths: the problems, and the
-    criteria of a rubric that fail.
+    mistakes that lose points of a rubric. What a problem costs is said with it.
     """
     ranges = TextRanges(look, root)
     shown: dict[str, list[lsp.Diagnostic]] = {}
-    for finding in (*look.findings, *graded):
-        path, at = place_in_repository(finding, Base())
+    problems = _join_assumptions(look.findings)
+    for one in _join_mistakes(problems, graded, look.opened.source):
+        path, at = place_in_repository(one.finding, Base())
         if path not in look.tree.files:
             path, at = next(iter(look.tree.files), path), None
         of_file = shown.setdefault(path, [])
         if len(of_file) < _MAX_SHOWN:
-            of_file.append(_diagnostic(look, ranges, finding, at or Location(path, 1, 1)))
+            of_file.append(_diagnostic(look, ranges, one, at or Location(path, 1, 1)))
     return shown
 
 
-def _diagnostic(look: Look, ranges: TextRanges, finding: Finding, at: Location) -> lsp.Diagnostic:
+def _join_assumptions(findings: Iterable[Finding]) -> list[_Shown]:
+    """Return problems, each with what is assumed because of it: that is no other mistake."""
+    shown: list[_Shown] = []
+    assumed: list[_Shown] = []
+    for finding in findings:
+        if finding.rule.id == RECOVERED.code:
+            assumed.append(_Shown(finding))
+        else:
+            shown.append(_Shown(finding))
+    alone = []
+    for one in assumed:
+        at = one.finding.location
+        hosts = [it for it in shown if _may_be_cause(it.finding, at)]
+        host = min(hosts, key=lambda it: _distance(it.finding, at), default=None)
+        if host is None:
+            alone.append(one)
+        else:
+            host.notes.append((at, one.finding.message))
+    return [*shown, *alone]
+
+
+def _may_be_cause(finding: Finding, at: Location) -> bool:
+    """Return whether a problem may be why something is assumed at a place."""
+    is_near = finding.severity == "error" or finding.location.line == at.line
+    return finding.location.path == at.path and is_near
+
+
+def _distance(finding: Finding, at: Location) -> tuple[bool, bool, int]:
+    where = finding.location
+    return where.line != at.line, finding.severity != "error", abs(where.column - at.column)
+
+
+def _join_mistakes(
+    shown: Sequence[_Shown], graded: Iterable[Mistake], source_of: SourceOf
+) -> list[_Shown]:
+    """Return problems with the mistakes that report them, and the other mistakes with the warnings
+    about the same word of a robot.
+    """
+    left, others = [*shown], []
+    for mistake in graded:
+        finding = mistake.finding
+        one = next((it for it in shown if it.key in mistake.reported), None)
+        if one is None:
+            one = _Shown(finding)
+            others.append(one)
+            for it in [it for it in left if _is_same_word(it.finding, finding, source_of)]:
+                left.remove(it)
+                one.notes.append((finding.location, f"{it.finding.rule.id}: {it.message}"))
+        elif mistake.advice:
+            one.notes.append((finding.location, mistake.advice))
+        if mistake.names == one.finding.rule.id:
+            one.costs.append(mistake.cost)
+        else:
+            one.costs.append(f"{mistake.cost}: {mistake.names}")
+        for other in mistake.besides:
+            one.notes.append((other.location, f"{other.rule.id}: {other.message}"))
+    return [*left, *others]
+
+
+def _is_same_word(problem: Finding, criterion: Finding, source_of: SourceOf) -> bool:
+    """Return whether a warning is at the attribute that a criterion is about: at a tag, they may be
+    about different things.
+    """
+    at = problem.location
+    if problem.severity == "error" or at != criterion.location:
+        return False
+    source = source_of(at.path)
+    if source is None or not at.path.endswith(ROBOT_ENDINGS):
+        return False
+    return source.line(at.line)[at.column - 1 : at.column] not in ("", "<")
+
+
+def _diagnostic(look: Look, ranges: TextRanges, shown: _Shown, at: Location) -> lsp.Diagnostic:
+    finding = shown.finding
     rule = finding.rule
     return lsp.Diagnostic(
         ranges.range(at),
-        finding.message,
+        shown.message,
         severity=_SEVERITIES[finding.severity],
         code=rule.id,
         code_description=lsp.CodeDescription(rule.page) if rule.page else None,
         source=SOURCE,
-        related_information=_related(look, ranges, finding) or None,
+        related_information=_related(look, ranges, shown) or None,
     )
 
 
 def _related(
-    look: Look, ranges: TextRanges, finding: Finding
+    look: Look, ranges: TextRanges, shown: _Shown
 ) -> list[lsp.DiagnosticRelatedInformation]:
-    """Return the other places of a finding: what was meant, and the calls of macros."""
+    """Return the other places of a diagnostic: what was meant, the calls of macros, the criteria
+    that fail by it.
+    """
     found = []
-    for name, call in finding.location.calls:
+    for name, call in shown.finding.location.calls:
         text = f"the macro {name} is called here"
         found.append(lsp.DiagnosticRelatedInformation(ranges.place(call), text))
-    mismatch = look.mismatch_of(finding)
+    mismatch = look.mismatch_of(shown.finding)
     if mismatch is not None and mismatch.related is not None:
         text = "this is what it is compared with"
         found.append(lsp.DiagnosticRelatedInformation(ranges.place(mismatch.related), text))
+    for at, text in shown.notes:
+        if at.path in look.tree.files:
+            found.append(lsp.DiagnosticRelatedInformation(ranges.place(at), text))
     return found

@@ -12,7 +12,7 @@ from grader.base.reuse import Memory
 from grader.base.source import Edits, Location
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree
-from grader.report.findings import Finding, findings_in_inspection
+from grader.report.findings import Finding, Mistake, findings_in_inspection
 from grader.report.inspection import InspectedRobot, Inspection
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
@@ -31,9 +31,9 @@ class ProvenFix(NamedTuple):
 
 
 class Graded(NamedTuple):
-    """The criteria that lose points, and the edits that the rubric's hints show."""
+    """The mistakes that cost points, and the edits that the rubric's hints show."""
 
-    findings: tuple[Finding, ...] = ()
+    mistakes: tuple[Mistake, ...] = ()
     fixes: tuple[ProvenFix, ...] = ()
 
 

@@ -117,7 +117,7 @@ class _GraderServer(LanguageServer):
             found = await self.in_thread(partial(diagnostics_of, look, root))
             self._publish(root, found)
             self._complain(session.complaint)
-            graded = await self.in_thread(lambda: look.graded.findings)
+            graded = await self.in_thread(lambda: look.graded.mistakes)
             if graded:
                 found = await self.in_thread(partial(diagnostics_of, look, root, graded))
                 self._publish(root, found)

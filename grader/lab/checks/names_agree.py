@@ -54,7 +54,7 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
             cause = "type"
         elif wrong[0].corrections:
             cause = "similar"
-        return failed(message, wrong[0].location, mistake=first, cause=cause)
+        return failed(message, wrong[0].location, problem=first, mistake=first, cause=cause)
     if of in undecided:
         reason = undecided[of]
         cause = f"cannot determine statically whether the names of {of} agree"

@@ -124,7 +124,10 @@ class _Readings:
             "failed", message, location=first.location, mistake=first.reaction, problem=message
         )
         if outcome.status == "failed":
-            failure = outcome._replace(absent=(), mistake=outcome.mistake or outcome.message)
+            reported = outcome.problem or outcome.message
+            failure = outcome._replace(
+                absent=(), mistake=outcome.mistake or outcome.message, problem=reported
+            )
             if not first.is_refused:
                 problem = outcome.problem or first.reaction
                 failure = failure._replace(location=first.location, problem=problem)
