@@ -266,6 +266,25 @@ def test_completes_names(diffdrive: Path) -> None:
     _edit(diffdrive, act)
 
 
+def test_completes_types_of_joints(lab6: Path) -> None:
+    """Also in a file that is not well-formed, as while a tag is typed."""
+
+    async def act(one: Editor) -> None:
+        await one.open(_LAB6)
+        text = one.text(_LAB6)
+        start = '<joint name="base_lidar_joint" type="'
+        row = next(number for number, line in enumerate(text.split("\n")) if start in line)
+        await one.type(_LAB6, text.replace(f'{start}fixed">', start))
+        asked = lsp.CompletionParams(one.document(_LAB6), lsp.Position(row, 2 + len(start)))
+        found = await one.client.text_document_completion_async(asked)
+        assert isinstance(found, list | tuple)
+        expected = ["fixed", "continuous", "revolute", "prismatic", "planar", "floating"]
+        assert [item.label for item in found] == expected
+        assert all(item.detail for item in found)
+
+    _edit(lab6, act)
+
+
 def test_lists_names(lab6: Path) -> None:
     async def act(one: Editor) -> None:
         asked = lsp.DocumentSymbolParams(one.document(_LAB6))

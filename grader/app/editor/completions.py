@@ -17,6 +17,17 @@ _PACKAGE = r"(?P<owner>[\w.-]+)"
 _QUOTE = "[\"']"
 
 
+# The types of joints that ROS 2 knows, with what each does.
+_JOINT_TYPES = {
+    "fixed": "does not move",
+    "continuous": "turns about its axis without limits, as a wheel does; has no <limit>",
+    "revolute": "turns about its axis between the limits of <limit>, in radians",
+    "prismatic": "slides along its axis between the limits of <limit>, in metres",
+    "planar": "moves in the plane across its axis; robot_state_publisher does not publish it",
+    "floating": "moves freely; robot_state_publisher does not publish it",
+}
+
+
 class _Context(NamedTuple):
     """What may be written behind a text: its pattern may name the owner of the names."""
 
@@ -35,8 +46,10 @@ def _attribute(tags: str, name: str) -> str:
 
 
 _XML = (".urdf", ".xacro", ".xml", ".sdf", ".srdf", ".world", ".launch")
+_ROBOT = (".urdf", ".xacro")
 _YAML = (".yaml", ".yml")
 _PYTHON = (".py",)
+_JOINT_TYPE = re.compile(rf"{_attribute('joint', 'type')}\w*\Z")
 _LIST_BEFORE = rf"(?:\s*:\s*\[?|\s*:\s*(?:\n\s*-[^\n]*)*\n\s*-|[^\n]*\[[^\]\n]*[\[,])\s*{_QUOTE}?"
 _CONTEXTS: Sequence[_Context] = (
     _context(
@@ -87,6 +100,10 @@ _CONTEXTS: Sequence[_Context] = (
 def completions(look: Look, place: TextPlace) -> list[lsp.CompletionItem]:
     """Return the names that may be written at a place."""
     before = place.lines.text_before(place.line, place.column)[-_MAX_BEFORE:]
+    if place.path.endswith(_ROBOT) and _JOINT_TYPE.search(before):
+        member = lsp.CompletionItemKind.EnumMember
+        types = _JOINT_TYPES.items()
+        return [lsp.CompletionItem(name, kind=member, detail=text) for name, text in types]
     for context in _CONTEXTS:
         found = context.before.search(before) if place.path.endswith(context.endings) else None
         if found is not None:

@@ -75,7 +75,7 @@ def parameter_is(
         other = _written_otherwise(submission, parameter, meant, tolerance)
         if other is None:
             return passed(f"nothing gives {parameter} to {node}")
-        found, said = other, "a parameter file has"
+        found, said = other, f"a parameter file has {parameter} ="
     if isinstance(found.value, Unknown):
         cause = f"the parameter {parameter} of {node} cannot be determined statically"
         raise NotDecided(f"{cause}: {found.value.reason}", cause)
@@ -92,7 +92,7 @@ def parameter_is(
         items = actual if isinstance(actual, list) else [actual]
         wanted = f"should have {enumerated([*map(_text, has)])}"
         fits = all(_has(items, expected, tolerance) for expected in has)
-    message = f"{said} {parameter} = {_text(actual)}"
+    message = f"{said} {_text(actual)}"
     if measure is not None:
         wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
     return passed(message) if fits else failed(f"{message}; it {wanted}", found.location)
@@ -105,12 +105,12 @@ def _value_or_default(
     MissingElement and NotDecided, as `value_of` does.
     """
     try:
-        return f"{node} gets", value_of(submission, node, parameter)
+        return f"{node} gets {parameter} =", value_of(submission, node, parameter)
     except MissingElement:
         default = submission.default_value(node, parameter) if or_default else None
         if default is None:
             raise
-        return f"{node} has by default", default
+        return f"{node} does not get {parameter}, whose default is", default
 
 
 def _measured_if_there(

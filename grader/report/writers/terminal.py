@@ -465,7 +465,8 @@ def _show_parts(report: Report, page: Page) -> None:
                 name = (printable(group.title), "bold")
                 page.title(Text.assemble(name, (f"  {group.points}", "dim")))
             for result in group.results:
-                mark = page.mark(status_of(result))
+                # One that fails only because of another one has its points: it is no mistake.
+                mark = page.mark("skipped" if result.carried else status_of(result))
                 start = Text.assemble("  ", mark, f" {earned_text(result):<5} ")
                 page.inset(_criterion_row(result), indent=len(start), head=start)
 
@@ -477,6 +478,9 @@ def _criterion_row(result: Result) -> Text:
     status = status_of(result)
     if status == "passed":
         return Text(printable(result.criterion.title))
-    is_consequence = status == "skipped" and result.because is not None
-    reason = f"  skipped because {printable(result.because or '')} failed" if is_consequence else ""
+    reason = ""
+    if result.carried:
+        reason = f"  not deducted: caused by {printable(result.carried)}"
+    elif status == "skipped" and result.because is not None:
+        reason = f"  skipped because {printable(result.because)} failed"
     return Text.assemble(printable(result.criterion.id), (reason, "dim"))
