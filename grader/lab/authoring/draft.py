@@ -43,7 +43,10 @@ _METRES, _DEGREES = ({"tolerance": 0.002}, "metres"), ({"tolerance": 1.0}, "degr
 _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
     **dict.fromkeys(("shows_box", "shows_cylinder", "shows_sphere"), _METRES),
     "shows_colour": ({"tolerance": 0.01}, "of a channel from 0 to 1"),
-    "frame_at": ({"tolerance": 0.002, "angle": 1.0}, "metres, degrees; rpy is in radians"),
+    "frame_at": (
+        {"tolerance": 0.002, "angle": 1.0},
+        "metres, degrees (180: any orientation); rpy is in radians",
+    ),
     "centre_at": _METRES,
     **dict.fromkeys(("joint_limits", "joint_axis"), _DEGREES),
     "mass_is": ({"tolerance": 0.001}, "kilograms"),
@@ -452,7 +455,11 @@ class _Layout(NamedTuple):
     ) -> Iterator[str]:
         """Yield the lines of a criterion."""
         fact = row.fact
-        yield from ("", "[[criterion]]", assignment("id", name))
+        yield ""
+        if fact.check == "frame_at" and "rpy" in fact.arguments:
+            yield "# The frame itself has to be rotated, as in the solution, and not only its shapes."
+            yield "# If any orientation is correct, replace rpy by angle = 180."
+        yield from ("[[criterion]]", assignment("id", name))
         if row.is_of_package and self.part == _ROBOT:
             yield assignment("part", _PACKAGE)
         if fact.package:

@@ -466,9 +466,15 @@ def _show_parts(report: Report, page: Page) -> None:
                 page.title(Text.assemble(name, (f"  {group.points}", "dim")))
             for result in group.results:
                 # One that fails only because of another one has its points: it is no mistake.
-                mark = page.mark("skipped" if result.carried else status_of(result))
+                mark = page.mark("skipped" if _is_carried(result) else status_of(result))
                 start = Text.assemble("  ", mark, f" {earned_text(result):<5} ")
                 page.inset(_criterion_row(result), indent=len(start), head=start)
+
+
+def _is_carried(result: Result) -> bool:
+    """Return whether a criterion fails only because of another one, and has its points."""
+    is_overridden = result.manual_mark is not None or result.is_adjusted
+    return bool(result.carried) and not is_overridden
 
 
 def _criterion_row(result: Result) -> Text:
@@ -479,7 +485,7 @@ def _criterion_row(result: Result) -> Text:
     if status == "passed":
         return Text(printable(result.criterion.title))
     reason = ""
-    if result.carried:
+    if _is_carried(result):
         reason = f"  not deducted: caused by {printable(result.carried)}"
     elif status == "skipped" and result.because is not None:
         reason = f"  skipped because {printable(result.because)} failed"
