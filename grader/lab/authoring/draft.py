@@ -457,7 +457,9 @@ class _Layout(NamedTuple):
         fact = row.fact
         yield ""
         if fact.check == "frame_at" and "rpy" in fact.arguments:
-            yield "# The frame itself has to be rotated, as in the solution, and not only its shapes."
+            yield (
+                "# The frame itself has to be rotated, as in the solution, and not only its shapes."
+            )
             yield "# If any orientation is correct, replace rpy by angle = 180."
         yield from ("[[criterion]]", assignment("id", name))
         if row.is_of_package and self.part == _ROBOT:
