@@ -6,7 +6,7 @@ create_timer(), create_subscription(), create_service() or ActionServer.
 
 import ast
 import sys
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.base.names import closest, near
@@ -15,7 +15,7 @@ from grader.ros.known.known import node_attributes
 from grader.ros.package.message_uses import CodePart, certain_nodes, given_argument
 from grader.ros.package.node_facts import CodeFault
 from grader.ros.python.constants import binds_unseen, dotted, last_name
-from grader.ros.python.parse import Code, Position, location_in, position_of
+from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
 
 _MAX_FAULTS = 20  # of one module and rule
 _CALLBACKS = {
@@ -64,11 +64,41 @@ class ModuleText(NamedTuple):
     nodes: Mapping[Location, ast.ClassDef]  # the classes whose only bases are those of rclpy
 
 
-def code_faults(module: ModuleText, others: Mapping[str, ModuleText]) -> Iterator[CodeFault]:
-    """Yield what is wrong in a module; `others` are all modules of the package, by their names."""
+class _PackageAttributes(NamedTuple):
+    """The attributes that the modules of a package set, and the texts in them, which hasattr() or
+    getattr() may ask for; not all of them if names may be bound in ways that are not seen.
+    """
+
+    stored: Collection[str]
+    texts: Collection[str]
+    may_be_more: bool
+
+
+def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
+    """Return the attributes of the modules of a package."""
+    stored, texts = set[str](), set[str]()
+    may_be_more = False
+    for module in modules:
+        nodes = every_node(module.code.tree)
+        may_be_more = may_be_more or binds_unseen(nodes)
+        for node in nodes:
+            match node:
+                case ast.Attribute(attr=name, ctx=ast.Store()):
+                    stored.add(name)
+                case ast.Constant(value=str(text)):
+                    texts.add(text)
+    return _PackageAttributes(stored, texts, may_be_more)
+
+
+def code_faults(
+    module: ModuleText, others: Mapping[str, ModuleText], attributes: _PackageAttributes
+) -> Iterator[CodeFault]:
+    """Yield what is wrong in a module; `others` are all modules of the package, by their names,
+    and `attributes` those of all of them.
+    """
     search = _Search(module, others)
     yield from _undefined_names(module.code)
-    yield from search.undefined_attributes()
+    yield from search.undefined_attributes(attributes)
     yield from search.called_callbacks()
     yield from search.without_response()
     yield from search.waiting_callbacks()
@@ -79,7 +109,7 @@ def _undefined_names(code: Code) -> Iterator[CodeFault]:
     """Yield the names that are not defined, and texts that are formatted with too little."""
     from pyflakes.checker import Checker  # late: few commands read the code of nodes
 
-    if binds_unseen([*ast.walk(code.tree)]):
+    if binds_unseen(every_node(code.tree)):
         return
     try:
         checker = Checker(code.tree, builtins=_LATER_BUILTINS)
@@ -99,7 +129,7 @@ def _undefined_names(code: Code) -> Iterator[CodeFault]:
 def _unevaluated(tree: ast.Module) -> set[Position]:
     """Return the places in annotations, which Python does not always evaluate."""
     places = set[Position]()
-    for node in ast.walk(tree):
+    for node in every_node(tree):
         match node:
             case ast.AnnAssign(annotation=annotation):
                 inside: ast.expr | None = annotation
@@ -158,18 +188,11 @@ class _Search:
             return self._functions.get((part.of, name[5:]))
         return self._functions.get((None, name))
 
-    def undefined_attributes(self) -> Iterator[CodeFault]:
+    def undefined_attributes(self, attributes: _PackageAttributes) -> Iterator[CodeFault]:
         """Yield the attributes of self that a class of nodes reads, and nothing sets or defines."""
-        nodes = [node for it in self._others.values() for node in ast.walk(it.code.tree)]
-        if binds_unseen(nodes):
+        if attributes.may_be_more:
             return
-        known, asked = {*node_attributes()}, set[str]()
-        for node in nodes:
-            match node:
-                case ast.Attribute(attr=name, ctx=ast.Store()):
-                    known.add(name)
-                case ast.Constant(value=str(text)):
-                    asked.add(text)  # which hasattr() or getattr() may ask for
+        known, asked = {*node_attributes(), *attributes.stored}, {*attributes.texts}
         for part in self._module.parts:
             owner = self._module.nodes.get(part.of) if part.of is not None else None
             if owner is not None and not owner.decorator_list and not owner.keywords:
@@ -245,7 +268,7 @@ class _Search:
             return
         clients = {
             dotted(node.targets[0])
-            for node in ast.walk(self._code.tree)
+            for node in every_node(self._code.tree)
             if isinstance(node, ast.Assign)
             and isinstance(node.value, ast.Call)
             and dotted(node.value.func) == "self.create_client"

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from grader.base.source import Location, Source
 from grader.ros.package.node_facts import FieldUse, TypeImport
 from grader.ros.python.constants import dotted, last_name, offset_of
-from grader.ros.python.parse import Code, Position, location_in, position_of
+from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
 from grader.ros.python.values import SCALARS, QualifiedName, Scope, Value
 
 _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
@@ -103,7 +103,7 @@ def field_uses(
     code: Code, parts: Sequence[CodePart], value_of: Callable[[ast.expr, Scope], Value]
 ) -> Iterator[FieldUse]:
     """Yield the fields that the functions of a module use."""
-    nodes = [*ast.walk(code.tree)]
+    nodes = every_node(code.tree)
     stored = Counter[str]()  # names and attributes that are bound, wherever it is
     for node in nodes:
         match node:

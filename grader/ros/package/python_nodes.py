@@ -14,7 +14,7 @@ from grader.base.errors import InputError
 from grader.base.slips import Slip
 from grader.base.source import Edits, Location
 from grader.ros.build.installation import InstalledFile
-from grader.ros.package.code_faults import ModuleText, code_faults
+from grader.ros.package.code_faults import ModuleText, attributes_in, code_faults
 from grader.ros.package.endpoint_names import Bindings, EndpointNames, bindings
 from grader.ros.package.entry_points import (
     entry_points,
@@ -51,6 +51,7 @@ from grader.ros.python.evaluation import record
 from grader.ros.python.parse import (
     START,
     Code,
+    every_node,
     location_in,
     own_nodes,
     parse,
@@ -211,13 +212,14 @@ def read_nodes(package: Package) -> PackageNodes:
 def _faults_of(modules: Sequence[ModuleText]) -> tuple[list[CodeFault], bool]:
     """Return the faults in the code of modules, and whether all of them are searched."""
     by_name = {module.name: module for module in modules}
+    attributes = attributes_in(modules)
     faults: list[CodeFault] = []
     left, is_searched = _MAX_CODE, True
     for module in modules:
         left -= len(module.code.source.text)
         try:
             if left >= 0:
-                faults += code_faults(module, by_name)
+                faults += code_faults(module, by_name, attributes)
         except RecursionError:
             left = -1
         is_searched = is_searched and left >= 0
@@ -345,7 +347,7 @@ class _Module:
     def __init__(self, code: Code, name: str, work: Budget, *, is_package: bool) -> None:
         self._code, self._name = code, name
         functions = dict.fromkeys(("rclpy.qos.QoSProfile", *_CREATES), record)
-        syntax = [*ast.walk(code.tree)]
+        syntax = every_node(code.tree)
         self._constants = Constants(syntax, name, functions, work, is_package=is_package)
         # Of the classes, by full names; None for a base that is not known.
         self.bases: dict[str, list[str | None]] = {}
@@ -702,14 +704,14 @@ class _Module:
             )
 
 
-def _has_alias(tree: ast.AST) -> bool:
+def _has_alias(tree: ast.Module) -> bool:
     """Return whether a method that declares parameters is named and not called, so that another
     name may call it.
     """
-    called = {node.func for node in ast.walk(tree) if isinstance(node, ast.Call)}
+    called = {node.func for node in every_node(tree) if isinstance(node, ast.Call)}
     return any(
         isinstance(node, ast.Attribute) and node.attr in _DECLARES and node not in called
-        for node in ast.walk(tree)
+        for node in every_node(tree)
     )
 
 

@@ -6,6 +6,8 @@ import sys
 import tokenize
 import warnings
 from codecs import lookup
+from collections.abc import Sequence
+from functools import lru_cache
 from io import BytesIO
 from typing import NamedTuple
 
@@ -56,6 +58,12 @@ class Code(NamedTuple):
     source: Source
     tree: ast.Module
     conflict: tuple[str, Position] | None = None  # of git, without which it was parsed
+
+
+@lru_cache(maxsize=4)  # the readers of a module follow each other
+def every_node(tree: ast.Module) -> Sequence[ast.AST]:
+    """Return all nodes of a module, in the order of `ast.walk`."""
+    return [*ast.walk(tree)]
 
 
 class SyntaxFault(NamedTuple):
