@@ -188,7 +188,7 @@ def counts(kinds: dict[str, Any]) -> Iterator[str]:
     by_tools = {name for name, kind in kinds.items() if kind.get("tools")}
     yield (
         f"`grader inspect` finds {len(found)} of the {len(of_files)} kinds that files can show. "
-        'Of many kinds, it finds only some mistakes: "Covers" lists them. '
+        'For many kinds it finds only some mistakes: "Covers" lists which. '
         f"Together, the tools of the study find {len(by_tools)} of all {len(kinds)} kinds. None of "
         f"them finds {len(found - by_tools)} that `grader inspect` finds."
     )

@@ -55,7 +55,7 @@ def findings_in_report(report: Report) -> list[Finding]:
 
 
 class Mistake(NamedTuple):
-    """What is lost by one mistake, which a report says once."""
+    """One mistake, with all criteria that fail because of it."""
 
     finding: Finding  # of the criterion that shows it
     besides: tuple[Finding, ...]  # of the other criteria that fail by it

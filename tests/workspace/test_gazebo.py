@@ -107,7 +107,7 @@ ament_package()
 """,
 }
 _EYE = (
-    '<model name="post"><link name="post_link"><sensor name="eye" type="camera">'
+    '<model name="scout"><link name="base_link"/><link name="post_link"><sensor name="eye" type="camera">'
     "<gz_frame_id>{}</gz_frame_id></sensor></link></model></world>"
 )
 _LASER = (
@@ -335,6 +335,7 @@ def test_what_gazebo_does_not_do_is_named(edits: list[tuple[str, str, str]], mes
         [("arena.sdf", "  </world>", _EYE.format("post_link"))],
         [("arena.sdf", "  </world>", _EYE.format("base_link"))],
         [("arena.sdf", "  </world>", _EYE.format("tower"))],
+        [("arena.sdf", "  </world>", _EYE.format("base_lnik").replace('"base_link"', '"top"'))],
         [
             (
                 "arena.sdf",

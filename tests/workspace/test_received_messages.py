@@ -223,8 +223,8 @@ WRONG: list[tuple[str, list[Edit]]] = [
     (
         (
             "REF025 /viewer/src/viewer.cpp:16 geometry_msgs.msg.Twist has no header with a time: "
-            "message_filters::TimeSynchronizer takes 0 in its place, and stops or finds no right "
-            "pairs"
+            "message_filters::TimeSynchronizer uses time 0 instead, so it stops or never matches "
+            "the messages"
         ),
         _viewer(_CPP_FUSED.replace("SYNCHRONISER", _CPP_PAIRS)),
     ),

@@ -27,10 +27,12 @@ def _second(started: str) -> Edit:
     return (_SECOND, text, text)
 
 
-def _said(name: str, code: str = "REF004", old: str = "pilot") -> str:
+def _said(
+    name: str, code: str = "REF004", old: str = "pilot", advice: str = "rename the section to"
+) -> str:
     return (
-        f"{code} {_FILE}:1 the node {name!r} gets nothing of {old!r}, which is its name in its "
-        f"program only: write {name!r}"
+        f"{code} {_FILE}:1 the launch file names this node {name!r}, so it ignores the section "
+        f"{old!r}, its name in its program: {advice} {name!r}"
     )
 
 
@@ -58,7 +60,7 @@ WRONG: list[tuple[str, list[str], list[Edit]]] = [
     ),
     (
         "another launch file has the name of the program",
-        [_said("front")],
+        [_said("front", advice="add a section")],
         [*_given(_PILOT), _second(_PLAIN)],
     ),
     (

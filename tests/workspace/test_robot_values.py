@@ -417,7 +417,7 @@ WRONG: list[tuple[str, list[Edit]]] = [
     (
         (
             "REF004 config/controllers.yaml:8 the node /a/wheels gets nothing of 'wheels', which is "
-            "the key of the node /wheels: write '/**/wheels', which is for any namespace"
+            "the key of the node /wheels: write '/**/wheels', which matches any namespace"
         ),
         _with(
             "Node(package='rover', executable='pilot', name='wheels', namespace='a', parameters=[controllers]),"

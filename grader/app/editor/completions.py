@@ -20,8 +20,8 @@ _QUOTE = "[\"']"
 # The types of joints that ROS 2 knows, with what each does.
 _JOINT_TYPES = {
     "fixed": "does not move",
-    "continuous": "turns about its axis without limits, as a wheel does; has no <limit>",
-    "revolute": "turns about its axis between the limits of <limit>, in radians",
+    "continuous": "rotates about its axis without limits, as a wheel does; has no <limit>",
+    "revolute": "rotates about its axis between the limits of <limit>, in radians",
     "prismatic": "slides along its axis between the limits of <limit>, in metres",
     "planar": "moves in the plane across its axis; robot_state_publisher does not publish it",
     "floating": "moves freely; robot_state_publisher does not publish it",

@@ -98,13 +98,13 @@ def _distance(finding: Finding, at: Location) -> tuple[bool, bool, int]:
 def _join_mistakes(
     shown: Sequence[_Shown], graded: Iterable[Mistake], source_of: SourceOf
 ) -> list[_Shown]:
-    """Return problems with the mistakes that report them, and the other mistakes with the warnings
-    about the same word of a robot.
+    """Add to each problem the mistakes that report it, and to each other mistake the warnings at
+    the same attribute of a robot; return both.
     """
     left, others = [*shown], []
     for mistake in graded:
         finding = mistake.finding
-        one = next((it for it in shown if it.key in mistake.reported), None)
+        one = next((it for it in left if it.key in mistake.reported), None)
         if one is None:
             one = _Shown(finding)
             others.append(one)

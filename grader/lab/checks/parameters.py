@@ -110,7 +110,7 @@ def _value_or_default(
         default = submission.default_value(node, parameter) if or_default else None
         if default is None:
             raise
-        return f"{node} does not get {parameter}, whose default is", default
+        return f"{node} uses the default {parameter} =", default
 
 
 def _measured_if_there(

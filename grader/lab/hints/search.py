@@ -389,7 +389,7 @@ class HintSearch:
             self.found, self.results = [*self._slips], self.trials.results
 
     def _name_needed_hints(self) -> None:
-        """Keep of the hints that come before a late one those that it needs."""
+        """Drop from each late hint the earlier hints that it does not need."""
         corrected = tuple(edit for slip in self._slips for edit in slip.edits)
         for index, found in enumerate(self.found):
 
@@ -400,7 +400,7 @@ class HintSearch:
             self.found[index] = found._replace(after=_leave_out(found.after, still_gains))
 
     def edits_needed_for(self, name: str) -> tuple[Edits, ...]:
-        """Return the edits of the hints after which a criterion passes that no hint is for."""
+        """Return the edits of hints that a criterion without a hint of its own needs to pass."""
 
         def passes(edits: Edits) -> bool:
             results = self.trials.graded(edits, [name])

@@ -43,6 +43,7 @@ _HARMLESS_METHODS = frozenset(
 )
 _READING = ("condition_clause", "binary_expression", "unary_expression", "lambda_capture_specifier")
 _TAKERS = ("publish", "move", *_CONVERTING)  # that do not change an image
+_LEAVING = ("return_statement", "throw_statement")
 _MAX_DEPTH = 6  # of images that are made of others
 
 
@@ -217,7 +218,10 @@ class CppContentReader:
         if writes.encodings:
             [assignment, *more] = writes.encodings
             value = assignment.child("right")
-            is_set = value is not None and not more and self._reaches(assignment, node)
+            is_last = not more and all(
+                it.file is assignment.file and it.start < assignment.start for it in writes.values
+            )
+            is_set = value is not None and is_last and self._reaches(assignment, node)
             return self._encoding_in([value], 0) if is_set and value is not None else None
         if len(writes.values) != 1:
             return None
@@ -256,10 +260,12 @@ class CppContentReader:
 
     def _reaches(self, assignment: CppNode, use: CppNode) -> bool:
         """Return whether an assignment certainly precedes a place."""
-        if is_conditional(assignment, assignment.file.root):
+        statement = assignment.parent
+        block = statement.parent if statement is not None else None
+        # Not in an `if` without braces, nor below a `case`.
+        if block is None or block.kind != "compound_statement":
             return False
-        block = next((it for it in assignment.ancestors() if it.kind == "compound_statement"), None)
-        if block is None:
+        if is_conditional(assignment, assignment.file.root):
             return False
         if use.file is assignment.file and block.start <= use.start < block.end:
             return assignment.start < use.start
@@ -334,6 +340,8 @@ class CppContentReader:
                 is_set = node.field == "left" and node.text == message.text
                 if is_set or node.text == _ENCODING:
                     return ()
+            if node.kind in _LEAVING:
+                break  # what follows may never be executed
             if node.kind != "call_expression":
                 continue
             given = arguments_of(node)

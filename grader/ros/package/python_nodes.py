@@ -92,14 +92,14 @@ _ACTIONS: dict[str, EndpointKind] = {
 _READS_IF_DECLARED = ("get_parameter_or", "has_parameter")
 _READS = ("get_parameter", *_READS_IF_DECLARED)
 _DECLARES = ("declare_parameter", "declare_parameters")
-_METHODS = frozenset({*_KINDS, *_READS, *_DECLARES, "create_timer"})
 # Of tf2_ros.Buffer of Jazzy, with the position of the source frame behind the target frame.
 _LOOKUPS = {
-    **dict.fromkeys(("lookup_transform", "lookup_transform_async"), 1),
-    **dict.fromkeys(("lookup_transform_full", "lookup_transform_full_async"), 2),
-    **dict.fromkeys(("can_transform", "wait_for_transform_async"), 1),
-    **dict.fromkeys(("can_transform_full", "wait_for_transform_full_async"), 2),
+    "lookup_transform": 1,
+    "lookup_transform_async": 1,
+    "lookup_transform_full": 2,
+    "lookup_transform_full_async": 2,
 }
+_METHODS = frozenset({*_KINDS, *_READS, *_DECLARES, "create_timer"})
 # What may be given a node, and declares and opens nothing but actions and the topics of tf2.
 _HARMLESS = frozenset(
     {
@@ -600,7 +600,9 @@ class _Module:
                 self._facts[part.of] += self._read_init(part, call, owner)
             case ast.Attribute(value=owner, attr=method) if method in _METHODS:
                 self._read_method_of(self._receiver(part, owner), part, call, method)
-            case ast.Attribute(attr=method) if method in _LOOKUPS and part.of in self._facts:
+            case ast.Attribute(value=owner, attr=method) if (
+                method in _LOOKUPS and part.of in self._facts and self._is_buffer(part, owner)
+            ):
                 self._facts[part.of] += self._looked_up(part, call, _LOOKUPS[method])
             case function:
                 self._read_given_nodes(part, call, dotted(function) or "this call")
@@ -631,6 +633,11 @@ class _Module:
                 self._facts[at] += self._action(part, call, _ACTIONS[name])
             elif name not in _HARMLESS:
                 self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
+
+    def _is_buffer(self, part: CodePart, node: ast.expr) -> bool:
+        """Return whether an expression is a buffer of tf2."""
+        made = self._bindings_around(part).values.get(dotted(node))
+        return isinstance(made, ast.Call) and dotted(made.func).rpartition(".")[2] == "Buffer"
 
     def _looked_up(self, part: CodePart, call: ast.Call, second: int) -> Iterator[NodeFrame]:
         """Yield the frames between which a call looks up the transform."""

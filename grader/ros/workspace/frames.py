@@ -4,6 +4,7 @@ them.
 
 import re
 from collections.abc import Iterator, Sequence
+from functools import cache
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -12,7 +13,6 @@ from grader.base.source import LazyLocation, Location
 from grader.ros.config.yaml_values import YamlValue, is_parameters, values_in
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.package.node_facts import NodeFrame
 from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
@@ -34,6 +34,9 @@ from grader.ros.xml.parsing import Element
 
 _JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
 _FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
+_BROADCASTING = ("TransformBroadcaster", "TFMessage")
+_TRANSFORMS = "tf2_msgs.msg.TFMessage"
+_POSES = "PosePublisher"  # a system of Gazebo that publishes the frames of a model
 _SENSOR_FRAMES = ("gz_frame_id", "ignition_frame_id")
 _FRAME_FIELDS = ("frame_id", "child_frame_id")  # of messages
 # What a program calls the frames that it makes itself.
@@ -68,7 +71,7 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
     for found in workspace.robots:
         yield from _in_robot(found)
     yield from _odometry_frames(workspace, robots)
-    yield from _sensor_frames(workspace)
+    yield from _sensor_frames(workspace, robots)
 
 
 def _place(location: LazyLocation | None) -> Location:
@@ -90,14 +93,24 @@ def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
     for _, _, launch in workspace.launches:
         if launch.more:
             yield Open("frame", reason=launch.more)
+        if any("bag" in command for command in launch.commands):
+            yield Open("frame")  # a recording has frames of its own
     packages = {package.name for package in workspace.packages}
     for _, node in workspace.nodes:
         if node.package not in known()["without_frames"] and node.package not in packages:
             yield Open("frame")
+    if _may_be_published(workspace):
+        yield Open("frame")
+
+
+def _may_be_published(workspace: Workspace) -> bool:
+    """Return whether code or a system of Gazebo may publish frames that are not known."""
     if any(_may_publish(workspace, package) for package in workspace.packages):
-        yield Open("frame")
-    if any("TransformBroadcaster" in text for text in workspace.python_texts):
-        yield Open("frame")
+        return True
+    if any(word in text for text in workspace.python_texts for word in _BROADCASTING):
+        return True
+    systems = (system_of(it) for root, _ in roots(workspace) for it in root.iter("plugin"))
+    return _POSES in systems
 
 
 def _may_publish(workspace: Workspace, package: Package) -> bool:
@@ -111,6 +124,8 @@ def _may_publish(workspace: Workspace, package: Package) -> bool:
     if found.doubts or found.loose_frames or not programs <= read:
         return True
     if any(node.doubts for node in found.nodes):
+        return True
+    if any(end.type == _TRANSFORMS for node in found.nodes for end in node.endpoints):
         return True
     started = {node.executable for _, node in workspace.nodes if node.package == package.name}
     for program in found.programs:
@@ -130,35 +145,49 @@ def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[F
             elif name is None and frame.use == "publishes":
                 yield Open("frame", reason=f"the frames of {node.executable} are computed")
     if named:
-        yield from _frames_of_placing(workspace)
+        yield from _frames_of_others(workspace)
+    # Those that static transforms have as their parent, such as the root of a map.
+    above = {frames_named(node)[0] for _, node in workspace.nodes if _is_static(node)}
     for each in named:
         at = each.frame.location
         if each.frame.use in ("publishes", "is above"):
             yield Definition("frame", each.name, at)
-        elif each.frame.use == "looks up":
-            yield Use("frame", each.name, at, "the lookup of a transform")
-        else:
+        elif each.frame.use == "looks up" and each.name not in above:
+            is_python = at.path.endswith(".py")
+            said = "lookup_transform" if is_python else "lookupTransform"
+            yield Use("frame", each.name, at, said, optional=is_python)
+        elif each.frame.use == "names":
             yield Use("frame", each.name, at, "frame_id")
     yield from _misspelt_roots(named, robots)
     yield from _frames_in_fields(workspace)
 
 
-def _frames_of_placing(workspace: Workspace) -> Iterator[Definition | Open]:
-    """Yield the frames that the parameters of nodes of others name, which publish them."""
+@cache
+def _published_names() -> frozenset[str]:
+    """Return the parameters that name frames which well-known programs publish above the robot."""
+    rows = known()["broadcasts"]
+    return frozenset(row["parent"]["parameter"] for row in rows)
+
+
+def _frames_of_others(workspace: Workspace) -> Iterator[Definition | Open]:
+    """Yield the frames that nodes of other packages publish under names from launch files, and the
+    links of robots under the prefix that robot_state_publisher gives them.
+    """
     for package, node in workspace.nodes:
+        if node.frame_prefix is None:
+            yield Open("frame")
+        elif node.frame_prefix:
+            for robot in workspace.robots:
+                for link in robot.robot.links:
+                    name = f"{node.frame_prefix}{link.name}".removeprefix("/")
+                    yield Definition("frame", name, node.location)
         if node.package in known()["placing"]:
             given = workspace.parameters_given(package, node)
             if given.unknown:
-                yield Open("frame", reason=f"the frames of {node.executable}: {given.unknown}")
-            for name, at in own_frames(given):
-                yield Definition("frame", name, at)
-
-
-def own_frames(given: NodeParameters) -> Iterator[tuple[str, Location]]:
-    """Yield the frames that parameters name and that their node makes itself."""
-    for name, value in given.values.items():
-        if _OWN_FRAMES.search(name.rpartition(".")[2]) and isinstance(value.value, str):
-            yield value.value.removeprefix("/"), value.location
+                yield Open("frame")
+            for name, value in given.values.items():
+                if name in _published_names() and isinstance(value.value, str):
+                    yield Definition("frame", value.value.removeprefix("/"), value.location)
 
 
 def _frames_in_fields(workspace: Workspace) -> Iterator[Use]:
@@ -208,10 +237,15 @@ def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> It
         yield Mismatch("frames", message, at, roots[meant], is_certain, corrections=either)
 
 
+def _is_static(node: StartedNode) -> bool:
+    return (node.package, node.executable) == STATIC_PUBLISHER
+
+
 def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
     children = {joint.child: joint for robot in robots for joint in robot.joints}
+    links = {link.name for robot in robots for link in robot.links}
     for _, node in workspace.nodes:
-        if (node.package, node.executable) != STATIC_PUBLISHER:
+        if not _is_static(node):
             continue
         parent, child = frames_named(node)
         if not parent or not child or None in (node.arguments or (None,)):
@@ -220,7 +254,9 @@ def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Iterato
             )
             continue
         yield Definition("frame", child, node.location)
-        yield Use("frame", parent, node.location, "static_transform_publisher")
+        # Above a robot, or a frame that others publish, it may be the root.
+        is_root = child not in children and (child in links or child in known()["frames"])
+        yield Use("frame", parent, node.location, STATIC_PUBLISHER[1], optional=is_root)
         own = children[child].parent if child in children else parent
         if own != parent:
             at = _place(children[child].location)
@@ -239,12 +275,13 @@ def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
             if text and "/" not in text and "$" not in text:
                 yield Use("joint", text, node.location, value.said, optional=not is_of_controller)
     elif _FRAMES.search(key):
-        is_made = _OWN_FRAMES.search(key) is not None
+        is_used = _OWN_FRAMES.search(key) is None
         for text, node in value.texts():
             name, at = text.removeprefix("/"), node.location
-            if name and "$" not in name:
-                is_own = Definition("frame", name, at)
-                yield is_own if is_made else Use("frame", name, at, value.said)
+            if name and "$" not in name and is_used:
+                yield Use("frame", name, at, value.said)
+            elif name and "$" not in name and key in _published_names():
+                yield Definition("frame", name, at)
 
 
 def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
@@ -294,16 +331,19 @@ def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[
                     yield Definition("frame", f"{model}/{frame}", at)
 
 
-def _sensor_frames(workspace: Workspace) -> Iterator[Use]:
-    """Yield the frames of the sensors of models and worlds, but for links of these, whose poses
-    Gazebo may publish.
+def _sensor_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Use]:
+    """Yield the frames of the sensors of models that are a robot as well: these have a link of it.
+    Their own links and frames are left out, since Gazebo may publish them.
     """
+    links = {link.name for robot in robots for link in robot.links}
     for file in workspace.sdf_files:
-        links = {link.get("name") for link in file.root.iter("link")}
-        for sensor in file.root.iter("sensor"):
-            for element in sensor.iterchildren(*_SENSOR_FRAMES):
+        for model in file.root.iter("model"):
+            own = {element.get("name") for element in model.iter("link", "frame")}
+            if own.isdisjoint(links):
+                continue
+            for element in model.iter(*_SENSOR_FRAMES):
                 name = (element.text or "").strip().removeprefix("/")
-                if name and name not in links:
+                if name and name not in own:
                     at = file.location(element)
                     yield Use("frame", name, at, f"<{element.tag}>", optional=True)
 

@@ -1,4 +1,4 @@
-"""Transforms that own nodes look up between frames that nothing connects."""
+"""Transforms that own nodes look up between frames that are there, and that nothing connects."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -8,10 +8,12 @@ from grader.base.text import quoted
 from grader.ros.known.known import known
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.workspace.endpoints import frames_of
-from grader.ros.workspace.frames import openings, own_frames
+from grader.ros.workspace.frames import openings
+from grader.ros.workspace.gazebo import roots, system_of
 from grader.ros.workspace.names import UNCONNECTED, Compared, Mismatch
 from grader.ros.workspace.workspace import Workspace
 
+_ROBOT_PUBLISHER = "robot_state_publisher"
 _PUBLISHED = ("publishes", "is above")
 
 
@@ -23,55 +25,56 @@ class _Lookup(NamedTuple):
 
 
 class _Trees:
-    """The frames that transforms may connect."""
+    """The frames that are published, and which of them transforms connect."""
 
     def __init__(self) -> None:
-        self._above: dict[str, str] = {}
+        self._number: dict[str, int] = {}
+        self._members: list[list[str]] = []
 
-    def root(self, frame: str) -> str:
-        """Return the frame that stands for all that are connected with one."""
-        while frame in self._above:
-            frame = self._above[frame]
-        return frame
+    def connect(self, *frames: str) -> None:
+        """Add that there are transforms between frames."""
+        for frame in frames:
+            if frame not in self._number:
+                self._number[frame] = len(self._members)
+                self._members.append([frame])
+            first, second = sorted((self._number[frames[0]], self._number[frame]))
+            if first != second:
+                moved = self._members[second]
+                self._members[second] = []
+                self._members[first] += moved
+                self._number.update(dict.fromkeys(moved, first))
 
-    def connect(self, frames: Sequence[str]) -> None:
-        """Add that there may be transforms between frames."""
-        for frame in frames[1:]:
-            roots = self.root(frames[0]), self.root(frame)
-            if roots[0] != roots[1]:
-                self._above[roots[1]] = roots[0]
+    def are_apart(self, one: str, other: str) -> bool:
+        """Return whether two frames are published, and not connected."""
+        numbers = self._number.get(one), self._number.get(other)
+        return None not in numbers and numbers[0] != numbers[1]
 
 
 def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
-    """Yield the transforms that are looked up between frames that exist, where certainly nothing
-    that a launch file starts connects these.
+    """Yield the transforms that are looked up between frames which launch files publish, where
+    certainly nothing that these start connects them. A program in another terminal may publish
+    other frames, such as the map, and is not likely to connect these.
     """
     lookups = [*_lookups(workspace)]
     if not lookups or any(fact.kind == "frame" for fact in openings(workspace)):
         return
-    trees = _connected(workspace)
+    trees = _published(workspace)
     if trees is None:
         return
     yield Compared("transforms")
     for lookup in lookups:
         target, source = lookup.frames
-        if trees.root(target) == trees.root(source):
-            continue
-        message = (
-            f"the transform between {quoted(target)} and {quoted(source)} is looked up, and "
-            "nothing that is started connects these frames"
-        )
-        yield Mismatch("transforms", message, lookup.location, is_certain=False, rule=UNCONNECTED)
+        if trees.are_apart(target, source):
+            message = (
+                f"nothing that is started connects {quoted(target)} and {quoted(source)}, so this "
+                "lookup fails"
+            )
+            at = lookup.location
+            yield Mismatch("transforms", message, at, is_certain=False, rule=UNCONNECTED)
 
 
 def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
-    """Yield what nodes that are certainly started look up, where both frames are known to exist."""
-    existing = {*known()["frames"]}
-    for found in workspace.robots:
-        existing |= {link.name for link in found.robot.links}
-    for _, node in workspace.nodes:
-        if (node.package, node.executable) == STATIC_PUBLISHER:
-            existing |= {*frames_named(node)}
+    """Yield what nodes that are certainly started look up, where both frames are known."""
     for _, node in workspace.nodes:
         if node.when is not True:
             continue
@@ -80,29 +83,30 @@ def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
             if frame.lookup is not None:
                 by_call.setdefault(frame.lookup, []).append((name or "").removeprefix("/"))
         for at, names in by_call.items():
-            if len(names) == 2 and existing.issuperset(names):
+            if len(names) == 2:
                 yield _Lookup((names[0], names[1]), at)
 
 
-def _connected(workspace: Workspace) -> _Trees | None:
-    """Return what may be connected, whatever conditions say; None where that is not known."""
+def _published(workspace: Workspace) -> _Trees | None:
+    """Return what launch files publish, whatever conditions say; None where that is not known."""
+    odometry = known()["odometry_systems"]
+    if any(system_of(it) in odometry for root, _ in roots(workspace) for it in root.iter("plugin")):
+        return None
     trees = _Trees()
-    roots: list[str] = []
-    for found in workspace.robots:
-        joints = found.robot.joints
-        for joint in joints:
-            trees.connect([joint.parent, joint.child])
-        children = {joint.child for joint in joints}
-        roots += [link.name for link in found.robot.links if link.name not in children]
-    for package, node in workspace.nodes:
-        if (node.package, node.executable) == STATIC_PUBLISHER:
-            trees.connect([name for name in frames_named(node) if name])
-        elif node.package in known()["placing"]:
-            named = own_frames(workspace.parameters_given(package, node))
-            frames = [*known()["placing"][node.package], *(name for name, _ in named)]
-            trees.connect([*frames, *roots])
-        own = [name for name, frame in frames_of(workspace, node) if frame.use in _PUBLISHED]
-        if None in own:
+    for _, node in workspace.nodes:
+        frames: Sequence[str | None] = []
+        if node.package in known()["placing"] or node.frame_prefix != "":
             return None
-        trees.connect([name.removeprefix("/") for name in own if name])
+        if (node.package, node.executable) == STATIC_PUBLISHER:
+            frames = [name or None for name in frames_named(node)]
+        elif node.executable == _ROBOT_PUBLISHER:
+            for found in workspace.robots:
+                for joint in found.robot.joints:
+                    trees.connect(joint.parent, joint.child)
+        else:
+            named = frames_of(workspace, node)
+            frames = [name for name, frame in named if frame.use in _PUBLISHED]
+        if None in frames:
+            return None
+        trees.connect(*(frame.removeprefix("/") for frame in frames if frame))
     return trees

@@ -47,7 +47,7 @@ def _other_namespace(
     written = same[0].strip("/")
     message = (
         f"the node {full} gets nothing of {quoted(written)}, which is the key of the node "
-        f"{same[0]}: write {quoted('/**/' + full.rpartition('/')[2])}, which is for any namespace"
+        f"{same[0]}: write {quoted('/**/' + full.rpartition('/')[2])}, which matches any namespace"
     )
     at = tree.key_location(*keys[same[0]])
     yield Mismatch("parameters", message, at, node.location, is_certain=node.when is True)

@@ -147,7 +147,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
             lacking.add(name)
     if not lacking or not unread:
         return
-    is_passed = _is_passed_to_include(workspace, path)
+    is_passed = path in workspace.passed_files
     keys = keys_of_sections(tree)
     for node, name in zip(nodes, known_names, strict=True):
         workspace.charge(len(keys))
@@ -188,15 +188,6 @@ def _unread_sections(
         if not is_read:
             unread.append(key)
     return unread
-
-
-def _is_passed_to_include(workspace: Workspace, path: str) -> bool:
-    """Return whether a launch file passes a parameter file to another one that it includes."""
-    for _, _, launch in workspace.launches:
-        for passed in launch.passed:
-            if any(workspace.source_of(value or "") == path for _, value in passed.values):
-                return True
-    return False
 
 
 def _controllers_given(workspace: Workspace) -> Iterator[Fact]:

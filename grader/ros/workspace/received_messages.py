@@ -16,8 +16,8 @@ from grader.ros.workspace.workspace import Workspace
 _HEADER = "header"
 # An encoding without colours: the type of a channel, and how many there are.
 _PLAIN_ENCODING = re.compile(r"(?:8U|8S|16U|16S|32S|32F|64F)(?:C(\d{1,2}))?")
-# What the synchronisers of Python do with messages without a header. Those of C++ take a time of 0:
-# that is one of another clock up to Jazzy, which rclcpp does not compare (message_traits.h).
+# What the synchronisers of Python do with messages without a header. Those of C++ take a time of 0.
+# Up to Jazzy it has another type of clock, and rclcpp compares no such times (message_traits.h).
 _EFFECTS = {
     "TimeSynchronizer": "stops at messages",
     "ApproximateTimeSynchronizer": "drops messages without allow_headerless",
@@ -40,7 +40,9 @@ def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
             continue
         if each.together and not any(_has_header(workspace, it) for it in each.together):
             continue  # all have the same time in C++, and each pair fits
-        effect = _EFFECTS.get(each.by, "takes 0 in its place, and stops or finds no right pairs")
+        effect = _EFFECTS.get(
+            each.by, "uses time 0 instead, so it stops or never matches the messages"
+        )
         message = f"{each.type} has no header with a time: {each.by} {effect}"
         yield warning("messages", message, each.location)
 

@@ -18,8 +18,8 @@ _Keys = Mapping[str, tuple[str, ...]]  # of the sections of a file, by the full 
 
 
 def renamed_node_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the parameter files that have parameters of the name that a node has in its program
-    only: rcl compares the name that the launch file gives it, so the node gets none of them.
+    """Yield the sections named after a node's name in its program, where the launch file renames
+    the node: rcl compares the new name, so the node gets none of them.
     """
     given: dict[tuple[str, int], list[StartedNode]] = {}
     for launch, node in workspace.launched:
@@ -36,6 +36,8 @@ def renamed_node_facts(workspace: Workspace) -> Iterator[Fact]:
         has_container = any(node.package in known()["containers"] for node in others)
         if not isinstance(tree, YamlNode) or launch in with_components or has_container:
             continue
+        if path in workspace.passed_files:
+            continue  # whose nodes may read the section
         elsewhere = _names_read(workspace, others)
         if with_components:
             elsewhere.add(None)
@@ -49,8 +51,8 @@ def _unread_sections(
     elsewhere: Collection[str | None],
 ) -> Iterator[Compared | Mismatch]:
     """Yield the sections that no node of a launch file gets, for each of its nodes that would get
-    one by the name of its program. One that gets other sections may lack what a node of any launch
-    file gets, of which `elsewhere` are the names.
+    one by the name of its program. If it gets another section of the file, one that a node of any
+    launch file reads is not reported: `elsewhere` are the names of these nodes.
     """
     keys = keys_of_sections(tree)
     workspace.charge(len(nodes) * (1 + len(keys)))
@@ -65,11 +67,13 @@ def _unread_sections(
     for node, key in unread:
         yield Compared("parameters")
         old, name, at = key.rpartition("/")[2], node.node_name or "", tree.key_location(*keys[key])
+        is_read_elsewhere = old in elsewhere
+        advice = "add a section" if is_read_elsewhere else "rename the section to"
         message = (
-            f"the node {name!r} gets nothing of {quoted(old)}, which is its name in its program "
-            f"only: write {quoted(name)}"
+            f"the launch file names this node {name!r}, so it ignores the section {quoted(old)}, "
+            f"its name in its program: {advice} {quoted(name)}"
         )
-        is_only_one = len(unread) == 1 and old not in elsewhere
+        is_only_one = len(unread) == 1 and not is_read_elsewhere
         either = corrections(old, at, name if is_only_one else None)
         yield Mismatch("parameters", message, at, node.location, node.when is True, either)
 

@@ -565,6 +565,15 @@ class Workspace:
         """
         return parameters_of(node, partial(self.open, package), name, self._read_tables)
 
+    @cached_property
+    def passed_files(self) -> Collection[str]:
+        """The parameter files that launch files pass to others, which they include."""
+        files: set[str | None] = set()
+        for _, _, launch in self.launches:
+            for passed in launch.passed:
+                files |= {self.source_of(value or "") for _, value in passed.values}
+        return {path for path in files if path is not None}
+
     def read_given(self, package: Package, node: StartedNode, name: str) -> NodeParameters:
         """Return the same, where a file that surely is nowhere gives nothing. Raises NotDecided."""
         return parameters_of(node, partial(self.open_given, package), name, self._read_tables)
