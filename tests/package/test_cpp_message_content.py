@@ -99,6 +99,10 @@ OPEN_SENT = [
     "Image a = made(); pub_->publish(a);",
     "Image a; a = b; a = c; pub_->publish(a);",
     '{ Image a; } Image a; a.encoding = "16UC1"; pub_->publish(a);',
+    'Image a; if (b) a.encoding = "16UC1"; pub_->publish(a);',
+    'Image a; for (auto & b : c) a.encoding = "16UC1"; pub_->publish(a);',
+    'Image a; switch (b) { case 0: a.encoding = "16UC1"; break; case 1: pub_->publish(a); }',
+    'Image a; a.encoding = "16UC1"; a = *cv_bridge::CvImage(h, "bgr8", m).toImageMsg(); pub_->publish(a);',
     '\nImage a;\n#ifdef WIDE\na.encoding = "16UC1";\n#endif\npub_->publish(a);',
 ]  # fmt: skip
 
@@ -132,6 +136,7 @@ def test_the_encoding_that_a_callback_asks_for(encoding: str, parameter: str, bo
 
 _ASKS = 'cv_bridge::toCvShare(m, "bgr8");'
 OPEN_HEARD = [
+    (_BOUND, f"if (!convert_) {{ return; }} {_ASKS}"),
     (_BOUND, 'if (m->encoding == "mono8") {{ cv_bridge::toCvShare(m, "bgr8"); }}'),
     (_BOUND, f"m = other(); {_ASKS}"),
     (_BOUND, f"cv_bridge::toCvShare(m); {_ASKS}"),
