@@ -4,7 +4,7 @@ import tomllib
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests.command_line import run
@@ -70,8 +70,19 @@ def urdfs(draw: st.DrawFn) -> str:
     return f'<robot name="ash">{"".join(draw(st.permutations(parts)))}</robot>'
 
 
+_TINY = (
+    '<robot name="ash"><link name="l0"/><link name="l1"/><link name="l2"/>'
+    '<joint name="j1" type="revolute"><parent link="l0"/><child link="l1"/>'
+    '<limit lower="0" upper="1" effort="1" velocity="1"/></joint>'
+    '<joint name="j2" type="revolute"><parent link="l0"/><child link="l2"/>'
+    '<limit lower="0" upper="1" effort="1" velocity="1"/>'
+    '<mimic joint="j1" multiplier="4.9894e-217"/></joint></robot>'
+)
+
+
 @examples(8)
 @given(text=urdfs())
+@example(text=_TINY)
 def test_a_random_reference_gets_full_marks(text: str) -> None:
     """Every rubric loads without a warning and gives its reference all points; it tests each link's frame and joint."""
     with TemporaryDirectory() as name:

@@ -5,6 +5,7 @@ likely forgot.
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from decimal import Decimal
 from math import degrees, inf, pi, radians
 from typing import Any, NamedTuple
 
@@ -29,7 +30,7 @@ _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 # Of a sentence: with a decimal point, or before a unit. Others count something, or are names: ROS
 # 2.
 _MEASURE = re.compile(
-    r"(?<![\w.])(-?\d+(?:\.\d+)?)(?!\.?\d)(?: ?(degrees?|mm|cm|kg|percent|m|N)\b)?"
+    r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d{1,3})?)(?!\.?\d)(?: ?(degrees?|mm|cm|kg|percent|m|N)\b)?"
 )
 _ANGLES = (radians(1.0), degrees(1.0))
 _UNITS = {
@@ -250,7 +251,8 @@ def _unknown_measures(sentence: str, numbers: Sequence[float]) -> list[str]:
     """
     found = []
     for text, unit in _MEASURE.findall(sentence):
-        digits, scales = len(text.partition(".")[2]), (1.0, *_UNITS.get(unit, _ANGLES))
+        scales = (1.0, *_UNITS.get(unit, _ANGLES))
+        digits = -int(Decimal(text).as_tuple().exponent)
         fitting = {round(abs(number) * scale, digits) for number in numbers for scale in scales}
         if (digits or unit) and abs(float(text)) not in fitting:
             found.append(text)
