@@ -30,7 +30,8 @@ _NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
 # Of a sentence: with a decimal point, or before a unit. Others count something, or are names: ROS
 # 2.
 _MEASURE = re.compile(
-    r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d{1,3})?)(?!\.?\d)(?: ?(degrees?|mm|cm|kg|percent|m|N)\b)?"
+    r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[-+]?\d{1,3})?)(?!\.?\d)"
+    r"(?: ?(degrees?|mm|cm|kg|percent|m|N)\b)?"
 )
 _ANGLES = (radians(1.0), degrees(1.0))
 _UNITS = {
