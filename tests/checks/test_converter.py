@@ -94,6 +94,7 @@ def converter(code: bytes, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("grader.lab.documents.converter.__file__", str(path))
 
 
+@pytest.mark.slow
 def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A document that takes too long uses up the time of later documents; texts are read all the same."""
     log = tmp_path / "log"

@@ -83,6 +83,7 @@ def test_renames_a_link_everywhere() -> None:
     assert '"base_link"' not in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("folder", "expected"), _WORKSPACES.items())
 def test_renames_are_proven(folder: str, expected: tuple[int, int]) -> None:
     done, refused = _rename_all(ROOT / folder)

@@ -79,6 +79,7 @@ def test_there_are_enough() -> None:
     assert len({kind for _, kind in KINDS}) >= 6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("rubric", "kind"), KINDS)
 def test_a_slip_costs_one_criterion(rubric: str, kind: str) -> None:
     """At most one criterion loses points, nothing is open, and the report names the line at the one that pays."""

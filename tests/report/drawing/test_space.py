@@ -39,6 +39,7 @@ def changed_references() -> Iterator[str]:
             yield REFERENCE[: number.start()] + value + REFERENCE[number.end() :]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["several-mistakes", "centimetres", "lidar-missing"])
 def test_page_has_no_more_of_the_reference_than_the_views(name: str) -> None:
     """Where a change of the reference changes no byte of the drawing, it changes no byte of the page."""
