@@ -9,6 +9,7 @@ from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
 from grader.ros.workspace.all_robots import read_workspace
 from grader.ros.workspace.file_problems import listed_problems
+from grader.ros.workspace.file_problems import listed_problems
 from grader.ros.workspace.name_problems import name_problems
 from grader.ros.workspace.opened import OpenedWorkspace
 from grader.ros.workspace.reading import read_agreement
@@ -290,6 +291,18 @@ def test_the_package_of_a_launch_file_declares_what_it_starts() -> None:
     }
     [found] = _names(_kit(more, launch=_GUI))
     assert found.startswith("REF008 package.xml of 'kit' does not declare 'rqt_robot_steering'")
+
+
+def test_a_launch_file_under_another_name_is_one_mistake() -> None:
+    """A build stops at the file that is not there; that the folder is not installed follows."""
+    for named, codes in (("'launch/kit.launch.py'", []), ("'launch/kti.launch.py'", ["PKG012"])):
+        setup = _SETUP.replace("glob('launch/*')", f"[{named}]")
+        assert setup != _SETUP
+        kit = _kit({"src/kit/setup.py": setup})
+        found = [
+            it.code for it in listed_problems(kit.workspace) if it.code in ("PKG012", "PKG022")
+        ]
+        assert found == codes
 
 
 def test_a_dependency_within_export_does_not_count() -> None:

@@ -57,7 +57,7 @@ def _uninstalled_launch_files(workspace: Workspace) -> Iterator[Problem]:
         is_module = f"{_LAUNCH_FOLDER}__init__.py" in package.tree.files
         if not files or is_module or setup is None or not are_installs_known(package):
             continue
-        if setup.faults:  # which may be files of this folder that are not there
+        if setup.stops:  # such as a file of this folder that is not there
             continue
         if not {*package.installed.values()}.isdisjoint(files):
             continue
