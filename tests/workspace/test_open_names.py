@@ -9,7 +9,6 @@ from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
 from grader.ros.workspace.all_robots import read_workspace
 from grader.ros.workspace.file_problems import listed_problems
-from grader.ros.workspace.file_problems import listed_problems
 from grader.ros.workspace.name_problems import name_problems
 from grader.ros.workspace.opened import OpenedWorkspace
 from grader.ros.workspace.reading import read_agreement
