@@ -93,17 +93,17 @@ def _published(workspace: Workspace) -> _Trees | None:
     if any(system_of(it) in odometry for root, _ in roots(workspace) for it in root.iter("plugin")):
         return None
     trees = _Trees()
+    if any(node.executable == _ROBOT_PUBLISHER for _, node in workspace.nodes):
+        for found in workspace.robots:
+            for joint in found.robot.joints:
+                trees.connect(joint.parent, joint.child)
     for _, node in workspace.nodes:
         frames: Sequence[str | None] = []
         if node.package in known()["placing"] or node.frame_prefix != "":
             return None
         if (node.package, node.executable) == STATIC_PUBLISHER:
             frames = [name or None for name in frames_named(node)]
-        elif node.executable == _ROBOT_PUBLISHER:
-            for found in workspace.robots:
-                for joint in found.robot.joints:
-                    trees.connect(joint.parent, joint.child)
-        else:
+        elif node.executable != _ROBOT_PUBLISHER:
             named = frames_of(workspace, node)
             frames = [name for name, frame in named if frame.use in _PUBLISHED]
         if None in frames:
