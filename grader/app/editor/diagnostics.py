@@ -64,7 +64,7 @@ def diagnostics_of(
 
 
 def _join_assumptions(findings: Iterable[Finding]) -> list[_Shown]:
-    """Return problems, each with what is assumed because of it: that is no other mistake."""
+    """Return problems, each with what is assumed because of it."""
     shown: list[_Shown] = []
     assumed: list[_Shown] = []
     for finding in findings:

@@ -296,7 +296,7 @@ def _is_reverse(one: Proposal, other: Proposal) -> bool:
 
 
 def _leave_out(groups: Sequence[Edits], is_enough: Callable[[Edits], bool]) -> tuple[Edits, ...]:
-    """Return the groups of edits without those that are not needed: the last ones are left out
+    """Return the groups of edits without those that are not needed: the last ones are dropped
     first, because the first gain most. Without trials, the rest stay.
     """
     kept = tuple(groups)

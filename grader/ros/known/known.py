@@ -24,7 +24,7 @@ class _Known(TypedDict):
     """What packages define that are not submitted; the files say what each table means."""
 
     frames: list[str]
-    placing: list[str]
+    transform_publishers: list[str]
     without_frames: list[str]
     without_lifecycle: list[str]
     without_commands: list[str]

@@ -181,7 +181,7 @@ def _frames_of_others(workspace: Workspace) -> Iterator[Definition | Open]:
                 for link in robot.robot.links:
                     name = f"{node.frame_prefix}{link.name}".removeprefix("/")
                     yield Definition("frame", name, node.location)
-        if node.package in known()["placing"]:
+        if node.package in known()["transform_publishers"]:
             given = workspace.parameters_given(package, node)
             if given.unknown:
                 yield Open("frame")
@@ -333,7 +333,7 @@ def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[
 
 def _sensor_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Use]:
     """Yield the frames of the sensors of models that are a robot as well: these have a link of it.
-    Their own links and frames are left out, since Gazebo may publish them.
+    Their own links and frames are ignored, since Gazebo may publish them.
     """
     links = {link.name for robot in robots for link in robot.links}
     for file in workspace.sdf_files:

@@ -99,7 +99,7 @@ def _published(workspace: Workspace) -> _Trees | None:
                 trees.connect(joint.parent, joint.child)
     for _, node in workspace.nodes:
         frames: Sequence[str | None] = []
-        if node.package in known()["placing"] or node.frame_prefix != "":
+        if node.package in known()["transform_publishers"] or node.frame_prefix != "":
             return None
         if (node.package, node.executable) == STATIC_PUBLISHER:
             frames = [name or None for name in frames_named(node)]
