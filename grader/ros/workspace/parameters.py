@@ -285,8 +285,8 @@ def _given(
 
 
 def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Location]:
-    """Yield the places in files of what nodes of other programs, and controllers, of the same name
-    get, unless they certainly do not declare it.
+    """Yield the places of parameters that a node of another program, or a controller, of the same
+    name gets and may declare.
     """
     for given in workspace.parameter_owners.get(workspace.name_of(node) or "", ()):
         if (given.node.package, given.node.executable) == (node.package, node.executable):
