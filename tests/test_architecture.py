@@ -14,6 +14,7 @@ from grader.lab.checks.registry import own_checks
 from tests.prose import COMPREHENSIONS, Prose, size
 
 ROOT = Path(__file__).parent.parent / "grader"
+TESTS = Path(__file__).parent
 # The packages, and the rooms inside each of them, from the bottom: what stands in one string does
 # not import each other.
 LAYERS = (
@@ -154,7 +155,7 @@ def imports(module: str) -> tuple[str, ...]:
 
 
 def _imports(module: str) -> Iterator[str]:
-    for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
+    for node in ast.walk(prose().trees[module]):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:
@@ -252,11 +253,7 @@ def test_names_of_one_module_are_private() -> None:
 
 def defined_names(module: str) -> Iterator[str]:
     """Yield the functions, classes and constants that a module defines at its top, of those that only modules import."""
-    for node in (
-        ast.parse(MODULES[module].read_text(encoding="utf-8")).body
-        if not module.startswith(NAMED_BY_OTHERS)
-        else ()
-    ):
+    for node in prose().trees[module].body if not module.startswith(NAMED_BY_OTHERS) else ():
         match node:
             case ast.FunctionDef() | ast.ClassDef():
                 yield node.name
@@ -326,13 +323,59 @@ def figures_of_prose() -> dict[str, float]:
 def names_from_ros() -> set[tuple[str, str]]:
     """Return the modules of `ros` with the names that other packages import from them."""
     pairs = set()
-    for module, path in MODULES.items():
+    for module in MODULES:
         if module.startswith("grader.ros."):
             continue
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in ast.walk(prose().trees[module]):
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("grader.ros."):
                 pairs |= {(str(node.module), alias.name) for alias in node.names}
     return pairs
+
+
+def test_no_test_replaces_a_name_that_another_module_imports() -> None:
+    """A name is replaced in the module that uses it.
+
+    A module that imports the name by `from` before the test does not see the replacement, and one that imports it
+    during the test keeps it for all later tests: the result would depend on their order.
+    """
+    imported = {name for module in MODULES for name in _names_by_from(prose().trees[module])}
+    replaced = {
+        (name, path.relative_to(TESTS).as_posix())
+        for path in TESTS.rglob("*.py")
+        for name in _replaced_names(path)
+    }
+    assert len(replaced) > 20
+    assert [pair for pair in sorted(replaced) if pair[0] in imported] == []
+
+
+def _names_by_from(tree: ast.Module) -> Iterator[str]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+
+
+def _replaced_names(path: Path) -> Iterator[str]:
+    """Yield the names of the grader's modules that a test replaces, `grader.base.names.near`."""
+    text = path.read_text(encoding="utf-8")
+    if "setattr(" not in text and "patch" not in text:
+        return
+    tree = ast.parse(text)
+    modules = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom):
+            modules |= {it.asname or it.name: f"{node.module}.{it.name}" for it in node.names}
+    for node in ast.walk(tree):
+        match node:
+            case ast.Constant(value=str(name)) if name.rpartition(".")[0] in MODULES:
+                yield name
+            case ast.Call(
+                func=ast.Attribute(attr="setattr" | "object"),
+                args=[target, ast.Constant(value=str(name)), *_],
+            ):
+                module = ast.unparse(target)
+                module = modules.get(module, module)
+                if module in MODULES:
+                    yield f"{module}.{name}"
 
 
 @pytest.mark.slow

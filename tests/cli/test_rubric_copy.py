@@ -1,6 +1,7 @@
 """grader rubric copy: a shipped rubric with its files, to be changed."""
 
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -36,15 +37,20 @@ def test_a_copy_works_as_it_is(name: str, tmp_path: Path) -> None:
         assert one == other != []
 
 
-def test_without_the_answers_no_line_names_them(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Students have the package without the model answers: a copy is checked without a warning."""
-    shutil.copytree(ROOT / "rubrics/lab6", tmp_path / "lab6")
-    (tmp_path / "lab6/answers.toml").unlink()
-    monkeypatch.setattr(
-        "grader.lab.rubric.rubric.shipped_rubrics", lambda: {"lab6": tmp_path / "lab6/rubric.toml"}
-    )
+@pytest.fixture
+def without_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Install lab6 as students have it: without its model answers."""
+    shutil.copytree(ROOT / "rubrics/lab6", tmp_path / "installed/lab6")
+    (tmp_path / "installed/lab6/answers.toml").unlink()
+    monkeypatch.setattr("grader.lab.rubric.rubric.shipped_folder", lambda _: tmp_path / "installed")
+    shipped_rubrics.cache_clear()
+    yield
+    shipped_rubrics.cache_clear()
+
+
+@pytest.mark.usefixtures("without_answers")
+def test_without_the_answers_no_line_names_them(tmp_path: Path) -> None:
+    """A copy of a rubric without its model answers is checked without a warning."""
     assert "answers.toml" not in rubrics.copy("lab6", tmp_path / "copy")
     checked = grader("rubric", "check", tmp_path / "copy/lab6/rubric.toml")
     assert (checked.returncode, checked.stderr) == (0, "")
