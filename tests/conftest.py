@@ -2,9 +2,12 @@
 
 import gc
 import os
+import re
 import signal
 import sys
 from collections import Counter, defaultdict
+from pathlib import Path
+from random import Random
 
 import pytest
 from hypothesis import settings
@@ -51,12 +54,28 @@ for name in [name for name in os.environ if name in _NAMES or name.startswith(_B
 os.environ |= {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
 
 
-_FEW = 8  # cases of a test that the README's command runs
-_SHARE = 10  # of more than 80 cases, one in ten
+_QUICK = "not exhaustive and not slow"  # the tests of README's command
+_MARKED = re.compile(r"^pytestmark = (\[\s*)?pytest\.mark\.(exhaustive|slow)\b", re.MULTILINE)
+_FEW = 2  # cases of a test that README's command runs
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the order of files, which no result may depend on."""
+    parser.addoption("--order", default="", help="'reversed', or a seed: how files are ordered")
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Do not import modules of which README's command runs nothing, unless they are named."""
+    if collection_path.suffix != ".py" or config.option.markexpr != _QUICK:
+        return None
+    if any(Path(word.partition("::")[0]).suffix == ".py" for word in config.args):
+        return None
+    marked = _MARKED.search(collection_path.read_text(encoding="utf-8"))
+    return True if marked is not None else None
 
 
 @pytest.hookimpl(tryfirst=True)  # before tests are selected by their marks
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Mark as slow all cases of a test but some from all over its table.
 
     One worker runs a file: those with slow tests or many cases come first, so that none is waited for at the end.
@@ -69,9 +88,34 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if item.get_closest_marker("exhaustive") is None:
             cases[item.nodeid.partition("[")[0]].append(item)
     for many in cases.values():
-        step = max(1, len(many) // max(_FEW, len(many) // _SHARE))
-        for item in (one for index, one in enumerate(many) if index % step):
-            item.add_marker("slow")
+        kept = _of_each_kind(many) or many[:: max(1, len(many) // _FEW)]
+        for item in many:
+            if item not in kept:
+                item.add_marker("slow")
+    _reorder(items, config.option.order)
+
+
+def _of_each_kind(cases: list[pytest.Item]) -> list[pytest.Item]:
+    """Return the first case of each kind, if a mark says what the kind of a case is."""
+    mark = cases[0].get_closest_marker("every")
+    if mark is None:
+        return []
+    kinds: dict[object, pytest.Item] = {}
+    for item in cases:
+        assert isinstance(item, pytest.Function)
+        kinds.setdefault(mark.kwargs["kind"](*item.callspec.params.values()), item)
+    return [*kinds.values()]
+
+
+def _reorder(items: list[pytest.Item], order: str) -> None:
+    """Put the files into another order; the tests of a file share fixtures, and stay together."""
+    files = [*dict.fromkeys(item.path for item in items)]
+    if order == "reversed":
+        files.reverse()
+    elif order:
+        Random(order).shuffle(files)
+    places = {path: place for place, path in enumerate(files)}
+    items.sort(key=lambda item: places[item.path])
 
 
 def pytest_collection_finish() -> None:

@@ -201,6 +201,7 @@ def test_every_code_and_check_has_an_example() -> None:
             assert max(map(len, text.split("\n"))) <= 110, name
 
 
+@pytest.mark.every(kind=str)
 @pytest.mark.parametrize("code", CODES)
 def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(
     code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -246,6 +247,7 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(
             assert {it.code for it in found} == {code, *ALSO.get(code, code).split()}
 
 
+@pytest.mark.every(kind=str)
 @pytest.mark.parametrize("name", CHECKS)
 def test_a_check_fails_what_is_wrong_and_passes_what_is_right(name: str, tmp_path: Path) -> None:
     """The row of a rubric is the one that `explain` shows; a check that needs manual grading finds nothing or something."""

@@ -59,6 +59,7 @@ def test_the_same_seed_gives_the_same_bytes(kind: str, layout: str, tmp_path: Pa
     assert digest(tmp_path / "one") == digest(tmp_path / "two") != digest(tmp_path / "other")
 
 
+@pytest.mark.slow
 def test_random_choices_are_the_same_on_every_python() -> None:
     """The results for one seed are recorded here."""
     dice = made_up.Dice("1/hand-in/0")
@@ -145,6 +146,7 @@ def test_all_kinds_and_names_occur(tmp_path: Path) -> None:
     assert written[-1].person.login.endswith(str(MANY))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", spread(made_up.LAYOUTS, 1))
 def test_every_mixed_submission_is_opened(layout: str, tmp_path: Path) -> None:
     """None causes an error of the grader, and those with a known result get it."""

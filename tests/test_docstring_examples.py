@@ -23,6 +23,7 @@ def test_examples_give_what_they_show(name: str) -> None:
     assert not found.failed
 
 
+@pytest.mark.slow
 def test_central_types_and_public_names_have_an_example() -> None:
     """What every reader and every user meets shows in its docstring how it is used."""
     classes = (

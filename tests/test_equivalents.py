@@ -189,6 +189,7 @@ def carried(report: Report) -> set[str]:
     return {result.criterion.id for result in report.results if result.carried}
 
 
+@pytest.mark.slow
 @examples(60)
 @given(data=rewritings(REFERENCE))
 def test_every_equivalent_of_the_reference_gets_full_marks(data: bytes) -> None:
@@ -256,6 +257,7 @@ _ADDED = st.sampled_from(
 )
 
 
+@pytest.mark.slow
 @examples(80)
 @given(draw=st.data())
 def test_no_value_is_an_error_of_the_grader(draw: st.DataObject) -> None:

@@ -56,6 +56,7 @@ def differences(sample: Sample) -> Iterator[tuple[str, object]]:
             yield name, found
 
 
+@pytest.mark.slow
 def test_every_sample_loses_the_expected_criteria() -> None:
     """Verdict, lost, carried and pending criteria are those in expected.toml, and an earlier failure causes each skip."""
     found = {name: [*differences(sample)] for name, sample in SAMPLES.items()}

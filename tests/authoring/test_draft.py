@@ -261,6 +261,7 @@ def of_diffdrive(tmp_path_factory: pytest.TempPathFactory) -> Rubric:
     return load_rubric(str(folder / "lab.toml"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("edit", "lost"), CAUSES.values(), ids=CAUSES)
 def test_a_mistake_costs_where_it_is(
     edit: Edit, lost: set[str], of_diffdrive: Rubric, tmp_path: Path
@@ -318,6 +319,7 @@ NAMED: dict[str, tuple[str, str, str]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("added", "old", "wrong"), NAMED.values(), ids=NAMED)
 def test_joints_are_asked_for_by_their_links(
     added: str, old: str, wrong: str, tmp_path: Path
@@ -336,6 +338,7 @@ def test_joints_are_asked_for_by_their_links(
     assert [it.outcome.message for it in report.results if it.is_lost] == []
 
 
+@pytest.mark.slow
 def test_plugins_that_are_alike_may_be_in_several_elements(tmp_path: Path) -> None:
     """Gazebo collects them from all <gazebo> elements."""
     plugins = [
@@ -354,6 +357,7 @@ def test_plugins_that_are_alike_may_be_in_several_elements(tmp_path: Path) -> No
         ] * lost
 
 
+@pytest.mark.slow
 def test_lists_with_names_of_joints_that_are_compared_are_not_asked_for(tmp_path: Path) -> None:
     """Such as the joints whose positions Gazebo publishes, and the joint that another one follows."""
     publisher = "".join(
@@ -384,6 +388,7 @@ def test_the_mistake_of_a_sample_costs_once(name: str, of_diffdrive: Rubric) -> 
     assert len(lost) == 1, lost
 
 
+@pytest.mark.slow
 def test_more_values_of_a_node_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In a comment that stays one if all lines become criteria."""
     monkeypatch.setattr("grader.lab.authoring.draft._MAX_VALUES", 1)
@@ -450,6 +455,7 @@ def test_kinds_of_criteria_can_be_omitted(kinds: str, checks: set[str], tmp_path
     assert before & checks
 
 
+@pytest.mark.slow
 def test_only_names_may_be_asked_for(tmp_path: Path) -> None:
     """With what they need: packages that build, and a robot that ROS 2 loads."""
     folder = write_cart(tmp_path / "src")

@@ -4,11 +4,14 @@ import tomllib
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
 from tests.command_line import run
 from tests.examples import examples
+
+pytestmark = pytest.mark.slow
 
 numbers = st.floats(-3, 3).map(lambda value: f"{value:.6g}") | st.sampled_from(
     ("0", "1.57", "-3.14", "1e-3", ".5")

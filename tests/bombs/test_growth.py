@@ -17,6 +17,8 @@ from tests.bombs.generators import BOMBS
 from tests.examples import spread
 from tests.work import counted_work
 
+pytestmark = pytest.mark.slow
+
 _SIZE = 150
 _MOST = 1.2  # the power of the size with which the work may grow
 _TINY = 5_000  # parts, in place of those that each submission may use whatever its size

@@ -27,6 +27,7 @@ MODULES = (
 )
 
 
+@pytest.mark.slow
 def test_a_submission_with_mistakes(autograder: Autograder) -> None:
     """Students see the same report as on any other machine."""
     autograder.submit("several-mistakes")

@@ -55,6 +55,7 @@ def test_a_word_file_is_read() -> None:
     assert row.measured == "Task 2 step 2\trviz2 shows it"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["answers.docx", "answers.pdf"])
 def test_a_damaged_document_is_named(name: str) -> None:
     """A document that cannot be read is named for the person who grades; other documents are read all the same."""

@@ -6,6 +6,7 @@ from grader.lab.checks.registry import own_checks
 from tests.checks.rows import CORPUS, Row, read_rows
 
 
+@pytest.mark.every(kind=lambda row: row.check.name)
 @pytest.mark.parametrize("row", list(read_rows()), ids=lambda row: row.name)
 def test_a_row(row: Row) -> None:
     """Status, message, what was measured and the place are the expected ones; `python -m tests.checks` writes them again."""

@@ -159,6 +159,7 @@ def test_a_zip_is_graded_as_its_folder(layout: str, tmp_path: Path) -> None:
     assert closed < 10
 
 
+@pytest.mark.slow
 def test_several_files_are_graded_like_a_folder(tmp_path: Path) -> None:
     """Several files of one student in a Canvas download equal the folder that the student had."""
     folder = mixed_class(tmp_path / "class", 40, "canvas")

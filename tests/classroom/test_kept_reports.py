@@ -67,6 +67,7 @@ def test_equal_robots_are_searched_once(top: Path, searches: list[str]) -> None:
         assert b'class="hint' in found[name][0] or b"hint" in found[name][0]
 
 
+@pytest.mark.slow
 def test_only_what_changed_is_written(top: Path, searches: list[str]) -> None:
     """A mark, a submission that is gone and a page that was edited or deleted; what is searched is kept."""
     before = pages(top)
@@ -88,6 +89,7 @@ def test_only_what_changed_is_written(top: Path, searches: list[str]) -> None:
     assert searches == []
 
 
+@pytest.mark.slow
 def test_what_is_kept_may_be_lost(top: Path, searches: list[str]) -> None:
     """A damaged line counts for nothing, and without the file everything is written again, as it was."""
     before = pages(top)
@@ -105,6 +107,7 @@ def test_what_is_kept_may_be_lost(top: Path, searches: list[str]) -> None:
     assert texts[0] == texts[1] == texts[2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", ["edit", "cause"])
 def test_hints_are_the_same_when_they_are_kept(level: str, tmp_path: Path) -> None:
     """Also with edits, for each sample of the lab with a package."""

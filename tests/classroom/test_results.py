@@ -59,6 +59,7 @@ def plain(one: StoredResult) -> StoredResult:
     return one._replace(results={name: (*entry,) for name, entry in one.results.items()})
 
 
+@pytest.mark.slow
 @given(st.lists(GRADED, max_size=6))
 @examples(30)
 def test_the_newest_line_of_each_student_is_read(

@@ -236,6 +236,7 @@ def test_the_list_of_ignored_files_is_bounded(tmp_path: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_large_class_takes_linear_work(tmp_path: Path) -> None:
     """Each submission takes few calls, also in a class with as many groups, and each of one student's files."""
     for index in range(2_000):

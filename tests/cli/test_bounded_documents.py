@@ -131,6 +131,7 @@ def test_a_converter_without_a_parent_ends_at_once() -> None:
     assert done.returncode == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["answers.docx", "answers.pdf"])
 @pytest.mark.parametrize("factor", [1, 1000])
 def test_what_is_no_answer_is_not_read(name: str, factor: int, tmp_path: Path) -> None:
@@ -149,6 +150,7 @@ def test_what_is_no_answer_is_not_read(name: str, factor: int, tmp_path: Path) -
     assert "may be damaged" not in shown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("fault", "reason"),
     [

@@ -11,6 +11,8 @@ import pytest
 
 from tests.command_line import HANG_TIMEOUT, ROOT, run
 
+pytestmark = pytest.mark.slow
+
 EDITORS = ROOT / "docs/editors"
 # What is inspected or graded, where something is wrong in URDFs, in packages, and in criteria.
 INPUTS = (
@@ -83,7 +85,6 @@ def test_the_patterns_read_each_line(command: str, path: str) -> None:
         assert other.groups() == (*groups.groups()[:3], f"{groups[4]} {groups[5]}")
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("vim") is None, reason="needs Vim")
 def test_vim_fills_the_quickfix_list(tmp_path: Path) -> None:
     """Vim reads the output with the compiler's settings."""

@@ -40,6 +40,7 @@ def parse(line: str) -> None:
     grader.main(words[1:], prog_name="grader", standalone_mode=False)
 
 
+@pytest.mark.every(kind=tuple)
 @pytest.mark.parametrize("path", PATHS, ids=lambda path: " ".join(path) or "grader")
 def test_help_at_eighty_columns(path: tuple[str, ...]) -> None:
     """Nothing is cut or too wide, and there are examples, each on a line of its own."""

@@ -109,6 +109,7 @@ def test_fix_writes_the_robot_with_all_edits(tmp_path: Path) -> None:
     assert differing == [6, 39, 65, 73, 99]
 
 
+@pytest.mark.slow
 def test_fix_of_several_files_needs_a_folder(tmp_path: Path) -> None:
     """Each file is written under its path in the submission; the folder is made, and a file that exists is no target."""
     copy = shutil.copytree(ROOT / "submissions/lab6/setup-as-created", tmp_path / "in")

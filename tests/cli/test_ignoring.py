@@ -47,6 +47,7 @@ def test_comments_are_read(path: str, text: str, expected: list[tuple[int, int, 
     assert [(it.location.line, it.last, " ".join(it.codes)) for it in found] == expected
 
 
+@pytest.mark.slow
 def test_no_grading_obeys(tmp_path: Path) -> None:
     """Settings beside a submission and above it, and comments in it, change nothing in a report or in grades but hashes."""
     reports, tables = [], []

@@ -9,6 +9,8 @@ import pytest
 
 from tests.command_line import ROOT
 
+pytestmark = pytest.mark.slow
+
 URDF = "submissions/lab6/reference/roscourse_sim_ws/src/my_robot/urdf/my_robot.urdf"
 _PROGRAM = """
 import sys

@@ -56,6 +56,7 @@ def test_reading_ends(
     assert (done.returncode, done.stdout, done.stderr) == (2, b"", b"grader: " + said + b"\n")
 
 
+@pytest.mark.slow
 def test_a_check_that_hangs_is_no_faulty_check(monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit of time ends the command, not only the check."""
     monkeypatch.setitem(app._LIMITED, "grade", 1)

@@ -121,6 +121,7 @@ def what(page: str) -> str:
     return str(re.findall(r'<code class="id">(.*?)</code>', page)[0])
 
 
+@pytest.mark.slow
 def test_criteria_that_are_open_for_one_reason_are_one_item(review: Review) -> None:
     """Of one student, as those that need the size, the build or the package; each question is an item of its own."""
     shown = {key for key in addresses(review) if not key[1].startswith(("answer", "evidence"))}
@@ -132,6 +133,7 @@ def test_criteria_that_are_open_for_one_reason_are_one_item(review: Review) -> N
     )
 
 
+@pytest.mark.slow
 def test_a_robot_is_seen_with_the_lines_that_decide(review: Review) -> None:
     """The three views, the message, the file around the place: of the URDF, of setup.py; without a file, the pictures."""
     found = addresses(review)
@@ -151,6 +153,7 @@ def test_a_robot_is_seen_with_the_lines_that_decide(review: Review) -> None:
     assert none.count("<figure>") == 1
 
 
+@pytest.mark.slow
 def test_a_mark_of_an_item_gives_each_criterion_its_points(review: Review, book: Path) -> None:
     """A word for each; another number of words marks nothing, and `-` for each withdraws all."""
     address = addresses(review)["Ben", "setup-imports"]
@@ -176,6 +179,7 @@ def test_a_mark_of_an_item_gives_each_criterion_its_points(review: Review, book:
     assert marks_in(book) == []
 
 
+@pytest.mark.slow
 def test_an_item_is_marked_as_it_was_shown(review: Review, book: Path) -> None:
     """If one of its criteria is marked elsewhere, nothing is saved, and the item has that one no more."""
     address = addresses(review)["Ben", "setup-imports"]
@@ -255,6 +259,7 @@ def test_next_question_goes_through_one_student(review: Review) -> None:
     assert review.mark(first, "0", to="question") == {"go": then}
 
 
+@pytest.mark.slow
 def test_anonymous_items_name_nothing(book: Path) -> None:
     """The views have no names of links and no sentences about them, and there are no lines of files."""
     with running(book, is_anonymous=True) as served:

@@ -390,6 +390,7 @@ def test_faults_are_messages(review: Review, book: Path, monkeypatch: pytest.Mon
     assert review.mark("1", "3") == {"go": "2"}
 
 
+@pytest.mark.slow
 def test_a_request_without_end_is_disconnected(book: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The limit of time is that of the whole request, not of each part that arrives; others are answered meanwhile."""
     monkeypatch.setattr(local_server, "_PATIENCE", 0.5)

@@ -94,6 +94,7 @@ def test_an_interrupt_before_the_first_mutant_ends_the_test(tmp_path: Path) -> N
         run_rubric_test(rubric, None, lambda *_: None, graded)
 
 
+@pytest.mark.slow
 def test_survivors_are_listed_with_their_diff(tmp_path: Path) -> None:
     """The exit code is 0 because no correct robot loses points."""
     done = command(write_rubric(tmp_path))
@@ -181,6 +182,7 @@ def test_a_check_that_is_faulty_on_a_mutant_is_not_a_catch(
     assert "On these mutants a check is faulty:\n\n  " in done.stdout.decode()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("check", "changed"),
     [

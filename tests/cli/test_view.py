@@ -101,6 +101,7 @@ def test_without_a_change_the_answer_is_empty(file: Path, monkeypatch: pytest.Mo
         assert view.get("changes/1/box.urdf").json == {"page": ""}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "words"),
     [
@@ -138,6 +139,7 @@ def test_a_file_may_be_broken_at_first(file: Path) -> None:
         assert view.next(first).sizes == {"base": [3, 1, 1]}
 
 
+@pytest.mark.slow
 def test_a_file_that_is_gone_may_come_back(file: Path) -> None:
     """As some editors save: the robot stays meanwhile, below what is wrong."""
     with viewing(file) as view:
@@ -150,6 +152,7 @@ def test_a_file_that_is_gone_may_come_back(file: Path) -> None:
         assert view.next(gone).sizes == {"base": [3, 1, 1]}
 
 
+@pytest.mark.slow
 def test_a_broken_rubric_is_named_with_its_line(tmp_path: Path) -> None:
     """While it is broken, the last report stays; then it counts."""
     for name in ("arm.toml", "arm.urdf"):
@@ -166,6 +169,7 @@ def test_a_broken_rubric_is_named_with_its_line(tmp_path: Path) -> None:
         assert view.next(broken).part("broken") == ""
 
 
+@pytest.mark.slow
 def test_a_rejected_robot_is_not_graded(tmp_path: Path) -> None:
     """Of a grading as well, the last report that ROS 2 loads stays."""
     path = Path(shutil.copy(SAMPLES["lidar-buried"].path / "my_robot/urdf/my_robot.urdf", tmp_path))
@@ -187,6 +191,7 @@ def robots_of(page: Page) -> list[tuple[str, str]]:
     return re.findall('<a href="(.*?)".*?>(.*?)</a>', page.part("robots"))
 
 
+@pytest.mark.slow
 def test_several_robots_are_a_list(tmp_path: Path) -> None:
     """Sorted by path, each with a page of its own; one that comes or goes moves no other one."""
     for name in ("b", "c d", "a/x"):
@@ -370,6 +375,7 @@ def test_meshes_have_limits_that_are_said(package: Path, monkeypatch: pytest.Mon
         assert "rover.urdf" in view.next(page).text
 
 
+@pytest.mark.slow
 def test_meshes_stay_while_the_robot_changes(
     package: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -238,6 +238,7 @@ def test_a_pause_follows_the_time_of_a_look_alone(
     assert rounds == [(first, 0), ("<robot name='1'/>", 2), ("<robot name='4'/>", 5)]
 
 
+@pytest.mark.slow
 def test_ctrl_c_and_a_closed_standard_output_end_the_process(robot: Path) -> None:
     """Ctrl-C ends it quietly; output that is closed, with one line and exit code 2 at the next output."""
     with started("grade", "--watch", robot) as process:

@@ -168,8 +168,13 @@ class Case:
         return done.stdout.decode(errors="backslashreplace")
 
 
-def read_corpus() -> Iterator[Case]:
-    """Yield every case, by table and by folder."""
+@cache
+def read_corpus() -> tuple[Case, ...]:
+    """Return every case, by table and by folder; the tables are read once."""
+    return tuple(_read_corpus())
+
+
+def _read_corpus() -> Iterator[Case]:
     for path in sorted(CORPUS.rglob("*.toml")):
         for index, row in enumerate(
             tomllib.loads(path.read_text(encoding="utf-8")).get("case", [])

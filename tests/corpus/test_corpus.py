@@ -16,6 +16,7 @@ def is_costly(case: Case) -> bool:
     return case.path.parent.name == "class" and case.index % STEP > 0
 
 
+@pytest.mark.every(kind=lambda case: case.path)
 @pytest.mark.parametrize("case", light(read_corpus(), is_costly), ids=lambda case: case.name)
 def test_the_case_is_as_expected(case: Case, tmp_path: Path) -> None:
     """Standard output, standard error, exit codes and written files; `python -m tests.corpus` writes them again."""

@@ -2,6 +2,7 @@
 
 import json
 
+import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
@@ -36,6 +37,7 @@ _WORDS = st.sampled_from(
 )
 
 
+@pytest.mark.slow
 @examples(150)
 @given(st.lists(_WORDS, max_size=60).map(" ".join))
 @example("class A : public A { A() : A(a) { a = a; } A a = a; };")

@@ -3,12 +3,16 @@
 from collections.abc import Callable
 from random import Random
 
+import pytest
+
 from grader.base.errors import MissingElement
 from grader.lab.checks.driving import does_not_tip, drives_straight, stands_level, turns_in_place
 from grader.lab.checks.outcome import Outcome
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import read_urdf
 from tests.driving.designs import FAULTS, WHEELS, Design, correct, faulty
+
+pytestmark = pytest.mark.slow
 
 _COUNT = 500
 _BEARABLE = 0.3  # m/s^2

@@ -3,8 +3,8 @@
 import asyncio
 import logging
 import sys
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
+from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
 from pathlib import Path
 
 from lsprotocol import types as lsp
@@ -43,6 +43,17 @@ class Editor:
         self._versions[path] = 1
         self.client.text_document_did_open(lsp.DidOpenTextDocumentParams(item))
         await self.looked()
+
+    async def close(self, path: str) -> None:
+        """Close a file without saving it."""
+        del self._versions[path]
+        self.client.text_document_did_close(lsp.DidCloseTextDocumentParams(self.document(path)))
+        await self.looked()
+
+    async def close_all(self) -> None:
+        """Close what is open, so that the files on the disk count again."""
+        for path in [*self._versions]:
+            await self.close(path)
 
     async def type(self, path: str, text: str) -> None:
         """Replace the text of an open file, and wait for what is said of it."""
@@ -98,3 +109,23 @@ async def editor(root: Path, *options: str, looks: bool = True) -> AsyncIterator
     assert client._server is not None
     await client._server.wait()
     assert client._server.returncode == 0
+
+
+Act = Callable[[Editor], Coroutine[None, None, None]]
+
+
+@contextmanager
+def shared_editor(root: Path, *options: str) -> Iterator[Callable[[Act], None]]:
+    """Start a server for several tests; yield a function that does what one of them does, and closes all files."""
+
+    async def run_and_close(act: Act) -> None:
+        try:
+            await act(one)
+        finally:
+            await one.close_all()
+
+    with asyncio.Runner() as runner:
+        stack = AsyncExitStack()
+        one = runner.run(stack.enter_async_context(editor(root, *options)))
+        yield lambda act: runner.run(run_and_close(act))
+        runner.run(stack.aclose())

@@ -4,14 +4,14 @@ import asyncio
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable, Coroutine
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 from lsprotocol import types as lsp
 
 from tests.command_line import ROOT
-from tests.editor.client import Editor, editor
+from tests.editor.client import Act, Editor, editor, shared_editor
 
 _ROBOT = "diffdrive_robot/urdf/diffdrive.urdf.xacro"
 _SYSTEM = "diffdrive_robot/urdf/diffdrive.ros2_control.xacro"
@@ -19,6 +19,9 @@ _CONTROLLERS = "diffdrive_robot/config/controllers.yaml"
 _LAUNCH = "diffdrive_robot/launch/diffdrive.launch.py"
 _LAB6 = "my_robot/urdf/my_robot.urdf"
 _WRONG_JOINT = f"{_CONTROLLERS}:12:23-38: REF002"
+
+
+Run = Callable[[Act], None]
 
 
 @pytest.fixture
@@ -31,15 +34,34 @@ def lab6(tmp_path: Path) -> Path:
     return Path(shutil.copytree(ROOT / "rubrics/lab6", tmp_path / "lab"))
 
 
-def _edit(root: Path, act: Callable[[Editor], Coroutine[None, None, None]], *options: str) -> None:
-    async def run() -> None:
-        async with editor(root, *options) as one:
-            await act(one)
+@pytest.fixture(scope="module")
+def in_diffdrive(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
+    """Share a server, which takes most of the time of a test."""
+    root = shutil.copytree(ROOT / "rubrics/diffdrive", tmp_path_factory.mktemp("shared") / "ws")
+    with shared_editor(root) as run:
+        yield run
 
-    asyncio.run(run())
+
+@pytest.fixture(scope="module")
+def in_lab6(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
+    root = shutil.copytree(ROOT / "rubrics/lab6", tmp_path_factory.mktemp("shared") / "lab")
+    with shared_editor(root) as run:
+        yield run
 
 
-def test_lists_problems_of_what_is_typed(diffdrive: Path) -> None:
+@pytest.fixture(scope="module")
+def graded_by_lab6(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Run]:
+    root = shutil.copytree(ROOT / "rubrics/lab6", tmp_path_factory.mktemp("shared") / "lab")
+    with shared_editor(root, "--rubric", "lab6") as run:
+        yield run
+
+
+def _edit(root: Path, act: Act, *options: str) -> None:
+    with shared_editor(root, *options) as run:
+        run(act)
+
+
+def test_lists_problems_of_what_is_typed(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
         assert one.found() == []
         await one.open(_CONTROLLERS)
@@ -55,10 +77,10 @@ def test_lists_problems_of_what_is_typed(diffdrive: Path) -> None:
         await one.type(_CONTROLLERS, text)
         assert one.found() == []
 
-    _edit(diffdrive, act)
+    in_diffdrive(act)
 
 
-def test_counts_columns_as_editors_do(lab6: Path) -> None:
+def test_counts_columns_as_editors_do(in_lab6: Run) -> None:
     """A character of two units of UTF-16 moves what is behind it by two."""
 
     async def act(one: Editor) -> None:
@@ -70,36 +92,36 @@ def test_counts_columns_as_editors_do(lab6: Path) -> None:
         [found] = [it for it in one.client.diagnostics[one.uri(_LAB6)] if it.code == "URDF061"]
         assert found.range.start.character == line.index("type") + 1
 
-    _edit(lab6, act)
+    in_lab6(act)
 
 
-def test_a_closed_file_counts_as_on_the_disk(diffdrive: Path) -> None:
+def test_a_closed_file_counts_as_on_the_disk(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
         await one.open(_CONTROLLERS)
         text = one.text(_CONTROLLERS)
         await one.type(_CONTROLLERS, text.replace("left_wheel_joint", "left_weel_joint", 1))
-        params = lsp.DidCloseTextDocumentParams(one.document(_CONTROLLERS))
-        one.client.text_document_did_close(params)
-        await one.looked()
+        await one.close(_CONTROLLERS)
         assert one.found() == []
 
-    _edit(diffdrive, act)
+    in_diffdrive(act)
 
 
-def test_what_is_saved_elsewhere_counts(diffdrive: Path) -> None:
+def test_what_is_saved_elsewhere_counts(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
-        file = one.root / _CONTROLLERS
         text = one.text(_CONTROLLERS)
-        file.write_text(text.replace("left_wheel_joint", "left_weel_joint", 1), encoding="utf-8")
-        event = lsp.FileEvent(one.uri(_CONTROLLERS), lsp.FileChangeType.Changed)
-        params = lsp.DidChangeWatchedFilesParams([event])
-        one.client.workspace_did_change_watched_files(params)
-        await one.looked()
-        assert one.found() == [_WRONG_JOINT]
+        wrong = text.replace("left_wheel_joint", "left_weel_joint", 1)
+        for saved, expected in ((wrong, [_WRONG_JOINT]), (text, [])):
+            (one.root / _CONTROLLERS).write_text(saved, encoding="utf-8")
+            event = lsp.FileEvent(one.uri(_CONTROLLERS), lsp.FileChangeType.Changed)
+            params = lsp.DidChangeWatchedFilesParams([event])
+            one.client.workspace_did_change_watched_files(params)
+            await one.looked()
+            assert one.found() == expected
 
-    _edit(diffdrive, act)
+    in_diffdrive(act)
 
 
+@pytest.mark.slow
 def test_what_the_settings_ignore_is_not_shown(diffdrive: Path) -> None:
     (diffdrive / "grader.toml").write_text('ignore = ["REF002"]\n', encoding="utf-8")
 
@@ -112,6 +134,7 @@ def test_what_the_settings_ignore_is_not_shown(diffdrive: Path) -> None:
     _edit(diffdrive, act)
 
 
+@pytest.mark.slow
 def test_says_that_the_settings_are_wrong(diffdrive: Path) -> None:
     (diffdrive / "grader.toml").write_text('ignore = ["REF99"]\n', encoding="utf-8")
 
@@ -121,6 +144,7 @@ def test_says_that_the_settings_are_wrong(diffdrive: Path) -> None:
     _edit(diffdrive, act)
 
 
+@pytest.mark.slow
 def test_files_outside_of_the_folder_are_left_alone(diffdrive: Path, lab6: Path) -> None:
     async def act(one: Editor) -> None:
         path = f"../other/{_LAB6}"
@@ -133,7 +157,7 @@ def test_files_outside_of_the_folder_are_left_alone(diffdrive: Path, lab6: Path)
     _edit(diffdrive, act)
 
 
-def test_lists_criteria_of_a_rubric(lab6: Path) -> None:
+def test_lists_criteria_of_a_rubric(graded_by_lab6: Run) -> None:
     async def act(one: Editor) -> None:
         assert one.found() == []
         await one.open(_LAB6)
@@ -146,10 +170,10 @@ def test_lists_criteria_of_a_rubric(lab6: Path) -> None:
         reach = "lidar-on-top: 'lidar' reaches 50 mm beyond the edge of the top of 'base_link'."
         assert _notes(found) == [reach]
 
-    _edit(lab6, act, "--rubric", "lab6")
+    graded_by_lab6(act)
 
 
-def test_one_mistake_is_one_diagnostic(lab6: Path) -> None:
+def test_one_mistake_is_one_diagnostic(graded_by_lab6: Run) -> None:
     """What is assumed, what it costs and what it costs besides are said with the problem."""
 
     async def act(one: Editor) -> None:
@@ -174,9 +198,10 @@ def test_one_mistake_is_one_diagnostic(lab6: Path) -> None:
         assert found.severity == lsp.DiagnosticSeverity.Error
         assert [note[:9] for note in _notes(found)] == ["URDF077: "]
 
-    _edit(lab6, act, "--rubric", "lab6")
+    graded_by_lab6(act)
 
 
+@pytest.mark.slow
 def test_a_criterion_that_reports_a_wrong_name_is_said_with_it(diffdrive: Path) -> None:
     async def act(one: Editor) -> None:
         await one.open(_CONTROLLERS)
@@ -196,6 +221,7 @@ def _notes(found: lsp.Diagnostic) -> list[str]:
     return [one.message for one in found.related_information or ()]
 
 
+@pytest.mark.slow
 def test_says_that_there_is_no_such_rubric(lab6: Path) -> None:
     async def run() -> None:
         async with editor(lab6, "--rubric", "lab66", looks=False) as one:
@@ -205,7 +231,7 @@ def test_says_that_there_is_no_such_rubric(lab6: Path) -> None:
     asyncio.run(run())
 
 
-def test_says_what_a_name_is(diffdrive: Path) -> None:
+def test_says_what_a_name_is(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
         at = one.position(_CONTROLLERS, "left_wheel_joint")
         document = one.document(_CONTROLLERS)
@@ -217,10 +243,10 @@ def test_says_what_a_name_is(diffdrive: Path) -> None:
         nothing = lsp.HoverParams(document, lsp.Position(0, 0))
         assert await one.client.text_document_hover_async(nothing) is None
 
-    _edit(diffdrive, act)
+    in_diffdrive(act)
 
 
-def test_says_what_a_parameter_is(diffdrive: Path) -> None:
+def test_says_what_a_parameter_is(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
         at, document = one.position(_CONTROLLERS, "wheel_radius"), one.document(_CONTROLLERS)
         hover = await one.client.text_document_hover_async(lsp.HoverParams(document, at))
@@ -237,10 +263,10 @@ def test_says_what_a_parameter_is(diffdrive: Path) -> None:
         assert isinstance(found, list | tuple)
         assert {"wheel_radius", "wheel_separation"} <= {item.label for item in found}
 
-    _edit(diffdrive, act)
+    in_diffdrive(act)
 
 
-def test_finds_definitions_and_uses(diffdrive: Path) -> None:
+def test_finds_definitions_and_uses(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
         at, document = one.position(_CONTROLLERS, "left_wheel_joint"), one.document(_CONTROLLERS)
         asked = lsp.DefinitionParams(document, at)
@@ -252,10 +278,10 @@ def test_finds_definitions_and_uses(diffdrive: Path) -> None:
         assert uses is not None
         assert {it.uri for it in uses} == {one.uri(_ROBOT), one.uri(_SYSTEM), one.uri(_CONTROLLERS)}
 
-    _edit(diffdrive, act)
+    in_diffdrive(act)
 
 
-def test_completes_names(diffdrive: Path) -> None:
+def test_completes_names(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
         at = one.position(_CONTROLLERS, "left_wheel_joint", inside=4)
         asked = lsp.CompletionParams(one.document(_CONTROLLERS), at)
@@ -263,10 +289,10 @@ def test_completes_names(diffdrive: Path) -> None:
         assert isinstance(found, list | tuple)
         assert {"left_wheel_joint", "right_wheel_joint"} <= {item.label for item in found}
 
-    _edit(diffdrive, act)
+    in_diffdrive(act)
 
 
-def test_completes_types_of_joints(lab6: Path) -> None:
+def test_completes_types_of_joints(in_lab6: Run) -> None:
     """Also in a file that is not well-formed, as while a tag is typed."""
 
     async def act(one: Editor) -> None:
@@ -282,10 +308,10 @@ def test_completes_types_of_joints(lab6: Path) -> None:
         assert [item.label for item in found] == expected
         assert all(item.detail for item in found)
 
-    _edit(lab6, act)
+    in_lab6(act)
 
 
-def test_lists_names(lab6: Path) -> None:
+def test_lists_names(in_lab6: Run) -> None:
     async def act(one: Editor) -> None:
         asked = lsp.DocumentSymbolParams(one.document(_LAB6))
         in_file = await one.client.text_document_document_symbol_async(asked)
@@ -295,10 +321,10 @@ def test_lists_names(lab6: Path) -> None:
         assert everywhere is not None
         assert {item.name for item in everywhere} >= {"lidar", "base_lidar_joint"}
 
-    _edit(lab6, act)
+    in_lab6(act)
 
 
-def test_corrects_a_name(diffdrive: Path) -> None:
+def test_corrects_a_name(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
         await one.open(_CONTROLLERS)
         text = one.text(_CONTROLLERS)
@@ -316,10 +342,10 @@ def test_corrects_a_name(diffdrive: Path) -> None:
         [edit] = action.edit.changes[one.uri(_CONTROLLERS)]
         assert (edit.range, edit.new_text) == (found.range, "left_wheel_joint")
 
-    _edit(diffdrive, act)
+    in_diffdrive(act)
 
 
-def test_corrects_where_the_name_is_written(diffdrive: Path) -> None:
+def test_corrects_where_the_name_is_written(in_diffdrive: Run) -> None:
     """The problem is at the call, and the name some lines below it."""
 
     async def act(one: Editor) -> None:
@@ -337,10 +363,10 @@ def test_corrects_where_the_name_is_written(diffdrive: Path) -> None:
         offered = await one.client.text_document_code_action_async(asked)
         assert offered
 
-    _edit(diffdrive, act)
+    in_diffdrive(act)
 
 
-def test_corrects_a_word_for_which_ros_2_rejects_the_file(lab6: Path) -> None:
+def test_corrects_a_word_for_which_ros_2_rejects_the_file(in_lab6: Run) -> None:
     async def act(one: Editor) -> None:
         await one.open(_LAB6)
         text = one.text(_LAB6)
@@ -361,9 +387,10 @@ def test_corrects_a_word_for_which_ros_2_rejects_the_file(lab6: Path) -> None:
             rows[start.line] = row[: start.character] + edit.new_text + row[end.character :]
             assert "\n".join(rows) == text
 
-    _edit(lab6, act)
+    in_lab6(act)
 
 
+@pytest.mark.slow
 def test_offers_the_edits_of_hints(lab6: Path) -> None:
     """A rubric whose hints show edits has them as corrections."""
     rubric = (lab6 / "rubric.toml").read_text(encoding="utf-8")
@@ -387,17 +414,18 @@ def test_offers_the_edits_of_hints(lab6: Path) -> None:
     _edit(lab6, act, "--rubric", str(lab6 / "rubric.toml"))
 
 
-def test_refuses_to_rename_what_is_made_of_parts(diffdrive: Path) -> None:
+def test_refuses_to_rename_what_is_made_of_parts(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
         at = one.position(_CONTROLLERS, "left_wheel_joint")
         asked = lsp.RenameParams(one.document(_CONTROLLERS), at, "other_joint")
         with pytest.raises(Exception, match="builds the name 'left_wheel_joint' from parts"):
             await one.client.text_document_rename_async(asked)
 
-    _edit(diffdrive, act)
+    in_diffdrive(act)
 
 
-def test_the_last_text_counts(diffdrive: Path) -> None:
+@pytest.mark.slow
+def test_the_last_text_counts(in_diffdrive: Run) -> None:
     """Of many changes in a row, what is said at the end is about the last one."""
 
     async def act(one: Editor) -> None:
@@ -409,10 +437,11 @@ def test_the_last_text_counts(diffdrive: Path) -> None:
         while one.found() != [_WRONG_JOINT]:
             await one.looked()
 
-    _edit(diffdrive, act)
+    in_diffdrive(act)
 
 
-def test_a_broken_file_is_no_end(lab6: Path) -> None:
+@pytest.mark.slow
+def test_a_broken_file_is_no_end(in_lab6: Run) -> None:
     async def act(one: Editor) -> None:
         await one.open(_LAB6)
         text = one.text(_LAB6)
@@ -422,9 +451,10 @@ def test_a_broken_file_is_no_end(lab6: Path) -> None:
         await one.type(_LAB6, text)
         assert one.found() == []
 
-    _edit(lab6, act)
+    in_lab6(act)
 
 
+@pytest.mark.slow
 def test_an_empty_folder_has_no_problems(tmp_path: Path) -> None:
     async def act(one: Editor) -> None:
         (one.root / "new.urdf").write_text("<robot name='a'><link name='b'/>", encoding="utf-8")

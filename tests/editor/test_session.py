@@ -78,6 +78,7 @@ def _write(folder: Path, files: Files) -> None:
         file.write_bytes(data)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("folder", _WORKSPACES)
 def test_equals_an_inspection_of_the_saved_text(folder: str, tmp_path: Path) -> None:
     _check_edits(ROOT / folder, tmp_path / "ws", 12)

@@ -124,6 +124,7 @@ def test_a_file_that_changes_while_it_is_read(
     assert {key: {**one, "run": 1} for key, one in newest(tmp_path / "book").items()} == expected
 
 
+@pytest.mark.slow
 def test_a_lost_task_is_noticed() -> None:
     """A pool never completes a task whose worker ended before it began: it is given up, and can be tried again."""
     with patch.object(pool, "_MAX_IDLE", 0.1), Processes(1, 0.1) as processes:

@@ -466,6 +466,7 @@ def test_limits_of_size(ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_bomb_of_overlapping_members() -> None:
     """Members that share the same bytes are refused by their number, their sizes, or when they are read."""
     body = zlib.compress(bytes(1_000_000), 9)[2:-4]
@@ -639,6 +640,7 @@ def test_compressed_bombs(pack: Callable[[bytes], bytes]) -> None:
         assert "cannot be read as an archive" in refusal(pack(b"no tar at all"))
 
 
+@pytest.mark.slow
 def test_a_large_tar_leaves_no_file(temporary: Path) -> None:
     """A tar that does not fit into memory is kept in a file without a name."""
     data = make_tar({"a.bin": NOISE.randbytes(18_000_000), "b.urdf": ROBOT}, kind="gz")
@@ -735,6 +737,7 @@ def test_many_archives(tmp_path: Path) -> None:
     assert sum("there are too many archives" in line for line in map(str, tree.ignored)) == 5
 
 
+@pytest.mark.slow
 def test_archives_share_one_limit(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Many small zip bombs are treated like a large one."""
     monkeypatch.setattr(limits, "MAX_UNPACKED_SIZE", 70_000_000)

@@ -35,6 +35,7 @@ def inputs(name: str) -> list[bytes]:
     return found[:: 1 + len(found) // (4 if name.startswith(_SLOW) else _MOST)]
 
 
+@pytest.mark.every(kind=str)
 @pytest.mark.parametrize("name", HARNESSES)
 def test_a_harness_holds_on_its_seeds(name: str) -> None:
     """Also on those that are changed, up to the size of its inputs."""

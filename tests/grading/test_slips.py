@@ -103,6 +103,7 @@ def test_a_slip_costs_one_criterion(rubric: str, kind: str) -> None:
     assert paid
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("slip", SLIPS[::_PAIRED], ids=lambda slip: f"{slip.rubric.id}-{slip.name}")
 def test_a_slip_hides_no_mistake(slip: WrittenSlip) -> None:
     """Beside a mistake of a value elsewhere the costs add, unless one criterion pays for both."""
@@ -148,6 +149,7 @@ def test_a_package_without_a_robot() -> None:
     assert [paid.payer for paid in report.meant.paid] == ["setup-imports"]
 
 
+@pytest.mark.slow
 def test_what_is_ignored_without_harm_costs_nothing() -> None:
     """A robot that is right as written keeps its points, beside a mistake elsewhere as well."""
     files = solution(LAB6).whole_tree.files

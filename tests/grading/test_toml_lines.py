@@ -192,6 +192,7 @@ def paths_of(data: Any, path: Path = ()) -> Iterator[Path]:
             yield from paths_of(value, (*path, index))
 
 
+@pytest.mark.slow
 @examples(40)
 @given(documents(), st.booleans())
 def test_every_key_has_its_line(document: tuple[str, dict[Path, int]], windows: bool) -> None:

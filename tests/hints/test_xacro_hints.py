@@ -108,6 +108,7 @@ def test_an_expression_in_a_call_is_corrected_there(
 _LEFT, _RIGHT = 'y="${wheel_separation / 2}"', 'y="${-wheel_separation / 2}"'
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [

@@ -166,6 +166,7 @@ def test_mutants_of_a_reference_lose_something(lab: str) -> None:
     assert found.caught >= 20
 
 
+@pytest.mark.slow
 def test_a_class_is_graded_with_its_reference(tmp_path: Path) -> None:
     """`grader batch` gives the marks of `grade`: its workers compare the motion with that of the reference, too."""
     chosen = [robot for robot in ROBOTS if robot.lab == "industrial"][::4]

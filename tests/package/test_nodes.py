@@ -338,6 +338,7 @@ def test_a_script_that_cmake_installs_is_a_program(file: str, expected: list[str
     assert found == ([(file, expected)] if expected else [])
 
 
+@pytest.mark.slow
 def test_a_module_may_be_too_long_to_evaluate(monkeypatch: pytest.MonkeyPatch) -> None:
     """What is not read is a doubt."""
     text = _HEAD + _CLASS + "        self.create_client(Trigger, 'a' + 'b')\n" * 2000

@@ -12,6 +12,8 @@ from grader.ros.python.parse import own_nodes
 from grader.ros.python.values import SCALARS, Scope
 from tests.examples import examples
 
+pytestmark = pytest.mark.slow
+
 _NAMES = ("a", "b", "c")
 _LINES = st.one_of(
     st.tuples(
@@ -54,7 +56,6 @@ class _Manager:
         return None
 
 
-@pytest.mark.slow
 @given(st.lists(_LINES, max_size=7))
 @examples(400)
 def test_a_constant_has_the_value_that_python_gives_it(lines: list[str]) -> None:

@@ -132,6 +132,7 @@ def cli(*arguments: str, **variables: str) -> tuple[int, str, str]:
     return done.returncode, done.stdout.decode(), done.stderr.decode()
 
 
+@pytest.mark.slow
 @given(TEXTS)
 @example(EVERYWHERE)
 @examples(5)

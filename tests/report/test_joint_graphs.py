@@ -11,6 +11,8 @@ from grader.report.formats import Format, InspectFormat
 from tests.command_line import run
 from tests.examples import examples
 
+pytestmark = pytest.mark.slow
+
 LINKS = ("base_footprint", "base_link", "lidar", "left_wheel", "w")
 LOOP = [("base_link", "lidar", "fixed"), ("lidar", "base_link", "fixed")]
 SHAPE = '<visual><geometry><sphere radius="0.1"/></geometry></visual>'
@@ -32,7 +34,6 @@ def robot(links: dict[str, bool], graph: list[tuple[str, str, str]]) -> str:
     return f'<robot name="r">{"".join(parts)}</robot>'
 
 
-@pytest.mark.slow
 @examples(10)
 @given(st.dictionaries(names, st.booleans(), min_size=1), st.lists(joints, max_size=6))
 @example({"base_link": False, "lidar": False, "w": False}, LOOP)

@@ -68,6 +68,7 @@ def test_unknown_values_are_an_error() -> None:
         render_page("base.html", VALUES, {"x": float("nan")}, Assets())
 
 
+@pytest.mark.slow
 def test_grade_without_html_imports_nothing_of_it() -> None:
     """A cold `grade` loads neither the templates nor the pages."""
     program = """

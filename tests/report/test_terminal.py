@@ -149,6 +149,7 @@ def test_a_long_line_is_cut_around_the_location() -> None:
     assert text[start:end] == 'c="d"'
 
 
+@pytest.mark.slow
 def test_a_tree_of_thousands_of_links_is_limited() -> None:
     """A deep chain is drawn without recursion and with limited indentation; the rest is counted."""
     links = "".join(

@@ -15,6 +15,8 @@ from grader.ros.workspace.all_robots import read_workspace
 from tests.command_line import ROOT
 from tests.workspace.random_edits import Files, edited_files, edited_text, files_of
 
+pytestmark = pytest.mark.slow
+
 _WORKSPACES = [
     "rubrics/diffdrive",
     "rubrics/lab6",

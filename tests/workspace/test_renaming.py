@@ -58,6 +58,7 @@ _others = st.text("jqz", min_size=5, max_size=12)
 _SLIP = "?"
 
 
+@pytest.mark.slow
 @every_name
 @examples(5)
 @given(new=_others)
@@ -94,6 +95,7 @@ def _uses() -> list[tuple[Use, Edit]]:
     ]
 
 
+@pytest.mark.slow
 @examples(20)
 @given(used=st.sampled_from(_uses()), letter=st.sampled_from("jqz"))
 def test_a_slip_in_any_use_gives_exactly_one_sure_problem(

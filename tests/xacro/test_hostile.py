@@ -1,4 +1,7 @@
-"""Hostile documents are refused after bounded work: nothing runs, and nothing outside of the submission is read."""
+"""Hostile documents are refused after bounded work: nothing runs, and nothing outside of the submission is read.
+
+The documents are megabytes of text: they are made when a test needs them.
+"""
 
 import json
 import sys
@@ -13,9 +16,6 @@ from tests.command_line import HANG_TIMEOUT, clean_environment, run
 from tests.examples import spread
 from tests.work import TooMuchWork, limited_work
 from tests.xacro.documents.document import part, robot
-from tests.xacro.hostile import HOSTILE, LARGE
-from tests.xacro.hostile_costs import COSTS
-from tests.xacro.hostile_run import CONTROL
 
 MAX_MEGABYTES = 64
 Results = dict[str, dict[str, Any]]
@@ -42,6 +42,8 @@ def results(request: pytest.FixtureRequest) -> Results:
 @pytest.mark.slow
 def test_hostile_documents_are_refused_after_bounded_work(results: Results) -> None:
     """Each is refused, or cannot be determined, after a bounded number of lines of Python; none stops the process."""
+    from tests.xacro.hostile import HOSTILE
+
     outcomes = {name: results[name]["outcome"] for name in HOSTILE.keys() & results.keys()}
     assert {name: outcome for name, outcome in outcomes.items() if outcome != "refused"} == {}
     assert outcomes.keys() == HOSTILE.keys() or len(outcomes) >= 5
@@ -51,6 +53,8 @@ def test_hostile_documents_are_refused_after_bounded_work(results: Results) -> N
 @pytest.mark.slow
 def test_large_documents_take_bounded_work(results: Results) -> None:
     """A document that is only large is expanded or refused after a bounded number of lines."""
+    from tests.xacro.hostile import LARGE
+
     outcomes = {name: results[name]["outcome"] for name in LARGE.keys() & results.keys()}
     assert {
         name: outcome
@@ -59,8 +63,11 @@ def test_large_documents_take_bounded_work(results: Results) -> None:
     } == {}
 
 
+@pytest.mark.slow
 def test_costly_documents_take_bounded_work(results: Results) -> None:
     """What the budget of a submission allows takes a bounded number of calls, wherever a document wants the work to be done."""
+    from tests.xacro.hostile_costs import COSTS
+
     outcomes = {
         name: results[f"cost-{name}"]["outcome"] for name in COSTS if f"cost-{name}" in results
     }
@@ -73,21 +80,28 @@ def test_costly_documents_take_bounded_work(results: Results) -> None:
     assert len(COSTS) >= 100
 
 
+@pytest.mark.slow
 def test_memory_is_bounded(results: Results) -> None:
     """No document needs much memory."""
     used = {name: found["megabytes"] for name, found in results.items()}
     assert {name: megabytes for name, megabytes in used.items() if megabytes > MAX_MEGABYTES} == {}
 
 
+@pytest.mark.slow
 def test_nothing_runs(results: Results) -> None:
     """Python reports no open file, import, execution or process while a document is expanded; it would report one."""
+    from tests.xacro.hostile_run import CONTROL
+
     events = {name: found["events"] for name, found in results.items()}
     assert any(event.startswith("open ") for event in events.pop(CONTROL))
     assert {name: found for name, found in events.items() if found} == {}
 
 
+@pytest.mark.slow
 def test_nothing_outside_is_read(results: Results) -> None:
     """Every file that is read is named by its path in the submission; the control reads two."""
+    from tests.xacro.hostile_run import CONTROL
+
     paths = {name: found["paths"] for name, found in results.items()}
     assert len(paths[CONTROL]) > 2
     outside = {

@@ -29,6 +29,7 @@ HOSTILE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", HOSTILE)
 def test_recovery_is_linear_in_the_size_of_the_text(name: str, tmp_path: Path) -> None:
     """A megabyte of one broken tag, or of open ones, does not hang; what stands before it is graded."""

@@ -182,6 +182,7 @@ def assert_same_if_plain(text: str) -> None:
         assert tree(root) == tree(etree.fromstring(scan(text).xml, _PARSER))
 
 
+@pytest.mark.slow
 @examples(30)
 @given(text=_robots)
 def test_plain_text_means_the_same_to_lxml(text: str) -> None:

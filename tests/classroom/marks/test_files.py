@@ -143,6 +143,7 @@ def test_protected_text_is_restored(text: str) -> None:
     )
 
 
+@pytest.mark.slow
 @given(st.lists(MARKS, min_size=2, max_size=2), st.booleans())
 def test_copying_a_file_merges(files: list[list[Mark]], is_reversed: bool) -> None:
     """The newest marks of two folders are those of one with the files of both, in any order of names."""
@@ -234,6 +235,7 @@ for number in range(20):
 """
 
 
+@pytest.mark.slow
 def test_two_writers_lose_no_row(tmp_path: Path) -> None:
     """Two processes append to one file, which neither has made before."""
     folder = tmp_path / "marks"

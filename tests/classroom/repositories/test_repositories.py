@@ -15,6 +15,8 @@ from tests.classroom.repositories.table import ROWS, Row, Work
 from tests.classroom.repositories.writing import write_class
 from tests.command_line import run
 
+pytestmark = pytest.mark.slow
+
 Report = dict[str, Any]
 TEAMS = [row for row in ROWS if len(row.works) > 1]
 WITHOUT = [row for row in ROWS if not row.works]
@@ -145,7 +147,6 @@ def _check(row: Row, work: Work, report: Report, alone: Report) -> None:
         }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("row", "folder"), WORKS, ids=[f"{row.name}/{folder}".rstrip("/") for row, folder in WORKS]
 )
