@@ -207,6 +207,12 @@ def test_no_import_cycle() -> None:
         pytest.fail(" -> ".join(error.args[1]))
 
 
+def test_no_module_of_a_grading_reads_settings() -> None:
+    """Only the inspection imports them."""
+    for module in ("grader.app.grading", "grader.app.commands.watch", "grader.app.api"):
+        assert not {"grader.app.settings", "grader.app.ignoring"} & {*imports(module)}
+
+
 def test_check_families_do_not_import_each_other() -> None:
     """Only the registry imports families of checks."""
     families = {check.function.__module__ for check in own_checks()}

@@ -11,7 +11,6 @@ from grader.app.settings import read_settings
 from grader.base.ignore_comments import read_ignore_comments
 from tests.classroom.gradebooks import grader
 from tests.command_line import ROOT, run
-from tests.test_architecture import imports
 
 RAW = ROOT / "submissions/lab6/raw-xacro/my_robot.urdf"
 # A file, its text, and the lines and codes of each comment: from where it is to the last line whose problems it ignores.
@@ -74,12 +73,6 @@ def test_no_grading_obeys(tmp_path: Path) -> None:
         it.replace(b"../", b"") for it in reports[2:]
     ]
     assert tables[0] == tables[1]
-
-
-def test_no_module_of_a_grading_reads_settings() -> None:
-    """Only the inspection imports them."""
-    for module in ("grader.app.grading", "grader.app.commands.watch", "grader.app.api"):
-        assert not {"grader.app.settings", "grader.app.ignoring"} & {*imports(module)}
 
 
 def test_settings_are_kept_for_others(tmp_path: Path) -> None:
