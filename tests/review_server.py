@@ -14,8 +14,7 @@ from grader.classroom.gradebook.review_items import ReviewFilter
 from grader.classroom.review.review_server import ReviewPage
 from grader.classroom.review.review_session import ReviewSession
 from grader.report.local_server import HOST, LocalServer
-
-_TIMEOUT = 60.0  # seconds, of a machine that is busy
+from tests.command_line import HANG_TIMEOUT
 
 
 class Answer(NamedTuple):
@@ -48,7 +47,7 @@ class Review(NamedTuple):
         self, method: str, path: str, headers: Mapping[str, str] = {}, body: bytes | None = None
     ) -> Answer:
         """Send one request, with the path as it is given; an underscore in a header's name is a hyphen."""
-        connection = HTTPConnection(HOST, self.port, timeout=_TIMEOUT)
+        connection = HTTPConnection(HOST, self.port, timeout=HANG_TIMEOUT)
         try:
             given = {name.replace("_", "-"): value for name, value in headers.items()}
             connection.request(method, path, body, given)

@@ -382,7 +382,7 @@ def test_the_classroom50_autograder(tmp_path: Path, published: Path) -> None:
         env={**os.environ, **variables, "SUBMISSION_TAG": "none"},
         capture_output=True,
         check=False,
-        timeout=300,
+        timeout=HANG_TIMEOUT,
     )
     assert forged.returncode == 2
     assert not (work / "result.json").exists()

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
 
 REFERENCE = ROOT / "submissions/lab6/reference"
@@ -36,7 +37,7 @@ def elsewhere(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
         capture_output=True,
         text=True,
         check=False,
-        timeout=60,
+        timeout=HANG_TIMEOUT,
         env={**os.environ, "COLUMNS": "80"},
     )
 

@@ -14,6 +14,7 @@ import pytest
 from grader.report.open_browser import opened_in_browser
 from tests.checks.submissions import png
 from tests.classroom.gradebooks import grader
+from tests.command_line import HANG_TIMEOUT
 from tests.review_server import Review, marks_in, rows_of, running
 from tests.samples import ROOT
 
@@ -303,7 +304,7 @@ def test_no_process_has_the_secret_as_argument(
     monkeypatch.setattr(webbrowser, "open", browser.open)
     with opened_in_browser("http://127.0.0.1:1/secret/1", file) as is_open:
         assert is_open
-        assert browser.is_open.wait(60)
+        assert browser.is_open.wait(HANG_TIMEOUT)
     assert "url=http://127.0.0.1:1/secret/1" in browser.text
     assert browser.mode == 0o600
     assert not file.exists()

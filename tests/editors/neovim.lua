@@ -1,5 +1,5 @@
 -- What somebody does in Neovim, and sees there: makes RESULTS, a file of JSON, in the current folder.
-local PATIENCE = 60 * 1000 -- milliseconds after which nothing is expected any more
+local PATIENCE = 300 * 1000 -- milliseconds after which nothing is expected any more
 local CONTROLLERS = "diffdrive_robot/config/controllers.yaml"
 local ROBOT = "diffdrive_robot/urdf/diffdrive.urdf.xacro"
 local results = {}

@@ -53,7 +53,7 @@ def run_neovim(script: Path, folder: Path, beside: Path) -> dict[str, Any]:
     }
     subprocess.run(
         ["nvim", "--headless", "-n", "-c", f"luafile {script}"],
-        cwd=folder, env={**clean_environment(), **variables}, timeout=HANG_TIMEOUT, check=True,
+        cwd=folder, env={**clean_environment(), **variables}, timeout=2 * HANG_TIMEOUT, check=True,
         stdin=subprocess.DEVNULL,
     )  # fmt: skip
     results: dict[str, Any] = json.loads((beside / "results.json").read_text(encoding="utf-8"))

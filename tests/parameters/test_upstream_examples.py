@@ -103,6 +103,7 @@ def _checkout(repository: str) -> Path | None:
     return None
 
 
+@pytest.mark.exhaustive  # needs checkouts
 @pytest.mark.parametrize(
     ("repository", "commit", "path", "release"),
     EXAMPLES,
