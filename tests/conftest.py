@@ -56,6 +56,13 @@ os.environ |= {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
 
 _QUICK = "not exhaustive and not slow"  # the tests of README's command
 _MARKED = re.compile(r"^pytestmark = (\[\s*)?pytest\.mark\.(exhaustive|slow)\b", re.MULTILINE)
+_DECIDING = (  # what covers the code that decides a mark: see [tool.coverage] in pyproject.toml
+    *("checks", "classroom/marks", "corpus", "driving", "grading", "labs", "robot"),
+    *("authoring/test_equivalents.py", "authoring/test_random_robots.py"),
+    "classroom/test_typed_names.py",
+    *("cli/test_plugin_checks.py", "cli/test_review_pages.py", "cli/test_review_server.py"),
+    *("fuzz/test_harnesses.py", "test_api.py", "test_docstring_examples.py", "test_registry.py"),
+)
 _FEW = 2  # cases of a test that README's command runs
 
 
@@ -80,6 +87,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
     One worker runs a file: those with slow tests or many cases come first, so that none is waited for at the end.
     """
+    deciding = [Path(__file__).parent / name for name in _DECIDING]
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     sizes = Counter(item.path for item in items)
     items.sort(key=lambda item: (item.path not in slow, -sizes[item.path]))
@@ -87,6 +95,9 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if item.get_closest_marker("exhaustive") is None:
             cases[item.nodeid.partition("[")[0]].append(item)
+    for item in items:
+        if any(folder in (item.path, *item.path.parents) for folder in deciding):
+            item.add_marker("deciding")
     for many in cases.values():
         kept = _of_each_kind(many) or many[:: max(1, len(many) // _FEW)]
         for item in many:
