@@ -366,7 +366,7 @@ def _replaced_names(path: Path) -> Iterator[str]:
     if "setattr(" not in text and "patch" not in text:
         return
     tree = ast.parse(text)
-    modules = {}
+    modules: dict[str, str] = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
             modules |= {it.asname or it.name: f"{node.module}.{it.name}" for it in node.names}
