@@ -35,7 +35,7 @@ from grader.lab.rubric.keys import (
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
 from grader.report.examples import example_blocks, explanation_of, wrong_and_right
-from grader.report.explanations import CAUSES_OF_CHECK, EFFECTS, default_text
+from grader.report.explanations import CAUSES_OF_CHECK, EFFECTS, default_text, rules_of
 from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal
 from grader.ros.known.parameter_rows import NodeRows, known_nodes, node_rows
@@ -107,7 +107,10 @@ def problems() -> Iterator[str]:
     for kind in EVERY_KIND:
         effect = f" {EFFECTS[kind.effect]}".rstrip()
         yield from (f"## {kind.code}", "", f"{escaped(kind.title)} ({kind.severity}).", "")
-        yield from (escaped(explanation_of(kind)) + effect, "", *example(kind.code))
+        yield from (escaped(explanation_of(kind)) + effect, "")
+        for rule in rules_of(kind):
+            yield f"- `{rule.name}`: {escaped(rule.sentence)}"
+        yield from ("", *example(kind.code))
 
 
 def checks() -> Iterator[str]:

@@ -43,7 +43,7 @@ class Selection(NamedTuple):
 
 
 def _longest(codes: Iterable[str], problem: Problem) -> int:
-    return max((len(code) for code in codes if problem.code.startswith(code)), default=0)
+    return max((len(code) for code in codes if problem.is_meant_by(code)), default=0)
 
 
 def _matches(path: str, pattern: str) -> bool:

@@ -15,6 +15,7 @@ from grader.lab.checks.toml_types import simple_type, toml_type
 from grader.lab.rubric.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
 from grader.ros.known.releases import Release
 from grader.ros.workspace.problem_kinds import EVERY_KIND
+from grader.ros.workspace.rule_table import RULES
 
 _NAMES = ("grader.toml", "pyproject.toml")
 _MAX_SIZE = 256 * 1024  # bytes of such a file
@@ -103,5 +104,7 @@ def _unknown_codes(codes: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Yield the texts that no code begins with, between quotes, and what is wrong with each."""
     known = [kind.code for kind in EVERY_KIND]
     for code in codes:
-        if not code or not any(it.startswith(code) for it in known):
-            yield repr(code), f" is no problem code or its beginning{did_you_mean(code, known)}"
+        is_code = bool(code) and any(it.startswith(code) for it in known)
+        if not is_code and code not in RULES:
+            guess = did_you_mean(code, known) or did_you_mean(code, RULES)
+            yield repr(code), f" is no problem code, its beginning or a rule{guess}"

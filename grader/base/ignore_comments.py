@@ -1,4 +1,4 @@
-"""Comments that ignore the problems of a line: `# grader:ignore REF004, REF005`.
+"""Comments that ignore the problems of a line: `# grader:ignore REF004, topic-type`.
 
 A blank after the colon would make YAML of the comment: in a URDF it then ends the parameter
 robot_description, which is read as YAML.
@@ -14,7 +14,8 @@ from grader.base.source import Location, Source
 
 _MARK = "grader:ignore"
 MARK = _MARK.encode()
-_COMMENT = re.compile(rf"{_MARK}\b[ \t]*([A-Z]+[0-9]*(?:[ \t]*,[ \t]*[A-Z]+[0-9]*)*)?")
+_NAME = r"(?:[A-Z]+[0-9]*|[a-z]+(?:-[a-z]+)+)"  # of a code or a rule
+_COMMENT = re.compile(rf"{_MARK}\b[ \t]*({_NAME}(?:[ \t]*,[ \t]*{_NAME})*)?")
 _XML = (".xml", ".urdf", ".xacro", ".launch", ".sdf", ".world", ".srdf")
 _SLASHES = (".cpp", ".cc", ".cxx", ".c", ".hpp", ".hh", ".h")
 _NUMBER_SIGN = (".py", ".yaml", ".yml", ".rviz", ".cfg", ".cmake", "CMakeLists.txt")
@@ -26,7 +27,9 @@ COMMENT_CATALOGUE = (_USELESS,)
 
 
 class IgnoreComment(NamedTuple):
-    """A comment that ignores problems in some lines, by their codes or the beginnings of these."""
+    """A comment that ignores problems in some lines, by their codes, the beginnings of these, or
+    their rules.
+    """
 
     location: Location
     codes: tuple[str, ...]
@@ -37,7 +40,7 @@ class IgnoreComment(NamedTuple):
         where = problem.location
         if where.path != self.location.path or not self.location.line <= where.line <= self.last:
             return []
-        return [code for code in self.codes if problem.code.startswith(code)]
+        return [code for code in self.codes if problem.is_meant_by(code)]
 
     def useless_problem(self, codes: list[str]) -> Problem:
         """Return the problem that codes of it ignore nothing."""
@@ -67,7 +70,7 @@ def read_ignore_comments(path: str, text: str) -> Iterator[IgnoreComment]:
         beside = text[line:start] + text[end : _end_of_line(text, end)]
         is_alone = beside.strip("\ufeff \t\r") == ""
         last = _line_after(source, end) if is_alone else source.at(end).line
-        codes = tuple(re.findall(r"\w+", found[1] or ""))
+        codes = tuple(re.findall(_NAME, found[1] or ""))
         yield IgnoreComment(source.at(found.start()), codes, last)
 
 

@@ -34,6 +34,7 @@ class Problem(NamedTuple):
     location: Location
     # what it is about: the link that loses content with it, a tag, or a few words
     subject: str = ""
+    rule: str = ""  # the name of the rule of a workspace that found it
 
     @property
     def code(self) -> str:
@@ -44,6 +45,10 @@ class Problem(NamedTuple):
     def severity(self) -> Severity:
         """The severity of its kind: an error keeps ROS 2 from loading the file."""
         return self.kind.severity
+
+    def is_meant_by(self, word: str) -> bool:
+        """Return whether a word is the name of its rule, its code or the beginning of this."""
+        return self.code.startswith(word) or word == self.rule
 
 
 rejects = partial(Kind, severity="error", effect="rejects")  # ROS 2 loads nothing of the file

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
+from grader.base.problems import Kind
 from grader.base.text import counted, enumerated, format_points, printable, shell_quoted
 from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.checks.check import Check
@@ -19,6 +20,7 @@ from grader.report.criteria import model_lines, sentence
 from grader.report.examples import example_blocks, explanation_of
 from grader.ros.known.parameter_texts import parameter_explanation
 from grader.ros.workspace.problem_kinds import EVERY_KIND
+from grader.ros.workspace.rule_table import RULES, Rule
 
 _WIDTH = 80
 _FOR_INSTRUCTORS = "For instructors: how it is checked\n----------------------------------"
@@ -100,7 +102,9 @@ def explanation(name: str, rubric: Rubric) -> str:
             _fill(explanation_of(kind)),
             EFFECTS[kind.effect],
         ]
-        return _paragraphs([*texts, *_examples(kind.code)])
+        return _paragraphs([*texts, _rules_text(kind), *_examples(kind.code)])
+    if name in RULES:
+        return _rule_text(RULES[name])
     for criterion in rubric.criteria:
         if criterion.id == name:
             return _paragraphs(_criterion_texts(criterion, rubric))
@@ -119,6 +123,7 @@ def explanation(name: str, rubric: Rubric) -> str:
         return parameter
     known = (
         [kind.code for kind in EVERY_KIND]
+        + [*RULES]
         + [criterion.id for criterion in rubric.criteria]
         + check_names()
     )
@@ -138,6 +143,26 @@ def explanation(name: str, rubric: Rubric) -> str:
         similar = ""
     guess = similar or did_you_mean(name, known) or f"; {lists}"
     raise InputError(f"there is no problem code, criterion or check {name!r}{guess}")
+
+
+def rules_of(kind: Kind) -> list[Rule]:
+    """Return the rules of workspaces that a kind of problem has."""
+    return [rule for rule in RULES.values() if kind in (rule.kind, rule.doubtful)]
+
+
+def _rules_text(kind: Kind) -> str:
+    """Return the rules of a kind, one a line."""
+    lines = [f"  {rule.name}: {rule.sentence}" for rule in rules_of(kind)]
+    return "\n".join(["Rules:", "", *lines]) if lines else ""
+
+
+def _rule_text(rule: Rule) -> str:
+    """Return the explanation of a rule, with that of its codes."""
+    texts = [f"{rule.name}: a rule of `grader inspect`", rule.sentence]
+    for kind in dict.fromkeys((rule.kind, rule.doubtful)):
+        texts.append(_fill(f"{kind.code} ({kind.severity}): {kind.title}. {explanation_of(kind)}"))
+    texts.append(f"`grader explain {rule.kind.code}` shows an example.")
+    return _paragraphs(texts)
 
 
 def _paragraphs(texts: Iterable[str]) -> str:

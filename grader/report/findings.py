@@ -30,6 +30,7 @@ class _Rule(NamedTuple):
     title: str
     explanation: str
     page: str  # of the documentation; empty without one
+    name: str = ""  # of a rule of workspaces
 
 
 class Finding(NamedTuple):
@@ -114,7 +115,7 @@ def _place(finding: Finding) -> tuple[str, int, int]:
 def _problem_finding(problem: Problem) -> Finding:
     kind, where = problem.kind, problem.location
     page = f"{DOCUMENTATION}problems.html#{kind.code.lower()}"
-    rule = _Rule(kind.code, kind.title, explanation_of(kind), page)
+    rule = _Rule(kind.code, kind.title, explanation_of(kind), page, problem.rule)
     return Finding(rule, kind.severity, printable(problem.message) + calls_text(where), where)
 
 

@@ -345,6 +345,28 @@ def test_corrects_a_name(in_diffdrive: Run) -> None:
     in_diffdrive(act)
 
 
+def test_corrects_each_of_two_equal_names_in_one_line(in_diffdrive: Run) -> None:
+    async def act(one: Editor) -> None:
+        await one.open(_CONTROLLERS)
+        right, wrong = "[left_wheel_joint]", "[left_weel_joint, left_weel_joint]"
+        await one.type(_CONTROLLERS, one.text(_CONTROLLERS).replace(right, wrong, 1))
+        found = [it for it in one.client.diagnostics[one.uri(_CONTROLLERS)] if it.code == "REF002"]
+        context = lsp.CodeActionContext(found)
+        asked = lsp.CodeActionParams(one.document(_CONTROLLERS), found[0].range, context)
+        offered = await one.client.text_document_code_action_async(asked) or ()
+        starts = set()
+        for action in offered:
+            assert isinstance(action, lsp.CodeAction)
+            assert action.edit is not None
+            assert action.edit.changes is not None
+            [edit] = action.edit.changes[one.uri(_CONTROLLERS)]
+            starts.add(edit.range.start.character)
+        assert starts == {it.range.start.character for it in found}
+        assert len(starts) == 2
+
+    in_diffdrive(act)
+
+
 def test_corrects_where_the_name_is_written(in_diffdrive: Run) -> None:
     """The problem is at the call, and the name some lines below it."""
 

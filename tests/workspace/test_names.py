@@ -13,6 +13,7 @@ from grader.ros.workspace.names import (
     Use,
     agreement,
 )
+from grader.ros.workspace.rule_table import JOINT_DEFINED, TOPIC_TYPE
 
 _HERE, _THERE, _LATER = (
     Location("a.yaml", 3, 5),
@@ -39,14 +40,14 @@ def test_a_name_that_is_not_defined_is_wrong_and_the_similar_one_is_named() -> N
     said = "wheels: there is no joint 'wheel_left_joint'; did you mean 'left_wheel_joint' (robot.urdf:7)?"
     use = Correction(_HERE, "wheel_left_joint", "left_wheel_joint")
     assert found == Mismatch(
-        "frames", said, _HERE, _THERE, corrections=(use, Correction(_THERE, use.new, use.old))
+        JOINT_DEFINED, said, _HERE, _THERE, corrections=(use, Correction(_THERE, use.new, use.old))
     )
 
 
 def test_a_name_like_no_other_is_wrong_where_everything_was_read() -> None:
     """Without a similar name there is no suggestion."""
     [found] = agreement([_WHEEL, _use("elbow")]).mismatches
-    assert found == Mismatch("frames", "wheels: there is no joint 'elbow'", _HERE)
+    assert found == Mismatch(JOINT_DEFINED, "wheels: there is no joint 'elbow'", _HERE)
 
 
 def test_an_open_kind_makes_a_near_name_a_warning_and_says_nothing_of_others() -> None:
@@ -88,7 +89,7 @@ def test_names_of_one_owner_do_not_define_those_of_another() -> None:
 
 def test_mismatches_are_in_the_order_of_their_places_and_once() -> None:
     """What two readers find is listed once; the first reason for which a family is undecided is kept."""
-    wrong = Mismatch("topics", "not alike", _LATER)
+    wrong = Mismatch(TOPIC_TYPE, "not alike", _LATER)
     facts: list[Fact] = [
         wrong,
         wrong,

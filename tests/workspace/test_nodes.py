@@ -490,7 +490,7 @@ def test_a_service_has_one_type() -> None:
     )
     [found] = [it for it in wrong(*changes) if it.family == "services"]
     assert found.message.startswith("the service /door/lock is called with std_srvs.srv.SetBool")
-    assert found.is_of_type
+    assert found.rule.is_of_type
 
 
 def test_interfaces_of_several_packages_with_one_name_are_open() -> None:

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 
 from grader.base.source import Edit
 from grader.lab.hints.name_edits import correction_edits
-from grader.ros.workspace.names import FAMILY_OF, Correction, Family, Use
+from grader.ros.workspace.names import Correction, Use
 from grader.ros.workspace.reading import read_facts
+from grader.ros.workspace.rule_table import DEFINED, Family
 from tests.examples import examples
 from tests.hints.trials import applied
 from tests.workspace.carts import agreement_of, cart, cart_files, edited, sure
@@ -106,7 +107,7 @@ def test_a_slip_in_any_use_gives_exactly_one_sure_problem(
     text = cart_files()[edit.path]
     slip = applied(text.encode(), [edit._replace(new=edit.new.replace(_SLIP, letter))]).decode()
     found = sure(agreement_of({**cart_files(), edit.path: slip}))
-    assert [it.family for it in found] == [FAMILY_OF[use.kind]], found
+    assert [it.family for it in found] == [DEFINED[use.kind].family], found
 
 
 _RENAMED = [

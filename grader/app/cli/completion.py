@@ -42,11 +42,13 @@ def offer_explained(context: typer.Context, incomplete: str) -> list[str]:
 
 
 def offer_codes(incomplete: str) -> list[str]:
-    """Return the problem codes."""
+    """Return the problem codes and the names of rules."""
+    from grader.ros.workspace.rule_table import RULES
+
     codes: list[str] = []
     for file in sorted(shipped_folder("docs", "examples").glob("*.toml")):
         codes += re.findall(_CODE, _text_of(file), re.MULTILINE)
-    return _starting(incomplete, codes)
+    return _starting(incomplete, [*codes, *RULES])
 
 
 def offer_joints(context: typer.Context, incomplete: str) -> list[str]:

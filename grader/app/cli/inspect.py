@@ -16,8 +16,10 @@ _PATH = "A .urdf file, a package, workspace or archive, or - for standard input.
 _ROBOT = "Show this robot of several whole: its name, or the end of its path."
 _JOINT = "Position of a joint, in radians or metres; repeatable."
 _WATCH = "Inspect again after every change, until Ctrl-C; grader view shows the robot."
-_SELECT = "Show only problems whose code begins so, such as REF or REF004; repeatable."
-_IGNORE = "Do not show problems whose code begins so; repeatable."
+_SELECT = (
+    "Show only problems whose code begins so, such as REF or REF004, or of a rule; repeatable."
+)
+_IGNORE = "Do not show problems whose code begins so, or of a rule; repeatable."
 _RELATIVE = "The frame of the poses; default: the root."
 _DISTRO = "The release of ROS 2, such as humble; default: what the files state."
 

@@ -55,7 +55,7 @@ class Look:
     def mismatch_of(self, finding: Finding) -> Mismatch | None:
         """Return the names that do not agree for which there is a finding; None for another one."""
         at = finding.location
-        return self.names.mismatches.get((finding.message, at.path, at.line))
+        return self.names.mismatches.get((finding.message, at.path, at.line, at.column))
 
     @cached_property
     def graded(self) -> Graded:

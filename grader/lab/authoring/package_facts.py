@@ -28,8 +28,8 @@ from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
 from grader.ros.workspace.endpoints import opened_by
-from grader.ros.workspace.names import FAMILIES, Family
 from grader.ros.workspace.reading import read_agreement, wrong_names
+from grader.ros.workspace.rule_table import FAMILIES, Family
 
 _THE_PACKAGE, _THE_NAMES, _THE_VALUES = "The package", "The names", "The values"  # headings
 _NAME_TITLES: Mapping[Family, str] = {

@@ -5,7 +5,7 @@ from grader.base.text import enumerated, first_lines
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.submission.submission import Submission
-from grader.ros.workspace.names import Family
+from grader.ros.workspace.rule_table import Family
 
 ABOUT = {
     "names_agree": About(
@@ -50,7 +50,7 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
         texts = [f"{at}: {message}{_also(more)}" for message, (at, *more) in others]
         message = "; ".join([f"{first}{_also(also)}", *first_lines(texts, _MAX_IN_MESSAGE - 1)])
         cause = ""
-        if wrong[0].is_of_type:
+        if wrong[0].rule.is_of_type:
             cause = "type"
         elif wrong[0].corrections:
             cause = "similar"

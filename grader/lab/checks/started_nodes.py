@@ -28,7 +28,7 @@ _VERBS: Mapping[str, str] = {
     "action client": "calls",
 }
 # Faults in the code of a node that do not keep it from opening what it opens.
-_HARMLESS = frozenset({"no response"})
+_HARMLESS = frozenset({"service-response"})
 _Topics = Sequence[str] | Mapping[str, str] | None  # a table has their types
 
 
@@ -217,7 +217,9 @@ class _NodeTopics:
         stopping = {
             it.location.path: it
             for it in reversed(read_agreement(workspace).mismatches)
-            if it.family in ("code", "interfaces") and it.is_certain and it.rule not in _HARMLESS
+            if it.family in ("code", "interfaces")
+            and it.is_certain
+            and it.rule.name not in _HARMLESS
         }
         for node in launch.nodes:
             package, own_node = workspace.package_of(node), workspace.own_node(node)

@@ -51,6 +51,7 @@ _LOCATION = JsonObject({**_EXTENT, "calls": Many(_CALL)}, ("calls",))
 PROBLEM = JsonObject(
     {
         "code": {"type": "string", "pattern": "^[A-Z]+[0-9]{3}$"},
+        "rule": (nullable(TEXT), lambda problem: problem.rule or None),
         "severity": {"enum": ["error", "warning", "note"]},
         "message": TEXT,
         "location": _LOCATION,

@@ -42,14 +42,16 @@ def sarif_inspection(inspection: Inspection) -> str:
 
 
 def _log(findings: Sequence[Finding], base: Base, source_of: SourceOf) -> str:
-    """Return a log of one run, with the rules that have a result."""
-    rules = {finding.rule.id: _rule(finding) for finding in reversed(findings)}
+    """Return a log of one run, with the rules that have a result. Several rules may share a code,
+    which is their id: `ruleIndex` says which of them is meant.
+    """
+    rules = {(it.rule.id, it.rule.name): _rule(it) for it in reversed(findings)}
     names = sorted(rules)
     results = []
     for finding, fingerprint in zip(findings, fingerprints(findings, base), strict=True):
         result = {
             "ruleId": finding.rule.id,
-            "ruleIndex": names.index(finding.rule.id),
+            "ruleIndex": names.index((finding.rule.id, finding.rule.name)),
             "level": finding.severity,
             "message": {"text": message_in_repository(finding, base)},
             "locations": [{"physicalLocation": _physical_location(finding, base, source_of)}],
@@ -78,6 +80,8 @@ def _rule(finding: Finding) -> dict[str, Any]:
         "help": {"text": rule.explanation},
         "defaultConfiguration": {"level": finding.severity},
     }
+    if rule.name:
+        data["name"] = rule.name
     if rule.page:
         data["helpUri"] = rule.page
     return data

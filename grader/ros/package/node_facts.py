@@ -137,7 +137,7 @@ class SynchronisedType(NamedTuple):
     together: tuple[str, ...] = ()
 
 
-_CodeRule = Literal[
+CodeRule = Literal[
     "undefined name",
     "callback is called",
     "no response",
@@ -155,7 +155,7 @@ _CodeRule = Literal[
 class CodeFault(NamedTuple):
     """Why a node stops, or does nothing; it fails no criterion unless it is certain."""
 
-    rule: _CodeRule
+    rule: CodeRule
     message: str
     location: Location
     related: Location | None = None

@@ -21,6 +21,16 @@ from grader.ros.workspace.gazebo import (
     sensor_topics,
 )
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections, cost_of_guess
+from grader.ros.workspace.rule_table import (
+    BRIDGE_ARGUMENT,
+    BRIDGE_CLOCK,
+    BRIDGE_DIRECTION,
+    BRIDGE_FILE,
+    BRIDGE_ROW,
+    BRIDGE_TOPIC,
+    BRIDGE_TYPE,
+    SENSOR_TOPIC,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _TO_ROS, _TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
@@ -150,7 +160,7 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
     for path in bridge_files(workspace):
         fault = workspace.yaml_files.get(path)
         if isinstance(fault, YamlFault):
-            yield Mismatch("topics", f"this is not YAML: {fault}", fault.location)
+            yield Mismatch(BRIDGE_FILE, f"this is not YAML: {fault}", fault.location)
     yield from _unread_rows(workspace)
     rows = list(bridge_rows(workspace))
     if not rows:
@@ -224,7 +234,7 @@ def _without_topic(row: _BridgeRow, nameless: dict[str, _NamelessSensor]) -> Ite
         f"<topic> ({at.file_and_line})"
     )
     # A model that is not submitted may publish it.
-    yield Mismatch("wiring", message, row.location, at, is_certain=False)
+    yield Mismatch(SENSOR_TOPIC, message, row.location, at, is_certain=False)
 
 
 def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:
@@ -236,7 +246,7 @@ def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:
             for key in known()["bridge_keys"] if names_topic else ():
                 if row.get(key) is None and row.get(key.replace("gz", "ign")) is None:
                     message = f"the bridge leaves out the row: it has no {key}"
-                    yield Mismatch("topics", message, row.location)
+                    yield Mismatch(BRIDGE_ROW, message, row.location)
     for _, node in workspace.nodes:
         is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"
         for word in node.arguments or () if is_bridge else ():
@@ -247,7 +257,9 @@ def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:
                     f"the bridge ends with an error at the argument {quoted(word)}: write "
                     "TOPIC@ROS_TYPE[GZ_TYPE"
                 )
-                yield Mismatch("topics", message, node.location, is_certain=node.when is True)
+                yield Mismatch(
+                    BRIDGE_ARGUMENT, message, node.location, is_certain=node.when is True
+                )
                 break
 
 
@@ -258,7 +270,7 @@ def _no_direction(row: _BridgeRow) -> Mismatch:
     message = f"the bridge leaves out the row: it has no direction {quoted(row.direction)}{guess}"
     at = row.direction_location
     either = corrections(row.direction, at, meant)
-    return Mismatch("topics", message, at, None, row.is_used, either)
+    return Mismatch(BRIDGE_DIRECTION, message, at, None, row.is_used, either)
 
 
 def _no_type(workspace: Workspace, row: _BridgeRow) -> Iterator[Mismatch]:
@@ -277,7 +289,7 @@ def _no_type(workspace: Workspace, row: _BridgeRow) -> Iterator[Mismatch]:
     at = row.ros_type_location
     message = f"the bridge has no type {quoted(written)}; did you mean {meant}?"
     either = corrections(written, at, meant)
-    yield Mismatch("topics", message, at, None, row.is_used, either)
+    yield Mismatch(BRIDGE_TYPE, message, at, None, row.is_used, either)
 
 
 def bridge_files(workspace: Workspace) -> set[str]:
@@ -322,7 +334,7 @@ def _conversions(row: _BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
             f"the bridge does not convert {ros_type} and {row.gz_type or 'an empty type'}; "
             f"write {enumerated(meant, word='or')}"
         )
-        yield Mismatch("topics", message, at, None, row.is_used, either)
+        yield Mismatch(BRIDGE_TYPE, message, at, None, row.is_used, either)
     if row.gz_type == "gz.msgs.Clock" and row.direction == _TO_GAZEBO:
         message = (
             f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {_TO_ROS}"
@@ -343,7 +355,7 @@ def _wrong_direction(
     """
     at = row.direction_location
     either = corrections(row.direction, at, right) if at != row.location else ()
-    return Mismatch("topics", message, at, related, row.is_used, either)
+    return Mismatch(BRIDGE_DIRECTION, message, at, related, row.is_used, either)
 
 
 def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
@@ -369,7 +381,7 @@ def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mism
         message = (
             f"the topic {row.gz} of Gazebo has {types[0]} ({at.file_and_line}), not {row.gz_type}"
         )
-        yield Mismatch("topics", message, row.gz_type_location, at, row.is_used)
+        yield Mismatch(BRIDGE_TYPE, message, row.gz_type_location, at, row.is_used)
 
 
 def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) -> Iterator[Mismatch]:
@@ -392,7 +404,7 @@ def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) ->
         )
         is_certain = row.is_used and is_known and len(fitting) == 1
         either = corrections(row.gz, row.location, meant, at)
-        yield Mismatch("topics", message, row.location, at, is_certain, either)
+        yield Mismatch(BRIDGE_TOPIC, message, row.location, at, is_certain, either)
 
 
 def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:
@@ -414,7 +426,7 @@ def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:
                 f"{node.executable} waits for the time of the simulation, but no bridge takes "
                 "clock from Gazebo"
             )
-            yield Mismatch("topics", message, sim_time.location, used[0].location)
+            yield Mismatch(BRIDGE_CLOCK, message, sim_time.location, used[0].location)
             return
 
 

@@ -1,9 +1,39 @@
 """Code: what stops own nodes, or keeps them from doing anything."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
+from grader.ros.package.node_facts import CodeRule
 from grader.ros.workspace.names import Compared, Fact, Mismatch, Undecided
+from grader.ros.workspace.rule_table import (
+    BUFFER_LISTENER,
+    CALLBACK_CALLED,
+    CALLBACK_SLEEPS,
+    CALLBACK_WAITS,
+    CODE_SYNTAX,
+    CONTEXT_STARTED,
+    ENTITY_KEPT,
+    NODE_REGISTERED,
+    NODE_SPINS,
+    ROTATION_SET,
+    SERVICE_RESPONSE,
+    UNDEFINED_NAME,
+    Rule,
+)
 from grader.ros.workspace.workspace import Workspace
+
+_RULES: Mapping[CodeRule, Rule] = {
+    "undefined name": UNDEFINED_NAME,
+    "callback is called": CALLBACK_CALLED,
+    "no response": SERVICE_RESPONSE,
+    "nothing spins": NODE_SPINS,
+    "no rclpy.init": CONTEXT_STARTED,
+    "waits in a callback": CALLBACK_WAITS,
+    "sleeps in a callback": CALLBACK_SLEEPS,
+    "destroyed at once": ENTITY_KEPT,
+    "no listener": BUFFER_LISTENER,
+    "no rotation": ROTATION_SET,
+    "not registered": NODE_REGISTERED,
+}
 
 
 def code_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -18,15 +48,9 @@ def code_facts(workspace: Workspace) -> Iterator[Fact]:
                 at = program.syntax.location
                 message = f"Python cannot read the file: {program.syntax.message}"
                 if program.syntax.is_certain:
-                    yield Mismatch("code", message, at, rule="syntax")
+                    yield Mismatch(CODE_SYNTAX, message, at)
                 else:
                     yield Undecided("code", f"{at.path} is not read")
         for fault in nodes.faults:
-            yield Mismatch(
-                "code",
-                fault.message,
-                fault.location,
-                fault.related,
-                fault.is_certain,
-                rule=fault.rule,
-            )
+            rule = _RULES[fault.rule]
+            yield Mismatch(rule, fault.message, fault.location, fault.related, fault.is_certain)

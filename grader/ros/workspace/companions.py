@@ -14,6 +14,14 @@ from grader.ros.workspace.bridges import bridge_rows
 from grader.ros.workspace.controllers import defined_controllers, spawned_controllers
 from grader.ros.workspace.gazebo import BRIDGE
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rule_table import (
+    CLOCK_PUBLISHED,
+    JOINT_STATES,
+    NODE_NAME,
+    ONE_JOINT_STATE,
+    ROBOT_PUBLISHED,
+    SIMULATION_TIME,
+)
 from grader.ros.workspace.workspace import MANAGER, Workspace
 
 _ROBOT_PUBLISHER, _CONTROL_NODE = "robot_state_publisher", "ros2_control_node"
@@ -56,7 +64,7 @@ def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
                 f"two nodes are named {name}: their parameters and services cannot be told apart; "
                 f"the other one is at {before.location.file_and_line}"
             )
-            yield warning("wiring", message, node.location, before.location)
+            yield warning(NODE_NAME, message, node.location, before.location)
 
 
 def _broadcasters(workspace: Workspace) -> set[str]:
@@ -79,7 +87,7 @@ def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
                     f"{node.executable} and the controller {quoted(name)} both publish "
                     "joint_states: the joints jump between their positions"
                 )
-                yield warning("wiring", message, node.location)
+                yield warning(ONE_JOINT_STATE, message, node.location)
 
 
 def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
@@ -108,7 +116,7 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
         "joint_state_broadcaster"
     )
     at = joint.location.resolve() if joint.location is not None else None
-    yield warning("wiring", message, publishers[0].location, at)
+    yield warning(JOINT_STATES, message, publishers[0].location, at)
 
 
 def _is_understood(workspace: Workspace, node: StartedNode, kind: str) -> bool:
@@ -145,7 +153,7 @@ def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
             "the controller manager waits for the topic robot_description, which nothing "
             "publishes: start robot_state_publisher"
         )
-        yield warning("wiring", message, managers[0].location)
+        yield warning(ROBOT_PUBLISHED, message, managers[0].location)
 
 
 def _sim_time(workspace: Workspace) -> Iterator[Location]:
@@ -163,7 +171,7 @@ def _no_clock(workspace: Workspace) -> Iterator[Mismatch]:
     if at is None or _may_have_clock(workspace):
         return
     message = "use_sim_time is true, but nothing publishes /clock: the time of the node stays 0"
-    yield warning("wiring", message, at)
+    yield warning(CLOCK_PUBLISHED, message, at)
 
 
 def _may_have_clock(workspace: Workspace) -> bool:
@@ -221,5 +229,5 @@ def _wall_time(workspace: Workspace) -> Iterator[Mismatch]:
                 f"{node.executable} uses the time of the machine, but the simulation has its own "
                 f"clock ({rows[0].location.file_and_line}): give the nodes use_sim_time"
             )
-            yield warning("wiring", message, node.location, rows[0].location)
+            yield warning(SIMULATION_TIME, message, node.location, rows[0].location)
             return

@@ -18,6 +18,10 @@ from grader.ros.workspace.names import (
     corrections,
     cost_of_guess,
 )
+from grader.ros.workspace.rule_table import (
+    COMPONENT_REGISTERED,
+    CONTAINER_STARTED,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _CONTAINERS = "rclcpp_components"
@@ -69,7 +73,7 @@ def _unregistered(
         message += f"; it registers {', '.join(registered) or 'none'}"
     related = registered[meant] if meant is not None else None
     either = corrections(plugin, component.location, meant, related)
-    yield Mismatch("programs", message, component.location, related, is_known, either)
+    yield Mismatch(COMPONENT_REGISTERED, message, component.location, related, is_known, either)
 
 
 def _no_container(workspace: Workspace, launch: Launch) -> Iterator[Mismatch]:
@@ -89,7 +93,7 @@ def _no_container(workspace: Workspace, launch: Launch) -> Iterator[Mismatch]:
                 f"nothing starts a container {name}, for which launch waits without end; "
                 f"{meant} is started at {at.file_and_line}"
             )
-            yield Mismatch("wiring", message, component.loaded_at, at, is_certain=False)
+            yield Mismatch(CONTAINER_STARTED, message, component.loaded_at, at, is_certain=False)
 
 
 def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | None:

@@ -23,6 +23,14 @@ from grader.ros.workspace.names import (
     Use,
     corrections,
 )
+from grader.ros.workspace.rule_table import (
+    CLAIMED_ONCE,
+    CONTROLLER_HARDWARE,
+    CONTROLLER_INTERFACE,
+    CONTROLLER_LIST,
+    CONTROLLER_PARAMETERS,
+    CONTROLLER_TYPE,
+)
 from grader.ros.workspace.under_arguments import may_be_offered
 from grader.ros.workspace.workspace import MANAGER, SPAWNERS, Workspace
 
@@ -64,7 +72,7 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
     managers = [node for _, node in workspace.nodes if node.executable == "ros2_control_node"]
     if managers and workspace.command_interfaces is None and workspace.has_all_interfaces:
         message = "the controller manager is started, but the robot has no <ros2_control>"
-        yield Mismatch("controllers", message, managers[0].location)
+        yield Mismatch(CONTROLLER_HARDWARE, message, managers[0].location)
 
 
 @lru_cache(maxsize=2)
@@ -177,7 +185,7 @@ def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
         is_certain = is_known or near(written, same_class) is not None
         at = controller.location
         either = corrections(written, at, similar)
-        yield Mismatch("controllers", message, at, is_certain=is_certain, corrections=either)
+        yield Mismatch(CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
 
 
 def _section_facts(
@@ -195,7 +203,7 @@ def _section_facts(
                 f"{controller.name} with ros__parameters"
             )
             either = _section_corrections(workspace, controller, sections)
-            yield Mismatch("controllers", message, controller.location, corrections=either)
+            yield Mismatch(CONTROLLER_PARAMETERS, message, controller.location, corrections=either)
         return
     for key in needed:
         given = section.get(key) if key.endswith("s") else None
@@ -204,7 +212,7 @@ def _section_facts(
                 f"{controller.name}.{key} is given a string; the controller stops without a "
                 f"list: [{given.text}]"
             )
-            yield Mismatch("controllers", message, given.location)
+            yield Mismatch(CONTROLLER_LIST, message, given.location)
     claimed: dict[str, Location] = {}
     for joint, interfaces in _needed_in(section, needed):
         yield from _interface_facts(workspace, controller, joint, interfaces)
@@ -218,7 +226,7 @@ def _section_facts(
                     f"{controller.name} claims the command interface {name} twice "
                     f"({before.file_and_line})"
                 )
-                yield Mismatch("controllers", message, joint.location, before)
+                yield Mismatch(CLAIMED_ONCE, message, joint.location, before)
 
 
 def _section_corrections(
@@ -284,7 +292,7 @@ def _interface_facts(
             if missing not in offered and not may_be_offered(workspace, missing):
                 either = corrections(missing, joint.location, near(missing, offered), at)
                 text = f"{message}/{missing}; {there}"
-                yield Mismatch("controllers", text, joint.location, at, corrections=either)
+                yield Mismatch(CONTROLLER_INTERFACE, text, joint.location, at, corrections=either)
         return
     if not interfaces or not workspace.has_all_interfaces:
         return
@@ -292,7 +300,7 @@ def _interface_facts(
     joints = {each.name for found in workspace.robots for each in found.robot.joints}
     if needed and joints.issuperset([name, *interfaces]):
         text = f"{message}/{needed[0]}; <ros2_control> has no joint {name!r}"
-        yield Mismatch("controllers", text, joint.location)
+        yield Mismatch(CONTROLLER_INTERFACE, text, joint.location)
 
 
 def _action_facts(workspace: Workspace) -> Iterator[Fact]:

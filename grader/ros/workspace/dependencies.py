@@ -13,6 +13,9 @@ from grader.ros.known.known import known
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections, cost_of_guess
+from grader.ros.workspace.rule_table import (
+    DEPENDENCY_DECLARED,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _FIND = re.compile(r"\$\(find ([\w-]+)\)|package://([\w-]+)/")
@@ -55,7 +58,7 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
             # rosdep installs what packages need that are declared.
             is_certain = name not in brought
             either = corrections(name, at, meant, start if meant not in used else None)
-            yield Mismatch("dependencies", message, at, start, is_certain, either)
+            yield Mismatch(DEPENDENCY_DECLARED, message, at, start, is_certain, either)
 
 
 def _declared(package: Package) -> set[str]:

@@ -29,6 +29,13 @@ from grader.ros.workspace.names import (
     corrections,
     cost_of_guess,
 )
+from grader.ros.workspace.rule_table import (
+    FILE_INSTALLED,
+    FILE_PACKAGE,
+    LAUNCH_FILE_NAME,
+    MAP_IMAGE,
+    WORLD_MODEL,
+)
 from grader.ros.workspace.workspace import Workspace
 
 # A path ends at a quote, a tag or a space, in YAML's flow style and in a substitution also at a
@@ -175,7 +182,7 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
         meant = near(name, [other.name for other in workspace.packages])
         if meant is not None and not package.depends_on(name):
             message = f"there is no package {name!r}; did you mean {meant!r}?"
-            yield Mismatch("files", message, at, corrections=corrections(name, at, meant))
+            yield Mismatch(FILE_PACKAGE, message, at, corrections=corrections(name, at, meant))
         elif rest.startswith(_LAUNCH_FOLDER):
             yield from _misspelt_launch_file(name, rest.removeprefix(_LAUNCH_FOLDER), at)
         return
@@ -213,7 +220,7 @@ def _misspelt_launch_file(package: str, file: str, at: Location) -> Iterator[Mis
     if stem is not None:
         meant = f"{stem}.{ending}"
         message = f"{package} is not known to have a launch file {file!r}; did you mean {meant!r}?"
-        yield Mismatch("files", message, at, None, False, corrections(file, at, meant))
+        yield Mismatch(LAUNCH_FILE_NAME, message, at, None, False, corrections(file, at, meant))
 
 
 def _not_there(
@@ -227,17 +234,17 @@ def _not_there(
     if source.state == "elsewhere":
         message = f"{missing}: it installs the file as {source.path}"
         either = _folder_corrections(target, source.path, at, start)
-        return Mismatch("files", message, at, corrections=either)
+        return Mismatch(FILE_INSTALLED, message, at, corrections=either)
     if source.state == "not installed":
         message = f"{missing}: no {setup.entry} names {source.path}"
         either = _install_corrections(setup, source.path, start)
         called_at = setup.location(setup.called_at)
-        return Mismatch("files", message, at, called_at, corrections=either)
+        return Mismatch(FILE_INSTALLED, message, at, called_at, corrections=either)
     meant = similar_file(owner, name)
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"
     is_certain = (is_absent or is_surely_absent(owner, target)) and not is_output
-    return Mismatch("files", message, at, None, is_certain, corrections(name, at, meant))
+    return Mismatch(FILE_INSTALLED, message, at, None, is_certain, corrections(name, at, meant))
 
 
 def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Iterator[Mismatch]:
@@ -249,10 +256,10 @@ def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Itera
     for target, source in owner.installed.items():
         if source.startswith(f"{inside}/"):
             message = f"{missing}: it installs {source} as {target}"
-            yield Mismatch("files", message, at, is_certain=not may_be_made)
+            yield Mismatch(FILE_INSTALLED, message, at, is_certain=not may_be_made)
             return
     if not may_be_made:
-        yield Mismatch("files", f"{missing}: it installs no file of the folder {inside}", at)
+        yield Mismatch(FILE_INSTALLED, f"{missing}: it installs no file of the folder {inside}", at)
 
 
 def _folder_corrections(
@@ -301,7 +308,7 @@ def _map_images(workspace: Workspace) -> Iterator[Fact]:
         guess = f"; did you mean {meant!r}?" if meant else ""
         message = f"the image of the map, {image.text!r}, does not exist{guess}"
         either = corrections(name, image.location, meant)
-        yield Mismatch("files", message, image.location, corrections=either)
+        yield Mismatch(MAP_IMAGE, message, image.location, corrections=either)
 
 
 def _models(workspace: Workspace) -> Iterator[Fact]:
@@ -322,4 +329,4 @@ def _models(workspace: Workspace) -> Iterator[Fact]:
             if meant is not None:
                 at = file.location(element)
                 message = f"there is no model {name!r}; did you mean {meant!r}?"
-                yield Mismatch("files", message, at, corrections=corrections(name, at, meant))
+                yield Mismatch(WORLD_MODEL, message, at, corrections=corrections(name, at, meant))

@@ -18,6 +18,9 @@ from grader.ros.urdf.model import Collision, Mesh, Visual
 from grader.ros.urdf.numbers import finite_number
 from grader.ros.urdf.shapes import PlacedShape
 from grader.ros.workspace.names import Compared, Fact, warning
+from grader.ros.workspace.rule_table import (
+    FOOTPRINT,
+)
 from grader.ros.workspace.under_arguments import may_vary
 from grader.ros.workspace.workspace import KnownRobot, Workspace
 
@@ -72,7 +75,7 @@ def footprint_facts(workspace: Workspace) -> Iterator[Fact]:
         )
         location = robots[0].robot.link(first.link).location
         at = location.resolve() if location is not None else None
-        yield warning("values", message, room.location, at)
+        yield warning(FOOTPRINT, message, room.location, at)
 
 
 def _rooms(workspace: Workspace) -> Iterator[_Room]:

@@ -28,6 +28,10 @@ from grader.ros.workspace.names import (
     Use,
     corrections,
 )
+from grader.ros.workspace.rule_table import (
+    FRAME_PARENT,
+    FRAME_PUBLISHED,
+)
 from grader.ros.workspace.under_arguments import names_under_arguments
 from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
@@ -234,7 +238,7 @@ def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> It
         )
         either = corrections(each.name, at, meant, roots[meant])
         is_certain = each.node.when is True and len(robots) == 1
-        yield Mismatch("frames", message, at, roots[meant], is_certain, corrections=either)
+        yield Mismatch(FRAME_PUBLISHED, message, at, roots[meant], is_certain, corrections=either)
 
 
 def _is_static(node: StartedNode) -> bool:
@@ -262,7 +266,7 @@ def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Iterato
             at = _place(children[child].location)
             message = f"the frame {child!r} has two parents: {own!r} in the robot, {parent!r} here"
             is_certain = node.when is True and len(robots) == 1
-            yield Mismatch("frames", message, node.location, at, is_certain=is_certain)
+            yield Mismatch(FRAME_PARENT, message, node.location, at, is_certain=is_certain)
 
 
 def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:

@@ -10,6 +10,9 @@ from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.python.values import Unknown
 from grader.ros.workspace.controllers import defined_controllers
 from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.rule_table import (
+    GAIN_SET,
+)
 from grader.ros.workspace.workspace import Workspace
 
 
@@ -64,4 +67,4 @@ def _moves_nothing(controller: str, lack: _LackingGains) -> Mismatch:
         f"{controller} commands the {lack.interface} of {quoted(lack.joint)} without gains, so it "
         f"moves nothing: give it gains.{lack.joint}.p"
     )
-    return Mismatch("effects", message, lack.location, is_certain=False)
+    return Mismatch(GAIN_SET, message, lack.location, is_certain=False)

@@ -13,6 +13,14 @@ from grader.base.text import enumerated, quoted
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.names import Fact, Mismatch, corrections
+from grader.ros.workspace.rule_table import (
+    BRIDGE_EMPTY,
+    CREATE_OPTION,
+    CREATED_FROM,
+    CREATED_TOPIC,
+    CREATED_WORLD,
+    SENSOR_SYSTEM,
+)
 from grader.ros.workspace.workspace import Workspace
 from grader.ros.xml.parsing import Element, XmlFile
 
@@ -132,7 +140,7 @@ def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Ite
                 f"the world has no plugin gz::sim::systems::{system}, so the sensor "
                 f"{quoted(sensor.get('name', ''))} ({at.file_and_line}) publishes nothing"
             )
-            yield Mismatch("topics", message, file.location(world), at)
+            yield Mismatch(SENSOR_SYSTEM, message, file.location(world), at)
 
 
 def _created(
@@ -155,7 +163,7 @@ def _created(
         )
         at = file.location(next(file.root.iterchildren("world")))
         either = corrections(options["world"], node.location, world)
-        yield Mismatch("topics", message, node.location, at, corrections=either)
+        yield Mismatch(CREATED_WORLD, message, node.location, at, corrections=either)
 
 
 def _options_of_creator(node: StartedNode) -> Iterator[Mismatch]:
@@ -181,11 +189,11 @@ def _options_of_creator(node: StartedNode) -> Iterator[Mismatch]:
         meant = known()["older_create_options"].get(name) or similar
         guess = f"; did you mean -{meant}?" if meant else ""
         message = f"create has no option -{name}, and ignores it{guess}"
-        yield Mismatch("words", message, node.location, is_certain=False)
+        yield Mismatch(CREATE_OPTION, message, node.location, is_certain=False)
     if node.parameters == () and not set(given).intersection(known()["create_sources"]):
         sources = enumerated([f"-{name}" for name in known()["create_sources"]], word="or")
         message = f"create ends with an error: it needs {sources}"
-        yield Mismatch("parameters", message, node.location, is_certain=node.when is True)
+        yield Mismatch(CREATED_FROM, message, node.location, is_certain=node.when is True)
 
 
 def _created_from(workspace: Workspace, node: StartedNode, topic: str) -> Iterator[Mismatch]:
@@ -204,7 +212,7 @@ def _created_from(workspace: Workspace, node: StartedNode, topic: str) -> Iterat
         meant, at = next(iter(published.items()))
         message = f"the robot is created from {name}, but robot_state_publisher publishes {meant}"
         either = corrections(topic, node.location, meant.strip("/"))
-        yield Mismatch("topics", message, node.location, at, corrections=either)
+        yield Mismatch(CREATED_TOPIC, message, node.location, at, corrections=either)
 
 
 def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
@@ -217,4 +225,4 @@ def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
                 message = (
                     "the bridge has no topics: neither arguments, nor the parameter config_file"
                 )
-                yield Mismatch("topics", message, node.location)
+                yield Mismatch(BRIDGE_EMPTY, message, node.location)

@@ -26,6 +26,14 @@ from grader.ros.package.package import Package
 from grader.ros.package.package_interfaces import PackageInterfaces
 from grader.ros.python.values import Value
 from grader.ros.workspace.names import Compared, Fact, Mismatch, Undecided, corrections
+from grader.ros.workspace.rule_table import (
+    FIELD_VALUE,
+    INTERFACE_DEPENDENCY,
+    INTERFACE_FIELD,
+    INTERFACE_FILE,
+    INTERFACE_GROUP,
+    INTERFACE_TYPE,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _GROUP = "rosidl_interface_packages"
@@ -68,12 +76,12 @@ def _own_faults(workspace: Workspace, package: Package, own: PackageInterfaces) 
             f"package.xml needs <member_of_group>{_GROUP}</member_of_group>: without it, "
             "rosidl_generate_interfaces() stops the build"
         )
-        yield Mismatch("interfaces", message, manifest.name_location, own.location)
+        yield Mismatch(INTERFACE_GROUP, message, manifest.name_location, own.location)
     for found in own.types.values():
         for fault in found.interface.faults:
             message = f"rosidl cannot read the file: {fault.message}"
             either = corrections(fault.written, fault.location, fault.meant)
-            yield Mismatch("interfaces", message, fault.location, corrections=either)
+            yield Mismatch(INTERFACE_FILE, message, fault.location, corrections=either)
         for section in found.interface.sections:
             for field in section.fields.values():
                 workspace.charge(1)
@@ -99,7 +107,7 @@ def _unknown_field_type(
                 f"the field {field.name} has a type of {kind.package}, which DEPENDENCIES of "
                 "rosidl_generate_interfaces() does not name: the build stops"
             )
-            yield Mismatch("interfaces", message, at, own.location)
+            yield Mismatch(INTERFACE_DEPENDENCY, message, at, own.location)
 
 
 def _reached(workspace: Workspace, own: PackageInterfaces) -> set[str] | None:
@@ -165,7 +173,7 @@ def _absent(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
         reason = f"rosidl_generate_interfaces() of {package} does not name its file"
         if related is None:
             reason = f"{package} does not call rosidl_generate_interfaces()"
-        return Mismatch("interfaces", f"there is no type {shown}: {reason}", at, related)
+        return Mismatch(INTERFACE_TYPE, f"there is no type {shown}: {reason}", at, related)
     workspace.charge(len(names))
     of_kind = [it.partition(".")[2] for it in names if it.startswith(f"{kind}.")]
     meant = near(short, of_kind) or closest(short, of_kind)
@@ -178,7 +186,7 @@ def _absent(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
     elif of_kind and len(of_kind) <= MAX_NAMED:
         hint = f"; there is {enumerated(of_kind)}"
     either = corrections(short, at, meant) if not other else ()
-    return Mismatch("interfaces", f"there is no type {shown}{hint}", at, corrections=either)
+    return Mismatch(INTERFACE_TYPE, f"there is no type {shown}{hint}", at, corrections=either)
 
 
 def _used_types(workspace: Workspace, package: Package) -> Iterator[Fact]:
@@ -280,7 +288,7 @@ def _without_field(
             hint = f"{hint} and others"
     message = f"{shown} has no {noun} {quoted(attribute)}; {hint}"
     either = corrections(attribute, at, meant)
-    return Mismatch("interfaces", message, at, corrections=either)
+    return Mismatch(INTERFACE_FIELD, message, at, corrections=either)
 
 
 def _wrong_value(
@@ -295,7 +303,7 @@ def _wrong_value(
             message = (
                 f"the field {field.name} of {shown} is {wanted}; it is set to {_in_words(value)}"
             )
-            yield Mismatch("interfaces", message, use.location, is_of_type=True)
+            yield Mismatch(FIELD_VALUE, message, use.location)
 
 
 def _in_words(value: Value) -> str:

@@ -18,6 +18,12 @@ from grader.ros.workspace.endpoints import ANY, opened_by
 from grader.ros.workspace.gazebo import BRIDGE
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.publishers import may_be_published_by
+from grader.ros.workspace.rule_table import (
+    DISPLAY_TYPE,
+    INPUT_PUBLISHED,
+    INPUT_TYPE,
+    REMAPPED_TOPIC,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _INPUT = re.compile(r"([a-z]+)\d+")
@@ -123,7 +129,7 @@ def _other_types(node: StartedNode, row: Mapping[str, Any], published: _ByTopic)
                 f"{node.executable} reads {topic} with {wanted}, but it is published with "
                 f"{other.type} ({other.location.file_and_line})"
             )
-            yield warning("wiring", message, node.location, other.location)
+            yield warning(INPUT_TYPE, message, node.location, other.location)
 
 
 def _inputs(
@@ -159,7 +165,7 @@ def _other_inputs(
                 f"{each.parameter} reads {each.topic} with {each.type}, but it is published with "
                 f"{other.type} ({other.location.file_and_line})"
             )
-            yield warning("wiring", message, each.location, other.location)
+            yield warning(INPUT_TYPE, message, each.location, other.location)
         elif each.topic not in published and not _may_be_published(workspace, each.topic):
             meant = _only_unread(workspace, node, each.type, published, read)
             if meant is not None:
@@ -167,7 +173,7 @@ def _other_inputs(
                     f"{each.parameter} reads {each.topic}, which nothing publishes; did you mean "
                     f"{meant.topic} ({meant.location.file_and_line})?"
                 )
-                yield warning("wiring", message, each.location, meant.location)
+                yield warning(INPUT_PUBLISHED, message, each.location, meant.location)
 
 
 def _only_unread(
@@ -209,7 +215,7 @@ def _remappings(node: StartedNode, row: Mapping[str, Any]) -> Iterator[Mismatch]
                 f"{node.executable} has no topic {quoted(written)}, so its remapping does nothing; "
                 f"did you mean {meant}?"
             )
-            yield Mismatch("words", message, node.location, is_certain=False)
+            yield Mismatch(REMAPPED_TOPIC, message, node.location, is_certain=False)
 
 
 def _displays(workspace: Workspace, published: _ByTopic) -> Iterator[Mismatch]:
@@ -227,4 +233,4 @@ def _displays(workspace: Workspace, published: _ByTopic) -> Iterator[Mismatch]:
                         f"the display {quoted(display.name)} reads {wanted}, but {topic.text} is "
                         f"published with {other.type} ({other.location.file_and_line})"
                     )
-                    yield warning("wiring", message, topic.location, other.location)
+                    yield warning(DISPLAY_TYPE, message, topic.location, other.location)

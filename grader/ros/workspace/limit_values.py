@@ -12,6 +12,9 @@ from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.urdf.model import Joint, Limit
 from grader.ros.urdf.numbers import finite_number
 from grader.ros.workspace.names import Compared, Fact, warning
+from grader.ros.workspace.rule_table import (
+    JOINT_LIMIT,
+)
 from grader.ros.workspace.under_arguments import may_vary
 from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
@@ -100,7 +103,7 @@ def _wider(said: _Said, robots: Sequence[KnownRobot]) -> Iterator[Fact]:
         f"{_allowed(said, limit):g}"
     )
     at = place.resolve() if place is not None else None
-    yield warning("values", message, said.location, at)
+    yield warning(JOINT_LIMIT, message, said.location, at)
 
 
 def _allowed(said: _Said, limit: Limit) -> float:

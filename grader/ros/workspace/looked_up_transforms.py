@@ -10,7 +10,10 @@ from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.workspace.endpoints import frames_of
 from grader.ros.workspace.frames import openings
 from grader.ros.workspace.gazebo import roots, system_of
-from grader.ros.workspace.names import UNCONNECTED, Compared, Mismatch
+from grader.ros.workspace.names import Compared, Mismatch
+from grader.ros.workspace.rule_table import (
+    TRANSFORM_CONNECTED,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _ROBOT_PUBLISHER = "robot_state_publisher"
@@ -70,7 +73,7 @@ def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
                 "lookup fails"
             )
             at = lookup.location
-            yield Mismatch("transforms", message, at, is_certain=False, rule=UNCONNECTED)
+            yield Mismatch(TRANSFORM_CONNECTED, message, at, is_certain=False)
 
 
 def _lookups(workspace: Workspace) -> Iterator[_Lookup]:

@@ -16,7 +16,7 @@ from grader.ros.mesh.mesh_sample import SAMPLED, sample_size
 from grader.ros.package.mesh_files import mesh_file
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.model import Box, Cylinder, Geometry, Link, Mesh, Robot, Sphere
-from grader.ros.workspace.name_problems import OTHER_VALUE
+from grader.ros.workspace.rule_table import MESH_UNIT
 from grader.ros.workspace.workspace import Workspace
 
 # What is about a factor of 1000, and for which ones in a sample a whole mesh is read.
@@ -73,7 +73,7 @@ def _problems_of(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Proble
                     f"is {length:.3g} m long, but {reference.what} is {reference.length:.3g} m: "
                     "is it in millimetres or in metres? See its scale",
                 )
-                yield Problem(OTHER_VALUE, message, at.resolve(), "values")
+                yield MESH_UNIT.problem(message, at.resolve(), is_certain=False)
 
 
 def _is_off(length: float, right: float, least: float, most: float) -> bool:

@@ -10,6 +10,11 @@ from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.known import known
 from grader.ros.workspace.controllers import defined_controllers
 from grader.ros.workspace.names import Fact, Mismatch, Use, corrections
+from grader.ros.workspace.rule_table import (
+    MOVEIT_ACTION,
+    MOVEIT_CONTROLLER,
+    MOVEIT_JOINTS,
+)
 from grader.ros.workspace.spawners import started_controllers
 from grader.ros.workspace.workspace import Workspace
 
@@ -58,7 +63,7 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
             message = (
                 f"controller_names: no spawner starts {quoted(name)}: MoveIt waits for its action"
             )
-            yield Mismatch("controllers", message, node.location)
+            yield Mismatch(MOVEIT_CONTROLLER, message, node.location)
         joints = section.get("joints")
         for joint in joints.items if joints is not None else ():
             yield Use("joint", joint.text or "", joint.location, f"{name}.joints")
@@ -84,7 +89,7 @@ def _other_action(name: str, section: YamlNode) -> Iterator[Mismatch]:
     if wanted is not None and action.text not in ("", wanted):
         message = f"{name}.action_ns is {action.text!r}; the action of its controller is {wanted!r}"
         either = corrections(action.text or "", action.location, wanted)
-        yield Mismatch("controllers", message, action.location, kind.location, corrections=either)
+        yield Mismatch(MOVEIT_ACTION, message, action.location, kind.location, corrections=either)
 
 
 def _other_joints(workspace: Workspace, name: str, joints: YamlNode | None) -> Iterator[Mismatch]:
@@ -113,7 +118,7 @@ def _other_joints(workspace: Workspace, name: str, joints: YamlNode | None) -> I
             f"{name}.joints: MoveIt and the controller ({controlled.location.file_and_line}) have "
             f"other joints: {', '.join(differing)}"
         )
-        yield Mismatch("controllers", message, joints.location, controlled.location)
+        yield Mismatch(MOVEIT_JOINTS, message, joints.location, controlled.location)
 
 
 def _joint_names(node: YamlNode) -> set[str]:

@@ -23,12 +23,12 @@ class NamePlaces:
         return self._opened.names()
 
     @cached_property
-    def mismatches(self) -> Mapping[tuple[str, str, int], Mismatch]:
-        """What does not agree, by its message, file and line."""
+    def mismatches(self) -> Mapping[tuple[str, str, int, int], Mismatch]:
+        """What does not agree, by its message and place."""
         found = {}
         for mismatch in read_agreement(self._opened.workspace).mismatches:
             at = mismatch.location
-            found[mismatch.message, at.path, at.line] = mismatch
+            found[mismatch.message, at.path, at.line, at.column] = mismatch
         return found
 
     def at(self, path: str, line: int, column: int) -> WrittenName | None:

@@ -4,58 +4,13 @@ somewhere.
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
-from typing import Literal, NamedTuple, get_args
+from typing import NamedTuple
 
 from grader.base.names import are_of_one_side, closest, near
 from grader.base.source import Location
 from grader.base.text import counted, quoted
+from grader.ros.workspace.rule_table import DEFINED, FAMILIES, AnyFamily, DefinedKind, Rule
 
-Family = Literal[
-    "files",
-    "frames",
-    "controllers",
-    "parameters",
-    "arguments",
-    "programs",
-    "topics",
-    "dependencies",
-    "services",
-    "interfaces",
-    "code",
-    "values",
-    "transforms",
-]
-FAMILIES: tuple[Family, ...] = get_args(Family)
-# Of these, nothing is certain.
-AnyFamily = Family | Literal["wiring", "machine", "moveit", "words", "messages", "effects"]
-_Kind = Literal[
-    "frame",
-    "link",
-    "joint",
-    "group",
-    "controller",
-    "interface",
-    "plugin section",
-    "parameter",
-    "launch argument",
-    "xacro argument",
-    "node",
-    "topic",
-    "Gazebo topic",
-]
-FAMILY_OF: Mapping[_Kind, AnyFamily] = {
-    **dict.fromkeys(("frame", "link", "joint", "group"), "frames"),
-    **dict.fromkeys(("controller", "interface"), "controllers"),
-    **dict.fromkeys(("plugin section", "parameter"), "parameters"),
-    **dict.fromkeys(("launch argument", "xacro argument"), "arguments"),
-    **dict.fromkeys(("topic", "Gazebo topic"), "topics"),
-    "node": "programs",
-}
-
-
-# Rules of mismatches of parameters that are not certain.
-UNKNOWN_PARAMETER, NO_EFFECT, OF_OTHER_RELEASE = "unknown", "without effect", "other release"
-UNCONNECTED = "unconnected"
 _MAX_NEAR, _MAX_SIMILAR = 1000, 300  # known names that are compared in either way
 
 
@@ -64,7 +19,7 @@ class Definition(NamedTuple):
     arguments of a file.
     """
 
-    kind: _Kind
+    kind: DefinedKind
     name: str
     location: Location
     owner: str = ""
@@ -75,7 +30,7 @@ class Use(NamedTuple):
     name is wrong.
     """
 
-    kind: _Kind
+    kind: DefinedKind
     name: str
     location: Location
     said: str
@@ -88,7 +43,7 @@ class Open(NamedTuple):
     not evaluated.
     """
 
-    kind: _Kind
+    kind: DefinedKind
     owner: str = ""
     reason: str = ""
 
@@ -96,7 +51,7 @@ class Open(NamedTuple):
 class Pattern(NamedTuple):
     """That names of a kind may be defined that are not known; * stands for a part of them."""
 
-    kind: _Kind
+    kind: DefinedKind
     pattern: str
 
 
@@ -115,7 +70,7 @@ class Mismatch(NamedTuple):
     fails at run time.
     """
 
-    family: AnyFamily
+    rule: Rule
     message: str
     location: Location
     related: Location | None = None  # of what was meant
@@ -123,15 +78,16 @@ class Mismatch(NamedTuple):
     corrections: tuple[
         Correction, ...
     ] = ()  # with each of which it agrees: first of the use, then of the definition
-    is_of_type: bool = False  # whether a value or a topic has another type
-    rule: str = ""  # of the families code and parameters: what is wrong
+
+    @property
+    def family(self) -> AnyFamily:
+        """The family of names_agree to which the rule belongs."""
+        return self.rule.family
 
 
-def warning(
-    family: AnyFamily, message: str, at: Location, related: Location | None = None
-) -> Mismatch:
+def warning(rule: Rule, message: str, at: Location, related: Location | None = None) -> Mismatch:
     """Return something that does not agree, and may be meant so."""
-    return Mismatch(family, message, at, related, is_certain=False)
+    return Mismatch(rule, message, at, related, is_certain=False)
 
 
 class Compared(NamedTuple):
@@ -199,11 +155,11 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
     work of comparing names is charged.
     """
     every = [*facts]
-    known: dict[tuple[_Kind, str], dict[str, Location]] = {}
+    known: dict[tuple[DefinedKind, str], dict[str, Location]] = {}
     for fact in every:
         if isinstance(fact, Definition):
             known.setdefault((fact.kind, fact.owner), {}).setdefault(fact.name, fact.location)
-    opened: dict[tuple[_Kind, str], str] = {}
+    opened: dict[tuple[DefinedKind, str], str] = {}
     for fact in every:
         if isinstance(fact, Open):
             opened[fact.kind, fact.owner] = opened.get((fact.kind, fact.owner)) or fact.reason
@@ -216,7 +172,7 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
         key = use.kind, use.owner
         is_defined = use.name in known.get(key, {})
         if is_defined or not (use.optional or key in opened):
-            compared.add(FAMILY_OF[use.kind])
+            compared.add(DEFINED[use.kind].family)
         charge(1 + len(patterns))
         if is_defined or _may_be_defined(use, patterns):
             continue
@@ -225,7 +181,7 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
         if mismatch is not None:
             found.append(mismatch)
         if opened.get(key):
-            undecided.setdefault(FAMILY_OF[use.kind], opened[key])
+            undecided.setdefault(DEFINED[use.kind].family, opened[key])
     compared |= {fact.family for fact in every if isinstance(fact, Compared | Mismatch)}
     files = frozenset(fact.name for fact in every if isinstance(fact, Compared) and fact.name)
     return Agreement(_in_order(found), undecided, frozenset(compared), files, counts)
@@ -281,7 +237,7 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
     message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{guess}"
     related = known[meant] if meant is not None else None
     either = corrections(use.name, use.location, meant, related)
-    return Mismatch(FAMILY_OF[use.kind], message, use.location, related, is_certain, either)
+    return Mismatch(DEFINED[use.kind], message, use.location, related, is_certain, either)
 
 
 def corrections(

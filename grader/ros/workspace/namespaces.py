@@ -10,6 +10,9 @@ from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import is_key_of
 from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.rule_table import (
+    PARAMETER_NAMESPACE,
+)
 from grader.ros.workspace.workspace import Workspace
 
 
@@ -50,4 +53,4 @@ def _other_namespace(
         f"{same[0]}: write {quoted('/**/' + full.rpartition('/')[2])}, which matches any namespace"
     )
     at = tree.key_location(*keys[same[0]])
-    yield Mismatch("parameters", message, at, node.location, is_certain=node.when is True)
+    yield Mismatch(PARAMETER_NAMESPACE, message, at, node.location, is_certain=node.when is True)

@@ -7,6 +7,10 @@ from grader.base.source import Source
 from grader.base.text import cut, quoted
 from grader.ros.known.known import known
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rule_table import (
+    ENVIRONMENT_VARIABLE,
+    HOME_PATH,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _HOME = re.compile(r"(?<![\w$}/.:])(?:file://)?(/(?:home|Users)/[\w.-]+/[^\s\"'<>,;:)}\]]*)")
@@ -38,7 +42,7 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
                 message = f"the path {path} is of one machine"
                 if len(found) > 1:
                     message += f"; the file has {len(found)} such paths"
-                yield warning("machine", message, source.at(found[0].start(1)))
+                yield warning(HOME_PATH, message, source.at(found[0].start(1)))
     for package in workspace.packages:
         for source in workspace.launch_sources(package):
             yield from _variables(source)
@@ -58,7 +62,7 @@ def _variables(source: Source) -> Iterator[Mismatch]:
             f"the launch file ends with an error where the environment variable {name} is not set: "
             "give it a default"
         )
-        yield warning("machine", message, source.at(match.start()))
+        yield warning(ENVIRONMENT_VARIABLE, message, source.at(match.start()))
 
 
 def _is_handled(text: str, name: str) -> bool:

@@ -5,7 +5,7 @@ effect, of another type or release, missing, or not accepted.
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cache
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 from grader.base.names import MAX_GUESSES, are_of_one_side, closest, is_misspelling, near
 from grader.base.source import Location
@@ -16,11 +16,17 @@ from grader.ros.launch.launch_model import ParameterValue
 from grader.ros.python.parse import START
 from grader.ros.python.values import Unknown
 from grader.ros.workspace.names import (
-    NO_EFFECT,
-    OF_OTHER_RELEASE,
-    UNKNOWN_PARAMETER,
     Mismatch,
     corrections,
+)
+from grader.ros.workspace.rule_table import (
+    PARAMETER_BOUNDS,
+    PARAMETER_EFFECT,
+    PARAMETER_MISSING,
+    PARAMETER_RELEASE,
+    PARAMETER_TYPE,
+    PARAMETER_UNKNOWN,
+    Rule,
 )
 
 _MAX_TABLES = 100  # of plugins in a node
@@ -47,7 +53,6 @@ _DECLARED = {
     "string_array": "a list of strings",
 }
 _NOT_KNOWN = Unknown("its default is not known", START)
-_Rule = Literal["type", "bounds", "missing", "unknown", "without effect"]
 
 
 class GivenNode(NamedTuple):
@@ -68,7 +73,6 @@ class GivenNode(NamedTuple):
 
 
 class _RowFinding(NamedTuple):
-    rule: _Rule
     name: str  # of the parameter
     mismatch: Mismatch
 
@@ -112,13 +116,13 @@ def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismat
     if known is None or any(release not in COVERED for release in stated):
         return
     readers = {release: _NodeReader(given, release) for release in COVERED}
-    found: dict[tuple[_Rule, str], Mismatch] | None = None
+    found: dict[tuple[Rule, str], Mismatch] | None = None
     for release in [release for release in stated or COVERED if known.is_in(release)]:
-        here = {(it.rule, it.name): it.mismatch for it in readers[release].findings()}
+        here = {(it.mismatch.rule, it.name): it.mismatch for it in readers[release].findings()}
         before = here if found is None else found
         found = {key: mismatch for key, mismatch in before.items() if key in here}
     for (rule, name), mismatch in (found or {}).items():
-        if rule == "unknown":
+        if rule is PARAMETER_UNKNOWN:
             having = [release for release in COVERED if readers[release].has(name)]
             yield _of_other_release(given, name, mismatch, having, stated)
         else:
@@ -146,15 +150,13 @@ def _of_other_release(
     for owner in (f"{given.node}/", f"{given.node.rpartition('/')[2]}/"):
         other = other_name("parameter", owner + name, stated, shown=owner)
         if other is not None:
-            return Mismatch(
-                "parameters", other.message, at, is_certain=False, rule=OF_OTHER_RELEASE
-            )
+            return Mismatch(PARAMETER_RELEASE, other.message, at, is_certain=False)
     if RELEASES.index(releases[-1]) < RELEASES.index(stated[0]):
         gone = RELEASES[RELEASES.index(releases[-1]) + 1]
         text = f"there is no parameter {name!r} from {gone.title()} on"
     else:
         text = f"there is no parameter {name!r} before {releases[0].title()}"
-    return Mismatch("parameters", text, at, is_certain=False, rule=OF_OTHER_RELEASE)
+    return Mismatch(PARAMETER_RELEASE, text, at, is_certain=False)
 
 
 class _NodeReader:
@@ -337,18 +339,18 @@ class _NodeReader:
                     f"the parameter {shown!r} is given {actual}; {self._given.said} declares "
                     f"{declared}, and stops"
                 )
-                yield self._certain("type", name, message, given.location, is_of_type=True)
+                yield self._certain(PARAMETER_TYPE, name, message, given.location)
             return
         wrong = _beyond(row, given.value)
         if wrong:
             message = (
                 f"the parameter {shown!r} is {_shown(given.value)}; {self._given.said} {wrong}"
             )
-            yield self._certain("bounds", name, message, given.location)
+            yield self._certain(PARAMETER_BOUNDS, name, message, given.location)
         wrong = self._wrong_library(name, row, given.value)
         if wrong:
             message = f"{self._given.said} {wrong}"
-            yield self._certain("bounds", name, message, given.location)
+            yield self._certain(PARAMETER_BOUNDS, name, message, given.location)
 
     def _wrong_library(self, name: str, row: ParameterRow, value: Any) -> str:
         """Return, in words, that a node stops at a library of plugins; empty if it does not."""
@@ -372,12 +374,8 @@ class _NodeReader:
                 return f"stops: {self._release.title()} has no library {quoted(item)}{guess}"
         return ""
 
-    def _certain(
-        self, rule: _Rule, name: str, message: str, at: Location, *, is_of_type: bool = False
-    ) -> _RowFinding:
-        return _RowFinding(
-            rule, name, Mismatch("parameters", message, at, is_of_type=is_of_type, rule=rule)
-        )
+    def _certain(self, rule: Rule, name: str, message: str, at: Location) -> _RowFinding:
+        return _RowFinding(name, Mismatch(rule, message, at))
 
     def _near(self, name: str) -> str | None:
         """Return the parameter that another name surely stands for: one part of it is misspelt."""
@@ -413,14 +411,13 @@ class _NodeReader:
                 f"mean {quoted(self._given.shown(near_name))}?"
             )
             mismatch = Mismatch(
-                "parameters",
+                PARAMETER_UNKNOWN,
                 message,
                 at,
                 is_certain=False,
                 corrections=corrections(old, at, new),
-                rule=UNKNOWN_PARAMETER,
             )
-            return _RowFinding("unknown", name, mismatch)
+            return _RowFinding(name, mismatch)
         table = next(it for it in reversed(self._tables) if name.startswith(it.prefix))
         if table.is_open or any(not prefix for prefix in self._unread):
             return None
@@ -430,8 +427,8 @@ class _NodeReader:
         if similar and is_misspelling(section, similar) and are_of_one_side(section, similar):
             guess = f"; did you mean {quoted(similar)}?"
         message = f"{self._given.said} has no parameter {quoted(section)}{guess}"
-        mismatch = Mismatch("parameters", message, at, is_certain=False, rule=UNKNOWN_PARAMETER)
-        return _RowFinding("unknown", section, mismatch)
+        mismatch = Mismatch(PARAMETER_UNKNOWN, message, at, is_certain=False)
+        return _RowFinding(section, mismatch)
 
     def _first_unknown(self, name: str, table: _RowTable) -> str:
         """Return a name up to the first part with which no parameter begins."""
@@ -472,15 +469,15 @@ class _NodeReader:
                 )
                 wrong = meant.get(name) or closest(name, unread)
                 if wrong is None or wrong not in self._values:
-                    yield self._certain("missing", name, message, at)
+                    yield self._certain(PARAMETER_MISSING, name, message, at)
                     continue
                 unread.pop(wrong, None)
                 value = self._values[wrong]
                 place = value.named_at or value.location
                 text = f"{message}; did you mean it by {wrong!r}?"
                 either = corrections(wrong.rpartition(".")[2], place, row.name.rpartition(".")[2])
-                mismatch = Mismatch("parameters", text, place, corrections=either, rule="missing")
-                yield _RowFinding("missing", name, mismatch)
+                mismatch = Mismatch(PARAMETER_MISSING, text, place, corrections=either)
+                yield _RowFinding(name, mismatch)
 
 
 class _OffSwitch(NamedTuple):
@@ -493,8 +490,8 @@ class _OffSwitch(NamedTuple):
         """Return that a parameter has no effect."""
         at = value.named_at or value.location
         message = f"{given.said} does not use {given.shown(name)}{self.words}"
-        mismatch = Mismatch("parameters", message, at, is_certain=False, rule=NO_EFFECT)
-        return _RowFinding("without effect", name, mismatch)
+        mismatch = Mismatch(PARAMETER_EFFECT, message, at, is_certain=False)
+        return _RowFinding(name, mismatch)
 
 
 @cache

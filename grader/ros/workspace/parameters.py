@@ -39,6 +39,16 @@ from grader.ros.workspace.names import (
 )
 from grader.ros.workspace.parameter_rules import type_in_words
 from grader.ros.workspace.renamed_nodes import key_of_program_name
+from grader.ros.workspace.rule_table import (
+    FILTER_SIZE,
+    PARAMETER_FILE,
+    PARAMETER_KEY,
+    PARAMETER_MISSING,
+    PARAMETER_NODE,
+    PARAMETER_TYPE,
+    PLUGIN_NAME,
+    ROBOT_TEXT,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
@@ -62,7 +72,7 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
             if is_of_opencv or workspace.begins_with(path, LFS_POINTER):
                 continue
             yield Mismatch(
-                "parameters", f"this is not YAML: {tree}", tree.location, is_certain=is_certain
+                PARAMETER_FILE, f"this is not YAML: {tree}", tree.location, is_certain=is_certain
             )
     for path, nodes in workspace.parameter_files.items():
         yield Compared("parameters")
@@ -169,7 +179,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
         is_only_pair = len(unread) == len(lacking) == 1
         renamed = name if meant is not None or is_only_pair else None
         either = corrections(key, at, renamed, node.location)
-        yield Mismatch("parameters", message, at, node.location, corrections=either)
+        yield Mismatch(PARAMETER_NODE, message, at, node.location, corrections=either)
 
 
 def _unread_sections(
@@ -207,7 +217,7 @@ def _misplaced(tree: YamlNode) -> Iterator[Fact]:
     if alias is not None:
         name, at = alias
         yield Mismatch(
-            "parameters",
+            PARAMETER_FILE,
             f"ROS 2 reads no aliases in parameter files: write the value in place of *{name}",
             at,
         )
@@ -221,20 +231,20 @@ def _misplaced(tree: YamlNode) -> Iterator[Fact]:
             for key, inner in node.value.items():
                 if key == PARAMETERS and is_below:
                     message = f"{name}: ros__parameters is inside of other ros__parameters"
-                    yield Mismatch("parameters", message, node.key_location(key))
+                    yield Mismatch(PARAMETER_KEY, message, node.key_location(key))
                 elif not is_below and is_misspelt_key(key, inner):
                     message = (
                         f"{name}: rcl does not know the key {key!r}; did you mean {PARAMETERS!r}?"
                     )
                     at = node.key_location(key)
                     yield Mismatch(
-                        "parameters", message, at, corrections=corrections(key, at, PARAMETERS)
+                        PARAMETER_KEY, message, at, corrections=corrections(key, at, PARAMETERS)
                     )
                 else:
                     waiting.append((key, inner, is_below or key == PARAMETERS))
         elif not is_below and name:
             message = f"{name} is not below a key ros__parameters, so rcl cannot read the file"
-            yield Mismatch("parameters", message, node.location)
+            yield Mismatch(PARAMETER_KEY, message, node.location)
 
 
 def _declared(
@@ -320,7 +330,9 @@ def _not_given(
                 f"({parameter.location.file_and_line})"
             )
             is_certain = node.when is True and not own_node.doubts
-            yield Mismatch("parameters", message, node.location, parameter.location, is_certain)
+            yield Mismatch(
+                PARAMETER_MISSING, message, node.location, parameter.location, is_certain
+            )
 
 
 def _types_given(node: NodeFacts, values: Mapping[str, ParameterValue]) -> Iterator[Mismatch]:
@@ -362,7 +374,7 @@ def _other_type(
     message = (
         f"the parameter {name!r} is given {actual}; {reader} declares {declared}{there}, and stops"
     )
-    yield Mismatch("parameters", message, given.location, at, is_certain, is_of_type=True)
+    yield Mismatch(PARAMETER_TYPE, message, given.location, at, is_certain)
 
 
 def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
@@ -377,7 +389,7 @@ def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
                     f"{value.keys[-1]} has {count} values; it needs 15: x y z, angles, their "
                     "rates and accelerations"
                 )
-                yield Mismatch("parameters", message, value.node.location)
+                yield Mismatch(FILTER_SIZE, message, value.node.location)
 
 
 def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
@@ -391,7 +403,7 @@ def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) ->
         if text and not text.startswith("<"):
             advice = "give it the content of the file, not the path"
             message = f"robot_description is no XML, so {node.executable} stops: {advice}"
-            yield Mismatch("parameters", message, robot.location)
+            yield Mismatch(ROBOT_TEXT, message, robot.location)
 
 
 def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Iterator[Fact]:
@@ -451,4 +463,4 @@ def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Iterator[Fac
             continue
         message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
         at = value.node.location
-        yield Mismatch("parameters", message, at, corrections=corrections(text, at, meant))
+        yield Mismatch(PLUGIN_NAME, message, at, corrections=corrections(text, at, meant))

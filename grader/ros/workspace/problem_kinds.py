@@ -3,7 +3,7 @@
 from grader.base.ignore_comments import COMMENT_CATALOGUE
 from grader.ros.build.package_problems import PACKAGE_CATALOGUE
 from grader.ros.urdf.urdf_problems import CATALOGUE
-from grader.ros.workspace.name_problems import NAME_CATALOGUE
+from grader.ros.workspace.rule_table import NAME_CATALOGUE
 from grader.ros.xacro.xacro_problems import XACRO_CATALOGUE
 
 EVERY_KIND = (*CATALOGUE, *XACRO_CATALOGUE, *PACKAGE_CATALOGUE, *NAME_CATALOGUE, *COMMENT_CATALOGUE)

@@ -24,6 +24,11 @@ from grader.ros.workspace.names import (
     Use,
     corrections,
 )
+from grader.ros.workspace.rule_table import (
+    ENTRY_POINT,
+    PROGRAM_EXISTS,
+    PROGRAM_RUNS,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _MAX_FIRST_LINE = 100  # bytes
@@ -52,7 +57,7 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             workspace.charge(_OF_MISSING)
             missing = _missing_program(node.package, node.executable, programs)
             either = corrections(node.executable, node.location, missing.meant)
-            yield Mismatch("programs", missing.message, node.location, corrections=either)
+            yield Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
     yield from _lifecycle(workspace)
 
 
@@ -68,7 +73,7 @@ def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Ite
         missing = _why_no_program(owner, node.executable)
         start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
         either = corrections(node.executable, node.location, missing.meant, start)
-        yield Mismatch("programs", missing.message, node.location, corrections=either)
+        yield Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
     else:
         yield from _not_executed(owner, node)
 
@@ -84,7 +89,7 @@ def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
         if fault is not None:
             message = f"the entry point of {entry.name!r} names no function: {fault.message}"
             either = corrections(fault.written, fault.location, fault.meant)
-            yield Mismatch("programs", message, fault.location, corrections=either)
+            yield Mismatch(ENTRY_POINT, message, fault.location, corrections=either)
 
 
 def _not_executed(package: Package, node: StartedNode) -> Iterator[Mismatch]:
@@ -105,7 +110,7 @@ def _not_executed(package: Package, node: StartedNode) -> Iterator[Mismatch]:
                 return
             message = f"Linux cannot execute {node.executable}: its first line {wrong}"
             at = Location(package.path(source), 1, 1)
-            yield Mismatch("programs", message, at, node.location)
+            yield Mismatch(PROGRAM_RUNS, message, at, node.location)
 
 
 class _MissingProgram(NamedTuple):

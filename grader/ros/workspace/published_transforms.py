@@ -25,6 +25,12 @@ from grader.ros.workspace.bridges import rows_of_bridge
 from grader.ros.workspace.controllers import defined_controllers, spawned_controllers
 from grader.ros.workspace.gazebo import BRIDGE, roots, system_of
 from grader.ros.workspace.names import Compared, Fact, Mismatch
+from grader.ros.workspace.rule_table import (
+    STATIC_POSE,
+    TRANSFORM_CYCLE,
+    TRANSFORM_OWNER,
+    TRANSFORM_ROTATION,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _SAME_PLACE, _SAME_ANGLE = 1e-3, 0.1  # metres, degrees
@@ -84,7 +90,7 @@ def _published_by(
                 "the quaternion of a static_transform_publisher is 0 0 0 0, which is no "
                 "rotation: tf2 ignores the transform; without one it is 0 0 0 1"
             )
-            yield Mismatch("transforms", message, node.location)
+            yield Mismatch(TRANSFORM_ROTATION, message, node.location)
             return
         parent, child = frames_named(node)
         if parent and child:
@@ -196,7 +202,7 @@ def _owned_twice(edges: Sequence[_Edge]) -> Iterator[Mismatch]:
                 f"{before.by} in {quoted(before.parent)} ({before.location.file_and_line}): a "
                 "frame has one parent"
             )
-        yield Mismatch("transforms", message, edge.location, before.location, is_certain=False)
+        yield Mismatch(TRANSFORM_OWNER, message, edge.location, before.location, is_certain=False)
 
 
 def _children_of_robot(edges: Sequence[_Edge], joints: Mapping[str, _Edge]) -> Iterator[Mismatch]:
@@ -212,7 +218,7 @@ def _children_of_robot(edges: Sequence[_Edge], joints: Mapping[str, _Edge]) -> I
             f"{edge.by} publishes {quoted(edge.child)} in {quoted(edge.parent)}, but {joint.by} "
             f"places it in {quoted(joint.parent)}: a frame has one parent"
         )
-        yield Mismatch("transforms", message, edge.location, joint.location)
+        yield Mismatch(TRANSFORM_OWNER, message, edge.location, joint.location)
 
 
 def _elsewhere(edge: _Edge, joint: _Edge) -> Iterator[Mismatch]:
@@ -227,7 +233,7 @@ def _elsewhere(edge: _Edge, joint: _Edge) -> Iterator[Mismatch]:
         f"{edge.by} places {quoted(edge.child)} {1000.0 * away:.3g} mm and {turn:.3g} degrees from "
         f"where {joint.by} places it"
     )
-    yield Mismatch("values", message, edge.location, joint.location, is_certain=False)
+    yield Mismatch(STATIC_POSE, message, edge.location, joint.location, is_certain=False)
 
 
 def _cycles(edges: Sequence[_Edge]) -> Iterator[Mismatch]:
@@ -248,4 +254,4 @@ def _cycles(edges: Sequence[_Edge]) -> Iterator[Mismatch]:
         published = [edge for edge in own if not edge.is_of_robot] or own
         names = " -> ".join(quoted(name) for name in [*reversed(cycle), cycle[-1]])
         message = f"the frames {names} are a cycle: tf2 has no transform of them"
-        yield Mismatch("transforms", message, published[0].location)
+        yield Mismatch(TRANSFORM_CYCLE, message, published[0].location)

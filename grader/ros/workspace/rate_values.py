@@ -13,6 +13,11 @@ from grader.ros.urdf.numbers import finite_number
 from grader.ros.workspace.controllers import defined_controllers, parameters_of_controllers
 from grader.ros.workspace.gazebo import roots
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rule_table import (
+    OBSTACLE_RANGE,
+    PUBLISH_RATE,
+    SCAN_RATE,
+)
 from grader.ros.workspace.workspace import MANAGER, Workspace
 from grader.ros.xml.parsing import Element
 
@@ -56,7 +61,7 @@ def _too_far(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mism
             f"{asked.of}.obstacle_max_range is {asked.value:g} m; the lidar {quoted(lidar.of)} "
             f"measures up to {lidar.value:g} m"
         )
-        yield warning("values", message, asked.location, lidar.location)
+        yield warning(OBSTACLE_RANGE, message, asked.location, lidar.location)
 
 
 def _too_often(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mismatch]:
@@ -67,7 +72,7 @@ def _too_often(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mi
             f"{asked.of}.expected_update_rate is {asked.value:g} s; the lidar {quoted(lidar.of)} "
             f"measures every {period:.4g} s"
         )
-        yield warning("values", message, asked.location, lidar.location)
+        yield warning(SCAN_RATE, message, asked.location, lidar.location)
 
 
 def _rates_of_controllers(workspace: Workspace) -> Iterator[Fact]:
@@ -86,7 +91,7 @@ def _rates_of_controllers(workspace: Workspace) -> Iterator[Fact]:
                 f"{asked.of}.publish_rate is {asked.value:g} Hz; the controller manager updates "
                 f"its controllers {update.value:g} times a second"
             )
-            yield warning("values", message, asked.location, update.location)
+            yield warning(PUBLISH_RATE, message, asked.location, update.location)
 
 
 def _number_in(section: YamlNode | None, name: str, key: str) -> _StatedNumber | None:

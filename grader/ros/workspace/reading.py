@@ -27,9 +27,7 @@ from grader.ros.workspace.limit_values import limit_facts
 from grader.ros.workspace.looked_up_transforms import lookup_facts
 from grader.ros.workspace.moveit import moveit_facts
 from grader.ros.workspace.names import (
-    FAMILY_OF,
     Agreement,
-    AnyFamily,
     Definition,
     Fact,
     Mismatch,
@@ -45,6 +43,7 @@ from grader.ros.workspace.published_transforms import transform_facts
 from grader.ros.workspace.rate_values import rate_facts
 from grader.ros.workspace.received_messages import received_message_facts
 from grader.ros.workspace.renamed_nodes import renamed_node_facts
+from grader.ros.workspace.rule_table import DEFINED, AnyFamily
 from grader.ros.workspace.services import service_facts
 from grader.ros.workspace.spawners import spawner_facts
 from grader.ros.workspace.srdf import srdf_facts
@@ -157,5 +156,5 @@ def compared_facts(
 ) -> Iterator[Use | Definition]:
     """Yield the names of these families that files use or define."""
     for fact in read_facts(workspace):
-        if isinstance(fact, Use | Definition) and FAMILY_OF[fact.kind] in families:
+        if isinstance(fact, Use | Definition) and DEFINED[fact.kind].family in families:
             yield fact

@@ -11,6 +11,11 @@ from grader.ros.known.known import known
 from grader.ros.package.node_facts import Endpoint, ImageEncoding
 from grader.ros.workspace.endpoints import certainly_opened
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rule_table import (
+    IMAGE_ENCODING,
+    MESSAGE_DEPTH,
+    MESSAGE_HEADER,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _HEADER = "header"
@@ -44,7 +49,7 @@ def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
             each.by, "uses time 0 instead, so it stops or never matches the messages"
         )
         message = f"{each.type} has no header with a time: {each.by} {effect}"
-        yield warning("messages", message, each.location)
+        yield warning(MESSAGE_HEADER, message, each.location)
 
 
 def _has_header(workspace: Workspace, name: str) -> bool | None:
@@ -70,7 +75,7 @@ def _without_queue(workspace: Workspace, package: str) -> Iterator[Mismatch]:
                     f"the {endpoint.kind} keeps 0 messages, which ROS 2 reads as the default of "
                     "the middleware, mostly 1: write how many"
                 )
-                yield warning("messages", message, endpoint.location)
+                yield warning(MESSAGE_DEPTH, message, endpoint.location)
 
 
 def _other_encodings(workspace: Workspace) -> Iterator[Fact]:
@@ -110,7 +115,7 @@ def _cannot_convert(topic: str, made: ImageEncoding, asked: ImageEncoding) -> Mi
         f"the images of {topic} have the encoding {quoted(made.name)} ({at.file_and_line}), which "
         f"cv_bridge does not convert to {quoted(asked.name)}"
     )
-    return warning("messages", message, asked.location, at)
+    return warning(IMAGE_ENCODING, message, asked.location, at)
 
 
 def _is_lost(made: str, asked: str) -> bool:

@@ -9,9 +9,10 @@ from grader.base.source import Location
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.releases import NameKind, other_name
 from grader.ros.workspace.controllers import defined_controllers
-from grader.ros.workspace.name_problems import OTHER_RELEASE, UNCOMPARED, name_problems
+from grader.ros.workspace.name_problems import name_problems
 from grader.ros.workspace.names import Agreement
 from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.rule_table import NAME_RELEASE, NAMES_COMPARED
 from grader.ros.workspace.stated_releases import deciding_launch_files, releases_in_path
 from grader.ros.workspace.workspace import TOO_MUCH, Workspace
 
@@ -31,7 +32,7 @@ def compared_names(workspace: Workspace) -> Iterator[Problem]:
         assert workspace.is_spent
     if workspace.is_spent:
         start = Location(next(iter(workspace.tree.files), ""), 1, 1)
-        yield Problem(UNCOMPARED, f"not all names are compared: {TOO_MUCH}", start)
+        yield NAMES_COMPARED.problem(f"not all names are compared: {TOO_MUCH}", start)
 
 
 def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Problem]:
@@ -50,7 +51,7 @@ def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Proble
             releases = {*workspace.releases, *releases_in_path(at.path)}
             other = other_name(kind, name, releases, shown=owner)
             if other is not None:
-                problem = Problem(OTHER_RELEASE, other.message, at, kind)
+                problem = NAME_RELEASE.problem(other.message, at, kind)
                 found.setdefault((other.message, at.path), problem)
     return sorted(
         found.values(), key=lambda it: (it.location.path, it.location.line, it.location.column)

@@ -11,6 +11,9 @@ from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import is_key_of
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections
+from grader.ros.workspace.rule_table import (
+    RENAMED_NODE,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _ANY_NAMES = ("*", "**")
@@ -75,7 +78,7 @@ def _unread_sections(
         )
         is_only_one = len(unread) == 1 and not is_read_elsewhere
         either = corrections(old, at, name if is_only_one else None)
-        yield Mismatch("parameters", message, at, node.location, node.when is True, either)
+        yield Mismatch(RENAMED_NODE, message, at, node.location, node.when is True, either)
 
 
 def _names_read(workspace: Workspace, nodes: Sequence[StartedNode]) -> set[str | None]:

@@ -19,6 +19,10 @@ from grader.ros.workspace.names import (
     corrections,
 )
 from grader.ros.workspace.publishers import is_own_type
+from grader.ros.workspace.rule_table import (
+    SERVICE_SERVED,
+    SERVICE_TYPE,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _SERVERS: dict[EndpointKind, EndpointKind] = {
@@ -100,7 +104,7 @@ def _other_type(client: _Opened, server: _Opened) -> Iterator[Mismatch]:
         f"the {noun} {client.name} is called with {wanted}, but served with {offered} "
         f"({at.file_and_line})"
     )
-    yield Mismatch("services", message, client.endpoint.location, at, is_certain, is_of_type=True)
+    yield Mismatch(SERVICE_TYPE, message, client.endpoint.location, at, is_certain)
 
 
 def _without_server(
@@ -120,7 +124,7 @@ def _without_server(
     is_certain = client.node.when is True and server.node.when is True
     message = f"nothing serves the {noun} {client.name}; did you mean {name} ({at.file_and_line})?"
     either = corrections(client.name, client.endpoint.location, name, at)
-    yield Mismatch("services", message, client.endpoint.location, at, is_certain, either)
+    yield Mismatch(SERVICE_SERVED, message, client.endpoint.location, at, is_certain, either)
 
 
 def _may_be_served(workspace: Workspace, client: _Opened) -> bool:

@@ -15,6 +15,12 @@ from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.package.package import Package
 from grader.ros.workspace.controllers import Controller, defined_controllers
 from grader.ros.workspace.names import Fact, Mismatch, Open, Use, corrections
+from grader.ros.workspace.rule_table import (
+    CONTROLLER_STARTED,
+    MANAGER_PARAMETERS,
+    MANAGER_SECTION,
+    SPAWNER_MANAGER,
+)
 from grader.ros.workspace.workspace import MANAGER, SPAWNERS, Workspace
 
 _OTHER_STARTS = re.compile(r"(load|switch|set)_controller|(Load|Switch)Controller")
@@ -93,7 +99,7 @@ def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact
                 f"({at.file_and_line})?"
             )
             either = corrections(name, spawner.location, meant)
-            yield Mismatch("controllers", message, spawner.location, at, corrections=either)
+            yield Mismatch(SPAWNER_MANAGER, message, spawner.location, at, corrections=either)
 
 
 def _is_manager(node: StartedNode) -> bool:
@@ -118,7 +124,7 @@ def _without_type(
             "the controller manager is not given the parameters with the type of "
             f"{_names_of(lacking)} ({at.file_and_line})"
         )
-        yield Mismatch("controllers", text, manager.location, at)
+        yield Mismatch(MANAGER_PARAMETERS, text, manager.location, at)
 
 
 def _controllers_without_type(
@@ -166,7 +172,7 @@ def _misspelt_managers(workspace: Workspace) -> Iterator[Mismatch]:
             f"the controller manager does not read the types below {name!r}; did you mean "
             f"{MANAGER!r}?"
         )
-        yield Mismatch("controllers", message, at, corrections=corrections(name, at, MANAGER))
+        yield Mismatch(MANAGER_SECTION, message, at, corrections=corrections(name, at, MANAGER))
 
 
 def _has_types(section: YamlNode) -> bool:
@@ -186,7 +192,7 @@ def _no_controllers(workspace: Workspace) -> Iterator[Mismatch]:
             quoted_names = [quoted(name) for name in sorted(filter(None, lacking))]
             names = enumerated(quoted_names, _MAX_CONTROLLERS)
             message = f"no parameter file of the controller manager has the type of {names}"
-            yield Mismatch("controllers", message, manager.location)
+            yield Mismatch(MANAGER_PARAMETERS, message, manager.location)
 
 
 def _names_of(controllers: Sequence[Controller], word: str = "and") -> str:
@@ -213,7 +219,7 @@ def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Ite
     for kind in (publishing, moving):
         if kind and spawned.isdisjoint(controller.name for controller in kind):
             text = f"no spawner starts {_names_of(kind, 'or')}"
-            yield Mismatch("controllers", text, kind[0].location)
+            yield Mismatch(CONTROLLER_STARTED, text, kind[0].location)
 
 
 def started_controllers(workspace: Workspace) -> set[str | None] | None:

@@ -8,6 +8,12 @@ from contextlib import suppress
 from grader.base.text import quoted
 from grader.ros.urdf.model import Robot
 from grader.ros.workspace.names import Definition, Fact, Mismatch, Open, Use
+from grader.ros.workspace.rule_table import (
+    DISABLED_PAIRS,
+    SRDF_GROUP,
+    SRDF_ROBOT,
+    STATE_LIMITS,
+)
 from grader.ros.workspace.workspace import Workspace
 from grader.ros.xml.parsing import XmlFile
 
@@ -72,7 +78,7 @@ def _other_robot(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
     message = (
         f"the SRDF is of the robot {quoted(name)}, but the robot is named {quoted(robot.name)}"
     )
-    yield Mismatch("moveit", message, file.location(file.root, "name"), is_certain=False)
+    yield Mismatch(SRDF_ROBOT, message, file.location(file.root, "name"), is_certain=False)
 
 
 def _empty_groups(file: XmlFile) -> Iterator[Mismatch]:
@@ -83,7 +89,7 @@ def _empty_groups(file: XmlFile) -> Iterator[Mismatch]:
                 f"the group {quoted(group.get('name', ''))} has no joint, link, chain or group: "
                 "MoveIt leaves it out"
             )
-            yield Mismatch("moveit", message, file.location(group), is_certain=False)
+            yield Mismatch(SRDF_GROUP, message, file.location(group), is_certain=False)
 
 
 def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
@@ -100,7 +106,7 @@ def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
                     f"<group_state>: {quoted(name)} is at {value:g}; its limits are "
                     f"{limit.lower:g} and {limit.upper:g}"
                 )
-                yield Mismatch("frames", message, file.location(element, "value"))
+                yield Mismatch(STATE_LIMITS, message, file.location(element, "value"))
 
 
 def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
@@ -122,4 +128,4 @@ def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
             "does not name them"
         )
         # Wrong only if their shapes touch in some position, which is not computed.
-        yield Mismatch("frames", message, file.location(file.root), is_certain=False)
+        yield Mismatch(DISABLED_PAIRS, message, file.location(file.root), is_certain=False)

@@ -14,6 +14,12 @@ from grader.ros.python.values import Unknown
 from grader.ros.workspace.controllers import controller_endpoints
 from grader.ros.workspace.endpoints import CertainEnd, certainly_opened
 from grader.ros.workspace.names import Fact, Mismatch, warning
+from grader.ros.workspace.rule_table import (
+    COMMAND_TYPE,
+    DISPLAY_QUALITY,
+    IMAGE_TRANSPORT,
+    ONE_COMMANDER,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _COMMANDS = ("geometry_msgs.msg.Twist", "geometry_msgs.msg.TwistStamped")
@@ -50,7 +56,7 @@ def _two_commanders(
                 f"{each.node.executable} and {before.node.executable} both publish {each.name}: "
                 "the robot obeys each in turn; twist_mux chooses one"
             )
-            yield warning("wiring", message, each.endpoint.location, before.endpoint.location)
+            yield warning(ONE_COMMANDER, message, each.endpoint.location, before.endpoint.location)
 
 
 def _other_transport(
@@ -67,7 +73,7 @@ def _other_transport(
             f"the topic {each.name} carries {kind}, and is subscribed to with {_IMAGE}: "
             f"subscribe to {topic}, or with the other type"
         )
-        yield warning("wiring", message, each.endpoint.location)
+        yield warning(IMAGE_TRANSPORT, message, each.endpoint.location)
 
 
 def _displays(workspace: Workspace, publishers: Sequence[CertainEnd]) -> Iterator[Mismatch]:
@@ -89,7 +95,7 @@ def _displays(workspace: Workspace, publishers: Sequence[CertainEnd]) -> Iterato
                         f"the display {quoted(display.name)} asks for reliable messages of "
                         f"{topic.text}, which are published as best effort: it stays empty"
                     )
-                    yield warning("wiring", message, policy.location)
+                    yield warning(DISPLAY_QUALITY, message, policy.location)
 
 
 def _programs(workspace: Workspace) -> Iterator[Mismatch]:
@@ -125,4 +131,4 @@ def _other_command(
             f"{node.executable} publishes {node.topic(row['topic'])} with {kind}, but the "
             f"controller subscribes to it with {reader.type}: set its parameter {parameter}"
         )
-        yield warning("wiring", message, node.location, reader.location)
+        yield warning(COMMAND_TYPE, message, node.location, reader.location)

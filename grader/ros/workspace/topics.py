@@ -27,6 +27,12 @@ from grader.ros.workspace.names import (
     corrections,
 )
 from grader.ros.workspace.publishers import is_own_type, may_be_published
+from grader.ros.workspace.rule_table import (
+    TOPIC_HEARD,
+    TOPIC_PUBLISHED,
+    TOPIC_QUALITY,
+    TOPIC_TYPE,
+)
 from grader.ros.workspace.workspace import Workspace
 
 _ENDS = ("publisher", "subscription")
@@ -147,7 +153,7 @@ def _differences(
                 f"the topic {publisher.topic} is published with {writer.type}, but the controller "
                 f"subscribes to it with {reader.type} ({reader.location.file_and_line})"
             )
-            yield Mismatch("topics", message, writer.location, reader.location, is_of_type=True)
+            yield Mismatch(TOPIC_TYPE, message, writer.location, reader.location)
         return
     at = writer.location.file_and_line
     types = [kind for kind in (reader.type, writer.type) if kind is not None]
@@ -157,7 +163,7 @@ def _differences(
             f"the topic {subscription.topic} is subscribed to with {reader.type}, but published "
             f"with {writer.type} ({at})"
         )
-        yield Mismatch("topics", message, reader.location, writer.location, is_of_type=True)
+        yield Mismatch(TOPIC_TYPE, message, reader.location, writer.location)
     incompatible = []  # what is asked for, and what is offered
     if reader.qos.reliability == "reliable" and writer.qos.reliability == "best_effort":
         incompatible.append(("reliable", "best_effort"))
@@ -168,7 +174,7 @@ def _differences(
             f"the subscription of {subscription.topic} asks for {wanted}, but its "
             f"publisher is {offered} ({at})"
         )
-        yield Mismatch("topics", message, reader.location, writer.location)
+        yield Mismatch(TOPIC_QUALITY, message, reader.location, writer.location)
 
 
 def _bridged_types(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[Mismatch]:
@@ -190,7 +196,7 @@ def _bridged_types(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator
                     f"bridge with {row.ros_type} ({row.location.file_and_line})"
                 )
                 is_certain = row.is_used and each.is_started
-                yield Mismatch("topics", message, at, row.location, is_certain, is_of_type=True)
+                yield Mismatch(TOPIC_TYPE, message, at, row.location, is_certain)
 
 
 def _all_remappings(workspace: Workspace) -> Iterator[Fact]:
@@ -274,7 +280,7 @@ def _unconnected(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[F
             continue  # a remapping of another name, which is said of it
         message = f"nothing publishes {topic}; did you mean {meant} ({at.file_and_line})?"
         either = corrections(topic, endpoint.location, meant, at)
-        yield Mismatch("topics", message, endpoint.location, at, corrections=either)
+        yield Mismatch(TOPIC_PUBLISHED, message, endpoint.location, at, corrections=either)
 
 
 def _unheard(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[Mismatch]:
@@ -308,7 +314,7 @@ def _unheard(workspace: Workspace, opened: list[_OpenedTopic]) -> Iterator[Misma
                     f"nothing subscribes to {publisher.topic}; did you mean {waiting.topic} "
                     f"({place.file_and_line})?"
                 )
-                yield Mismatch("topics", message, at, place, is_certain)
+                yield Mismatch(TOPIC_HEARD, message, at, place, is_certain)
 
 
 def _is_known(workspace: Workspace, launch: int) -> bool:

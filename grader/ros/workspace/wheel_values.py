@@ -25,6 +25,13 @@ from grader.ros.urdf.wheel_sizes import WheelSize, measure_wheel
 from grader.ros.workspace.controllers import defined_controllers, parameters_of_controllers
 from grader.ros.workspace.gazebo import system_of
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rule_table import (
+    WHEEL_AXIS,
+    WHEEL_DISTANCE,
+    WHEEL_RADIUS,
+    WHEEL_SIDE,
+    Rule,
+)
 from grader.ros.workspace.under_arguments import may_vary
 from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
@@ -252,9 +259,11 @@ def _faults_of_side(wheels: _Wheels, groups: list[list[_Word]], kind: str) -> It
         for wheel, word in zip(chain(*wheels.groups), chain(*groups), strict=True)
     }
 
-    def fault(joints: Sequence[WheelSize], message: str, *, is_certain: bool = False) -> Mismatch:
+    def fault(
+        rule: Rule, joints: Sequence[WheelSize], message: str, *, is_certain: bool = False
+    ) -> Mismatch:
         at = places[joints[0].joint.name]
-        return Mismatch("values", message, at, _place(joints[0]), is_certain)
+        return Mismatch(rule, message, at, _place(joints[0]), is_certain)
 
     base = quoted(wheels.base)
     backward = [wheel for wheel in wheels.all if wheel.axis[1] < -_SIDEWAYS]
@@ -267,25 +276,25 @@ def _faults_of_side(wheels: _Wheels, groups: list[list[_Word]], kind: str) -> It
                 f"the wheels of {wheels.names} drive the robot toward -x of {base}: left and right "
                 "are exchanged, and their axes point to the right"
             )
-            yield fault(exchanged, message)
+            yield fault(WHEEL_SIDE, exchanged, message)
             return
         if exchanged and abs(toward_left[1]) > _SIDEWAYS:
             sides = [f"{quoted(it.joint.name)} is at y {it.middle[1]:.4g} m" for it in exchanged]
             message = f"left and right wheels are exchanged: {', '.join(sides)} in {base}"
-            yield fault(exchanged, message, is_certain=True)
+            yield fault(WHEEL_SIDE, exchanged, message, is_certain=True)
         if kind in _ROLLING and across:
             x, y, z = across[0].axis
             message = (
                 f"{_joints(across)} should turn about the axle from right to left, not about "
                 f"{x:.3g} {y:.3g} {z:.3g} in {base}"
             )
-            yield fault(across, message)
+            yield fault(WHEEL_AXIS, across, message)
     if kind in _ROLLING and backward:
         message = (
             f"a positive speed of {_joints(backward)} drives toward -x of {base}: the axis should "
             "point to the left"
         )
-        yield fault(backward, message)
+        yield fault(WHEEL_AXIS, backward, message)
 
 
 def _toward_left(wheels: _Wheels) -> Vector:
@@ -318,7 +327,7 @@ def _faults_of_number(
 ) -> Iterator[Mismatch]:
     """Yield that a number is not what the wheels of the robot have."""
     if value < 0.0:
-        yield Mismatch("values", f"{key} is {value:g}: a length is not negative", at)
+        yield Mismatch(WHEEL_DISTANCE, f"{key} is {value:g}: a length is not negative", at)
         return
     related = _place(wheels.all[0])
     if kind in ("radius", "diameter"):
@@ -335,7 +344,7 @@ def _faults_of_number(
     message = f"{key} is {value:g} m; {what} {measured:.4g} m"
     if slack:
         message += f" ({low:.4g} to {high:.4g} m with the width of the wheels)"
-    yield Mismatch("values", message, at, related, is_certain)
+    yield Mismatch(WHEEL_DISTANCE, message, at, related, is_certain)
 
 
 def _is_other_half(value: float, measured: float, wheels: _Wheels) -> bool:
@@ -366,7 +375,7 @@ def _faults_of_radius(
             continue
         name, size = quoted(wheel.joint.name), factor * wheel.radii[0]
         message = f"{key} is {value:g} m; the wheel of {name} has the {kind} {size:.4g} m"
-        yield warning("values", message, at, _place(wheel))
+        yield warning(WHEEL_RADIUS, message, at, _place(wheel))
 
 
 def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:

@@ -1,0 +1,506 @@
+"""The rules of a workspace: one row each, by which reports, settings and `grader explain` name it.
+
+A row says what is right. The function that finds what is not names the row.
+"""
+
+from collections.abc import Mapping
+from functools import partial
+from typing import Literal, NamedTuple, get_args
+
+from grader.base.problems import Kind, Problem, kinds_in
+from grader.base.source import Location
+
+Family = Literal[
+    "files",
+    "frames",
+    "controllers",
+    "parameters",
+    "arguments",
+    "programs",
+    "topics",
+    "dependencies",
+    "services",
+    "interfaces",
+    "code",
+    "values",
+    "transforms",
+]
+FAMILIES: tuple[Family, ...] = get_args(Family)
+# Of these, nothing is certain.
+AnyFamily = Family | Literal["wiring", "machine", "moveit", "words", "messages", "effects"]
+DefinedKind = Literal[
+    "frame",
+    "link",
+    "joint",
+    "group",
+    "controller",
+    "interface",
+    "plugin section",
+    "parameter",
+    "launch argument",
+    "xacro argument",
+    "node",
+    "topic",
+    "Gazebo topic",
+]
+
+_error = partial(Kind, severity="error", effect="other")
+_warning = partial(Kind, severity="warning", effect="other")
+
+_NO_FILE = _error("REF001", "File that a build does not install")
+_NO_FRAME = _error("REF002", "Frame, link or joint that does not exist")
+_NO_CONTROLLER = _error("REF003", "Controller or interface that does not exist")
+_NO_PARAMETER = _error("REF004", "Parameters that no node gets, or that a node does not accept")
+_NO_ARGUMENT = _error("REF005", "Argument that nothing declares")
+_NO_PROGRAM = _error("REF006", "Program, entry point or node that does not exist")
+_NO_TOPIC = _error("REF007", "Topic with another name, type or quality of service")
+_NO_DEPENDENCY = _warning("REF008", "Package that package.xml does not declare")
+_SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
+_UNUSED = _warning("REF010", "File that no other file names")
+_OTHER_RELEASE = _warning("REF011", "Name of another release of ROS 2")
+_UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
+_NO_SERVICE = _error("REF013", "Service or action with another name or type")
+_NO_INTERFACE = _error("REF014", "Message, service, action or field that does not exist")
+_NO_RUN = _error("REF015", "Node that certainly stops, or does nothing")
+_MAY_WAIT = _warning("REF016", "Node that may stop or wait")
+_WRONG_VALUE = _error("REF017", "Number that contradicts the robot")
+_OTHER_VALUE = _warning("REF018", "Number that is not that of the robot")
+_WRONG_TRANSFORM = _error("REF019", "Frames that are no tree")
+_OTHER_TRANSFORM = _warning("REF020", "Transform that two programs publish")
+_NO_COMPANION = _warning("REF021", "Node that does not fit the others")
+_ONE_MACHINE = _warning("REF022", "What only one machine has")
+_OTHER_MOVEIT = _warning("REF023", "Description for MoveIt that does not fit the robot")
+_NO_WORD = _warning("REF024", "Word that a program ignores")
+_NO_MESSAGE = _warning("REF025", "Messages that their reader cannot use")
+_MOVES_NOTHING = _warning("REF026", "Controller that moves nothing")
+_NO_SUCH_PARAMETER = _warning("REF027", "Parameter that a well-known node does not have")
+_NO_EFFECT = _warning("REF028", "Parameter that has no effect")
+_UNCONNECTED = _warning("REF029", "Transform between frames that nothing connects")
+NAME_CATALOGUE = kinds_in(globals().values())
+
+
+class Rule(NamedTuple):
+    """What agrees in a correct workspace.
+
+    A finding is of `kind` if something certainly fails at run time, and otherwise of `doubtful`,
+    which fails no criterion.
+
+    >>> TOPIC_TYPE.name, TOPIC_TYPE.kind.code, TOPIC_TYPE.doubtful.code
+    ('topic-type', 'REF007', 'REF009')
+    """
+
+    name: str  # which never changes; no check and no criterion has it
+    family: AnyFamily  # of names_agree
+    kind: Kind
+    doubtful: Kind
+    sentence: str  # what is right
+    is_of_type: bool = False  # whether a value or a topic has another type
+
+    def problem(
+        self, message: str, at: Location, subject: str = "", *, is_certain: bool = True
+    ) -> Problem:
+        """Return what does not agree as a problem of a file."""
+        kind = self.kind if is_certain else self.doubtful
+        return Problem(kind, message, at, subject or self.family, self.name)
+
+
+def _rules_of(family: AnyFamily, kind: Kind, doubtful: Kind | None = None) -> "partial[Rule]":
+    return partial(Rule, family=family, kind=kind, doubtful=doubtful or kind)
+
+
+_file = _rules_of("files", _NO_FILE, _SIMILAR)
+FILE_INSTALLED = _file(
+    "file-installed", sentence="A build installs each file at the path that another file names."
+)
+FILE_PACKAGE = _file("file-package", sentence="The package of a path exists.")
+MAP_IMAGE = _file("map-image", sentence="The image of a map exists.")
+WORLD_MODEL = _file("world-model", sentence="The models that a world includes exist.")
+LAUNCH_FILE_NAME = _file(
+    "launch-file-name", sentence="The launch file that is included of another package exists."
+)
+FILE_USED = Rule(
+    "file-used", "files", _UNUSED, _UNUSED, "Another file names each file of the robot."
+)
+
+_frame = _rules_of("frames", _NO_FRAME, _SIMILAR)
+FRAME_DEFINED = _frame("frame-defined", sentence="The frames that files name exist.")
+LINK_DEFINED = _frame("link-defined", sentence="The links that files name are in the robot.")
+JOINT_DEFINED = _frame("joint-defined", sentence="The joints that files name are in the robot.")
+GROUP_DEFINED = _frame("group-defined", sentence="The groups that files name are in the SRDF.")
+FRAME_PUBLISHED = _frame(
+    "frame-published", sentence="The frame that a static transform publishes is one of the robot."
+)
+FRAME_PARENT = _frame("frame-parent", sentence="A link of the robot gets no second parent.")
+STATE_LIMITS = _frame(
+    "state-limits", sentence="The states of an SRDF are within the limits of the joints."
+)
+DISABLED_PAIRS = _frame(
+    "disabled-pairs", sentence="Links that a joint connects are not compared for collisions."
+)
+
+_controller = _rules_of("controllers", _NO_CONTROLLER, _SIMILAR)
+CONTROLLER_DEFINED = _controller(
+    "controller-defined", sentence="The controllers that files name are defined."
+)
+INTERFACE_DEFINED = _controller(
+    "interface-defined", sentence="The interfaces that files name are in <ros2_control>."
+)
+CONTROLLER_TYPE = _controller(
+    "controller-type", sentence="The type of a controller is one that a package has."
+)
+CONTROLLER_PARAMETERS = _controller(
+    "controller-parameters", sentence="A controller that needs parameters has some."
+)
+CONTROLLER_LIST = _controller(
+    "controller-list", sentence="A parameter of a controller that needs a list has one."
+)
+CLAIMED_ONCE = _controller(
+    "claimed-once", sentence="A controller claims each command interface once."
+)
+CONTROLLER_INTERFACE = _controller(
+    "controller-interface",
+    sentence="<ros2_control> has the command interfaces that a controller needs.",
+)
+CONTROLLER_HARDWARE = _controller(
+    "controller-hardware", sentence="A robot with a controller manager has <ros2_control>."
+)
+SPAWNER_MANAGER = _controller(
+    "spawner-manager", sentence="The controller manager that a spawner asks is started."
+)
+MANAGER_PARAMETERS = _controller(
+    "manager-parameters",
+    sentence="The controller manager gets the types of the controllers that spawners start.",
+)
+MANAGER_SECTION = _controller(
+    "manager-section", sentence="The types of controllers are below controller_manager."
+)
+CONTROLLER_STARTED = _controller(
+    "controller-started", sentence="A spawner starts the controllers that a launch file defines."
+)
+MOVEIT_CONTROLLER = _controller(
+    "moveit-controller", sentence="A spawner starts the controllers that MoveIt commands."
+)
+MOVEIT_ACTION = _controller("moveit-action", sentence="MoveIt names the action of its controller.")
+MOVEIT_JOINTS = _controller(
+    "moveit-joints", sentence="MoveIt gives a controller the joints that it has."
+)
+
+_parameter = _rules_of("parameters", _NO_PARAMETER, _SIMILAR)
+PARAMETER_DEFINED = _parameter(
+    "parameter-defined", sentence="The parameters that a node gets are those that it declares."
+)
+PLUGIN_SECTION = _parameter(
+    "plugin-section", sentence="The plugins of a list have a section beside it."
+)
+PLUGIN_NAME = _parameter("plugin-name", sentence="The class of a plugin is one that exists.")
+PARAMETER_FILE = _parameter("parameter-file", sentence="A parameter file is YAML that rcl reads.")
+PARAMETER_KEY = _parameter(
+    "parameter-key", sentence="The parameters of a node are below one key ros__parameters."
+)
+PARAMETER_NODE = _parameter(
+    "parameter-node", sentence="A parameter file has a section for the node that gets it."
+)
+PARAMETER_NAMESPACE = _parameter(
+    "parameter-namespace", sentence="The section of a node has the node's namespace."
+)
+RENAMED_NODE = _parameter(
+    "renamed-node", sentence="The section of a node has the name that its launch file gives it."
+)
+PARAMETER_MISSING = _parameter(
+    "parameter-missing", sentence="A node gets the parameters without which it stops."
+)
+PARAMETER_TYPE = _parameter(
+    "parameter-type", sentence="A parameter has the type that its node declares.", is_of_type=True
+)
+PARAMETER_BOUNDS = _parameter(
+    "parameter-bounds", sentence="A parameter has a value that its node accepts."
+)
+FILTER_SIZE = _parameter(
+    "filter-size", sentence="An input of a robot_localization filter has 15 values."
+)
+ROBOT_TEXT = _parameter("robot-text", sentence="robot_description is the text of a robot.")
+CREATED_FROM = _parameter(
+    "created-from", sentence="The program that creates a robot in Gazebo gets its source."
+)
+PARAMETER_UNKNOWN = Rule(
+    "parameter-unknown",
+    "parameters",
+    _NO_PARAMETER,
+    _NO_SUCH_PARAMETER,
+    "The parameters of a well-known node are those that it has.",
+)
+PARAMETER_EFFECT = Rule(
+    "parameter-effect",
+    "parameters",
+    _NO_PARAMETER,
+    _NO_EFFECT,
+    "The parameters of a well-known node have an effect under the values of others.",
+)
+PARAMETER_RELEASE = Rule(
+    "parameter-release",
+    "parameters",
+    _NO_PARAMETER,
+    _OTHER_RELEASE,
+    "The parameters of a well-known node are those of the stated release.",
+)
+NAME_RELEASE = Rule(
+    "name-release",
+    "words",
+    _OTHER_RELEASE,
+    _OTHER_RELEASE,
+    "The names of packages, programs, plugins and topics are those of the stated release.",
+)
+
+_argument = _rules_of("arguments", _NO_ARGUMENT, _SIMILAR)
+LAUNCH_ARGUMENT = _argument(
+    "launch-argument", sentence="The arguments that an include passes are declared."
+)
+XACRO_ARGUMENT = _argument("xacro-argument", sentence="The arguments that xacro gets are declared.")
+
+_program = _rules_of("programs", _NO_PROGRAM, _SIMILAR)
+PROGRAM_EXISTS = _program(
+    "program-exists", sentence="The package of a started node has its program."
+)
+ENTRY_POINT = _program("entry-point", sentence="An entry point names a function that exists.")
+PROGRAM_RUNS = _program("program-runs", sentence="The first line of a script names an interpreter.")
+NODE_STARTED = _program("node-started", sentence="The nodes that files name are started.")
+COMPONENT_REGISTERED = _program(
+    "component-registered", sentence="The package of a component registers it."
+)
+
+_topic = _rules_of("topics", _NO_TOPIC, _SIMILAR)
+TOPIC_DEFINED = _topic("topic-defined", sentence="The topics that files name are published.")
+GAZEBO_TOPIC = _topic("gazebo-topic", sentence="The topics of a bridge are those of Gazebo.")
+TOPIC_TYPE = _topic(
+    "topic-type",
+    sentence="Publishers and subscriptions of a topic have one type.",
+    is_of_type=True,
+)
+TOPIC_QUALITY = _topic(
+    "topic-quality", sentence="A publisher offers the quality of service that a subscription needs."
+)
+TOPIC_PUBLISHED = _topic(
+    "topic-published", sentence="The topic that a node subscribes to is published."
+)
+TOPIC_HEARD = _topic(
+    "topic-heard",
+    sentence="The topic that a node publishes is the one that a controller waits for.",
+)
+BRIDGE_FILE = _topic("bridge-file", sentence="A file of bridge rows is YAML.")
+BRIDGE_ROW = _topic("bridge-row", sentence="A row of a bridge has the keys that the bridge needs.")
+BRIDGE_ARGUMENT = _topic(
+    "bridge-argument", sentence="An argument of a bridge names a topic with its types."
+)
+BRIDGE_DIRECTION = _topic(
+    "bridge-direction", sentence="A row of a bridge goes in the direction of its messages."
+)
+BRIDGE_TYPE = _topic("bridge-type", sentence="A bridge converts the types of its rows.")
+BRIDGE_TOPIC = _topic("bridge-topic", sentence="Gazebo has the topic of a row of a bridge.")
+BRIDGE_CLOCK = _topic("bridge-clock", sentence="A bridge takes the clock from Gazebo.")
+BRIDGE_EMPTY = _topic("bridge-empty", sentence="A bridge has topics.")
+SENSOR_SYSTEM = _topic("sensor-system", sentence="A world has the systems that its sensors need.")
+CREATED_WORLD = _topic(
+    "created-world", sentence="A robot is created in the world that Gazebo runs."
+)
+CREATED_TOPIC = _topic(
+    "created-topic", sentence="A robot is created from the topic that robot_state_publisher has."
+)
+
+DEPENDENCY_DECLARED = Rule(
+    "dependency-declared",
+    "dependencies",
+    _NO_DEPENDENCY,
+    _SIMILAR,
+    "package.xml declares the packages that the files of the package use.",
+)
+
+_service = _rules_of("services", _NO_SERVICE, _SIMILAR)
+SERVICE_TYPE = _service(
+    "service-type",
+    sentence="A service or action is called with the type with which it is served.",
+    is_of_type=True,
+)
+SERVICE_SERVED = _service(
+    "service-served", sentence="The service or action that a node calls is served."
+)
+
+_interface = _rules_of("interfaces", _NO_INTERFACE, _SIMILAR)
+INTERFACE_FILE = _interface(
+    "interface-file", sentence="rosidl reads the files of messages, services and actions."
+)
+INTERFACE_GROUP = _interface(
+    "interface-group",
+    sentence="package.xml of a package with interfaces has <member_of_group>.",
+)
+INTERFACE_DEPENDENCY = _interface(
+    "interface-dependency",
+    sentence="rosidl_generate_interfaces() names the packages whose types fields have.",
+)
+INTERFACE_TYPE = _interface(
+    "interface-type", sentence="The messages, services and actions that code uses exist."
+)
+INTERFACE_FIELD = _interface(
+    "interface-field", sentence="The fields and constants that code uses exist."
+)
+FIELD_VALUE = _interface(
+    "field-value", sentence="A field is set to a value of its type.", is_of_type=True
+)
+
+_code = _rules_of("code", _NO_RUN, _MAY_WAIT)
+CODE_SYNTAX = _code("code-syntax", sentence="Python reads the modules of nodes.")
+UNDEFINED_NAME = _code("undefined-name", sentence="Code that runs uses defined names.")
+CALLBACK_CALLED = _code(
+    "callback-called", sentence="A callback is given as a function, and not called."
+)
+SERVICE_RESPONSE = _code("service-response", sentence="The callback of a service returns.")
+NODE_SPINS = _code("node-spins", sentence="A node with callbacks is spun.")
+CONTEXT_STARTED = _code("context-started", sentence="A node is made after rclpy.init().")
+CALLBACK_WAITS = _code("callback-waits", sentence="A callback waits for no other callback.")
+CALLBACK_SLEEPS = _code("callback-sleeps", sentence="A callback does not sleep.")
+ENTITY_KEPT = _code("entity-kept", sentence="A node keeps what it makes.")
+BUFFER_LISTENER = _code("buffer-listener", sentence="A buffer of transforms has a listener.")
+ROTATION_SET = _code("rotation-set", sentence="A transform that is sent has a rotation.")
+NODE_REGISTERED = _code("node-registered", sentence="A component is registered.")
+
+_value = _rules_of("values", _WRONG_VALUE, _OTHER_VALUE)
+WHEEL_SIDE = _value(
+    "wheel-side", sentence="The left and right wheels of a controller are on their sides."
+)
+WHEEL_AXIS = _value("wheel-axis", sentence="A positive speed of a wheel drives forward.")
+WHEEL_DISTANCE = _value(
+    "wheel-distance", sentence="The track and wheelbase of a controller are those of the robot."
+)
+WHEEL_RADIUS = _value(
+    "wheel-size", sentence="The radius of wheels of a controller is that of the robot."
+)
+JOINT_LIMIT = _value(
+    "joint-limit", sentence="The limits in a file are within those of the robot's joints."
+)
+FOOTPRINT = _value("footprint-size", sentence="The footprint of a costmap holds the robot.")
+OBSTACLE_RANGE = _value(
+    "obstacle-range", sentence="A costmap asks for no obstacles beyond the range of its lidar."
+)
+SCAN_RATE = _value(
+    "scan-rate", sentence="A costmap expects scans no more often than its lidar measures."
+)
+PUBLISH_RATE = _value(
+    "publish-rate", sentence="A controller publishes no more often than it is updated."
+)
+STATIC_POSE = _value("static-pose", sentence="A static transform of a link equals its fixed joint.")
+MESH_UNIT = _value("mesh-unit", sentence="Meshes are in metres.")
+
+_transform = _rules_of("transforms", _WRONG_TRANSFORM, _OTHER_TRANSFORM)
+TRANSFORM_ROTATION = _transform(
+    "transform-rotation", sentence="The quaternion of a static transform is a rotation."
+)
+TRANSFORM_OWNER = _transform(
+    "transform-owner", sentence="One program publishes the transform of a frame."
+)
+TRANSFORM_CYCLE = _transform("transform-cycle", sentence="The frames of a robot are no cycle.")
+TRANSFORM_CONNECTED = Rule(
+    "transform-connected",
+    "transforms",
+    _WRONG_TRANSFORM,
+    _UNCONNECTED,
+    "The frames between which a node looks up a transform are connected.",
+)
+
+_companion = _rules_of("wiring", _NO_COMPANION)
+NODE_NAME = _companion("node-name", sentence="The nodes of a launch file have different names.")
+ONE_JOINT_STATE = _companion(
+    "one-joint-state", sentence="One program publishes the positions of the joints."
+)
+JOINT_STATES = _companion(
+    "joint-states", sentence="Something publishes the positions of the joints."
+)
+ROBOT_PUBLISHED = _companion(
+    "robot-published", sentence="robot_state_publisher gives the controller manager the robot."
+)
+CLOCK_PUBLISHED = _companion(
+    "clock-published", sentence="Something publishes the clock of nodes with use_sim_time."
+)
+SIMULATION_TIME = _companion("simulation-time", sentence="The nodes of a simulation use its time.")
+CONTAINER_STARTED = _companion(
+    "container-started", sentence="The container of a component is started."
+)
+SENSOR_TOPIC = _companion(
+    "sensor-topic", sentence="A sensor publishes the topic that a bridge takes from Gazebo."
+)
+INPUT_TYPE = _companion(
+    "input-type", sentence="A well-known program reads a topic with the type that it has."
+)
+INPUT_PUBLISHED = _companion(
+    "input-published", sentence="The topic that a parameter names is published."
+)
+DISPLAY_TYPE = _companion(
+    "display-type", sentence="A display of RViz reads a topic with the type that it has."
+)
+DISPLAY_QUALITY = _companion(
+    "display-quality", sentence="A display of RViz asks for no more than is offered."
+)
+ONE_COMMANDER = _companion("one-commander", sentence="One node commands the robot.")
+IMAGE_TRANSPORT = _companion(
+    "image-transport", sentence="Images are read from the topic that carries them."
+)
+COMMAND_TYPE = _companion(
+    "command-type", sentence="A well-known program sends a controller the type that it reads."
+)
+
+_machine = _rules_of("machine", _ONE_MACHINE)
+HOME_PATH = _machine("home-path", sentence="No file names a folder of one user's machine.")
+ENVIRONMENT_VARIABLE = _machine(
+    "environment-variable",
+    sentence="A launch file gives an environment variable a default.",
+)
+
+_moveit = _rules_of("moveit", _OTHER_MOVEIT)
+SRDF_ROBOT = _moveit("srdf-robot", sentence="An SRDF names its robot.")
+SRDF_GROUP = _moveit("srdf-group", sentence="A group of an SRDF is not empty.")
+
+_word = _rules_of("words", _NO_WORD)
+CREATE_OPTION = _word(
+    "create-option", sentence="The program that creates a robot in Gazebo has the given options."
+)
+REMAPPED_TOPIC = _word(
+    "remapped-topic", sentence="A remapping of a well-known program names a topic that it has."
+)
+
+_message = _rules_of("messages", _NO_MESSAGE)
+MESSAGE_HEADER = _message(
+    "message-header", sentence="The messages of a filter or synchroniser have a header."
+)
+MESSAGE_DEPTH = _message("message-depth", sentence="A publisher or subscription keeps messages.")
+IMAGE_ENCODING = _message(
+    "image-encoding", sentence="cv_bridge converts the images of a topic to the asked encoding."
+)
+
+GAIN_SET = Rule(
+    "gain-set",
+    "effects",
+    _MOVES_NOTHING,
+    _MOVES_NOTHING,
+    "A controller that commands efforts has gains.",
+)
+NAMES_COMPARED = Rule(
+    "names-compared", "files", _UNCOMPARED, _UNCOMPARED, "All names of a workspace are compared."
+)
+
+# What is wrong where a name of a kind is not defined.
+DEFINED: Mapping[DefinedKind, Rule] = {
+    "frame": FRAME_DEFINED,
+    "link": LINK_DEFINED,
+    "joint": JOINT_DEFINED,
+    "group": GROUP_DEFINED,
+    "controller": CONTROLLER_DEFINED,
+    "interface": INTERFACE_DEFINED,
+    "plugin section": PLUGIN_SECTION,
+    "parameter": PARAMETER_DEFINED,
+    "launch argument": LAUNCH_ARGUMENT,
+    "xacro argument": XACRO_ARGUMENT,
+    "node": NODE_STARTED,
+    "topic": TOPIC_DEFINED,
+    "Gazebo topic": GAZEBO_TOPIC,
+}
+RULES: Mapping[str, Rule] = {
+    rule.name: rule for rule in [*globals().values()] if isinstance(rule, Rule)
+}

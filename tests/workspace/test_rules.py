@@ -1,0 +1,68 @@
+"""Each rule of a workspace has one row and a name of its own, and some code names it."""
+
+import re
+
+from grader.lab.checks.registry import check_names
+from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
+from grader.ros.workspace import rule_table
+from grader.ros.workspace.rule_table import FAMILIES, NAME_CATALOGUE, RULES, Rule
+from tests.command_line import ROOT, run
+
+_ROWS = {name: rule for name, rule in vars(rule_table).items() if isinstance(rule, Rule)}
+
+
+def test_names_are_unique_and_no_check_or_criterion_has_one() -> None:
+    """`--select`, `--ignore` and `explain` take any of them."""
+    assert len(RULES) == len(_ROWS)
+    criteria = {row.id for name in shipped_rubrics() for row in load_rubric(name).criteria}
+    assert RULES.keys().isdisjoint({*check_names(), *criteria})
+    assert [name for name in RULES if not re.fullmatch(r"[a-z]+(-[a-z]+)+", name)] == []
+
+
+def test_a_sentence_says_what_is_right() -> None:
+    """It is one sentence, and no two rules have the same."""
+    sentences = [rule.sentence for rule in RULES.values()]
+    assert len({*sentences}) == len(sentences)
+    assert [text for text in sentences if not re.fullmatch(r"[A-Z<a-z].*[a-z>\d]\.", text)] == []
+
+
+def test_every_rule_is_named_by_a_finder() -> None:
+    """A row without code that finds what breaks it is a row too many."""
+    folder = ROOT / "grader/ros/workspace"
+    texts = [path.read_text(encoding="utf-8") for path in folder.rglob("*.py")]
+
+    uses = "\n".join(text for text in texts if "class Rule(NamedTuple)" not in text)
+    defined = {rule.name for rule in rule_table.DEFINED.values()}
+    unused = [
+        name
+        for name, rule in _ROWS.items()
+        if rule.name not in defined and not re.search(rf"\b{name}\b", uses)
+    ]
+
+    assert unused == []
+
+
+def test_every_kind_of_names_has_a_rule() -> None:
+    """A certain finding of each family that a rubric can ask for is an error or a declared warning."""
+    kinds = {kind for rule in RULES.values() for kind in (rule.kind, rule.doubtful)}
+    assert kinds == {*NAME_CATALOGUE}
+    assert {rule.family for rule in RULES.values()} >= {*FAMILIES}
+
+
+def test_problems_are_selected_and_ignored_by_the_names_of_rules() -> None:
+    """Also by several, and beside codes; an unknown name is refused with the nearest one."""
+    path = "submissions/diffdrive/spawner-misspelt"
+    assert run(("inspect", path, "--select", "controller-defined")).returncode == 1
+    assert run(("inspect", path, "--select", "topic-type,file-installed")).returncode == 0
+    assert run(("inspect", path, "--ignore", "controller-defined")).returncode == 0
+    done = run(("inspect", path, "--ignore", "controller-definde"))
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert b"did you mean 'controller-defined'?" in done.stderr
+
+
+def test_a_rule_is_explained() -> None:
+    """By what is right, with its codes."""
+    text = run(("explain", "topic-type")).stdout.decode()
+    assert text.startswith("topic-type: a rule of `grader inspect`\n\nPublishers and subscriptions")
+    assert "REF007 (error)" in text
+    assert "REF009 (warning)" in text
