@@ -4,6 +4,7 @@ docs/python.md describes them. All other modules may change with any release.
 """
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.toml_types import Colour, Direction, NonNegative, Size
 from grader.base.transforms import Transform, Vector
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
@@ -16,7 +17,6 @@ from grader.lab.checks.outcome import (
     pending,
     place,
 )
-from grader.lab.checks.toml_types import Colour, Direction, NonNegative, Size
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
 from grader.ros.urdf.kinematics import Configuration

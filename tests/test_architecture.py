@@ -31,8 +31,8 @@ LAYERS = (
 ROOMS = {
     "base": (
         "errors markup merge_conflicts text reuse pairing transforms",
-        "source names processor_time",
-        "extents problems element_edits slips",
+        "source names processor_time toml_types",
+        "extents problems element_edits slips toml_file",
         "ignore_comments",
     ),
     "ros": (
@@ -102,7 +102,7 @@ LIBRARIES = {
     "pypdf": {"lab.documents"},
     "numpy": {"report", "ros.urdf", "ros.mesh", "base.transforms"},
     "tomllib": {
-        "lab.rubric",
+        "base.toml_file",
         "app.bundle",
         "ros.known",
         "ros.build",

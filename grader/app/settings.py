@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
+from grader.base.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
+from grader.base.toml_types import simple_type, toml_type
 from grader.files.reading import read_capped
-from grader.lab.checks.toml_types import simple_type, toml_type
-from grader.lab.rubric.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
 from grader.ros.known.releases import Release
 from grader.ros.workspace.problem_kinds import EVERY_KIND
 

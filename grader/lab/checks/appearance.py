@@ -6,6 +6,7 @@ from math import cos, radians
 from typing import TypeVar
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.toml_types import Colour, NonNegative, Size
 from grader.base.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
@@ -21,7 +22,6 @@ from grader.lab.checks.outcome import (
     point,
     within,
 )
-from grader.lab.checks.toml_types import Colour, NonNegative, Size
 from grader.lab.checks.visuals import (
     VISIBLE,
     ShapeName,

@@ -6,6 +6,7 @@ from math import inf
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.pairing import most_pairs
 from grader.base.text import counted, quoted_end
+from grader.base.toml_types import NonNegative, RadiusAndLength, Size
 from grader.base.transforms import Vector
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
@@ -18,7 +19,6 @@ from grader.lab.checks.outcome import (
     place,
     point,
 )
-from grader.lab.checks.toml_types import NonNegative, RadiusAndLength, Size
 from grader.lab.checks.visuals import MAX_SHAPES, visuals
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Collision, Cylinder, Geometry, Mesh, Origin, Sphere, Visual

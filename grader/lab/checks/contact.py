@@ -4,6 +4,7 @@ from itertools import product
 from operator import itemgetter
 
 from grader.base.errors import NotDecided
+from grader.base.toml_types import NonNegative
 from grader.base.transforms import X_AXIS, Z_AXIS, Vector
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
@@ -16,7 +17,6 @@ from grader.lab.checks.outcome import (
     point,
     within,
 )
-from grader.lab.checks.toml_types import NonNegative
 from grader.lab.checks.visuals import ShapeName, main_visual, origin_place, placed, visuals
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Mesh

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.source import LazyLocation
 from grader.base.text import enumerated
+from grader.base.toml_types import Direction, NonNegative
 from grader.base.transforms import X_AXIS, Z_AXIS, Vector, degrees_between
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
@@ -19,7 +20,6 @@ from grader.lab.checks.outcome import (
     judged,
     place,
 )
-from grader.lab.checks.toml_types import Direction, NonNegative
 from grader.lab.checks.visuals import axis_place, origin_place
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.shapes import UnknownShape

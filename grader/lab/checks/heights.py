@@ -6,6 +6,7 @@ from math import inf
 from grader.base.errors import MissingElement
 from grader.base.source import LazyLocation
 from grader.base.text import enumerated
+from grader.base.toml_types import NonNegative
 from grader.base.transforms import IDENTITY_ROTATION, Z_AXIS, turn_between
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
@@ -20,7 +21,6 @@ from grader.lab.checks.outcome import (
     point,
     within,
 )
-from grader.lab.checks.toml_types import NonNegative
 from grader.lab.checks.visuals import (
     ShapeName,
     main_visual,

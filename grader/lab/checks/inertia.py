@@ -5,9 +5,9 @@ shapes.
 from math import isfinite
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.toml_types import NonNegative
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, in_millimetres, judged, place, point, within
-from grader.lab.checks.toml_types import NonNegative
 from grader.lab.checks.visuals import MAX_SHAPES
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.mass_properties import (

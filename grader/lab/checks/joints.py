@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 from grader.base.errors import MissingElement
 from grader.base.names import did_you_mean
 from grader.base.source import LazyLocation
+from grader.base.toml_types import Direction, NonNegative
 from grader.base.transforms import FULL_TURN, Vector, cross, degrees_between, minus, unit
 from grader.lab.checks.check import MIMIC_TURNED, About
 from grader.lab.checks.outcome import (
@@ -25,7 +26,6 @@ from grader.lab.checks.outcome import (
     point,
     within,
 )
-from grader.lab.checks.toml_types import Direction, NonNegative
 from grader.lab.checks.visuals import axis_place
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Dynamics, Joint

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.source import LazyLocation
 from grader.base.text import quoted, quoted_end
+from grader.base.toml_types import NonNegative
 from grader.base.transforms import Vector, rotation_from_rpy, turn_between
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
@@ -21,7 +22,6 @@ from grader.lab.checks.outcome import (
     pending,
     place,
 )
-from grader.lab.checks.toml_types import NonNegative
 from grader.lab.checks.visuals import placed, shape_name, visuals
 from grader.lab.submission.submission import Submission
 from grader.ros.package.mesh_files import MeshFile, mesh_file

@@ -5,6 +5,7 @@ from math import asin, degrees, hypot
 from typing import Literal
 
 from grader.base.errors import MissingElement
+from grader.base.toml_types import Direction, NonNegative
 from grader.base.transforms import Z_AXIS, Vector, cross, degrees_between, dot, minus, unit
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
@@ -16,7 +17,6 @@ from grader.lab.checks.outcome import (
     place,
     point,
 )
-from grader.lab.checks.toml_types import Direction, NonNegative
 from grader.lab.checks.visuals import axis_place, main_visual, placed, visuals
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Cylinder, Joint

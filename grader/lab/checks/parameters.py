@@ -9,9 +9,9 @@ from typing import Any, Literal
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.names import closest, similar_there
 from grader.base.text import enumerated, quoted
+from grader.base.toml_types import Content, NonNegative, Scalar
 from grader.base.transforms import Vector
 from grader.lab.checks.outcome import Outcome, failed, passed
-from grader.lab.checks.toml_types import Content, NonNegative, Scalar
 from grader.lab.checks.visuals import main_visual, placed
 from grader.lab.submission.submission import Submission
 from grader.ros.launch.launch_model import ParameterValue, StartedNode

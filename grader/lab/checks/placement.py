@@ -3,6 +3,7 @@
 from math import acos, degrees
 
 from grader.base.source import LazyLocation
+from grader.base.toml_types import Direction, NonNegative
 from grader.base.transforms import Z_AXIS, Vector, dot, minus, rotation_from_rpy, turn_between, unit
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
@@ -15,7 +16,6 @@ from grader.lab.checks.outcome import (
     place,
     point,
 )
-from grader.lab.checks.toml_types import Direction, NonNegative
 from grader.lab.checks.visuals import ShapeName, main_visual, origin_place, placed
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Mesh, Visual

@@ -10,6 +10,7 @@ from weakref import WeakKeyDictionary
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.names import similar_there
 from grader.base.text import counted, enumerated, quoted
+from grader.base.toml_types import Constraint, NonNegative
 from grader.base.transforms import Transform
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
@@ -22,7 +23,6 @@ from grader.lab.checks.outcome import (
     place,
     point,
 )
-from grader.lab.checks.toml_types import Constraint, NonNegative
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint, Robot
 
