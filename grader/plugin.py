@@ -4,6 +4,7 @@ docs/python.md describes them. All other modules may change with any release.
 """
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.source import place
 from grader.base.toml_types import Colour, Direction, NonNegative, Size
 from grader.base.transforms import Transform, Vector
 from grader.lab.checks.check import About
@@ -15,7 +16,6 @@ from grader.lab.checks.outcome import (
     measured_point,
     passed,
     pending,
-    place,
 )
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package

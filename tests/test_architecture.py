@@ -30,7 +30,7 @@ LAYERS = (
 )
 ROOMS = {
     "base": (
-        "errors markup merge_conflicts text reuse pairing transforms",
+        "errors markup merge_conflicts text reuse pairing transforms quantities",
         "source names processor_time toml_types",
         "extents problems element_edits slips toml_file",
         "ignore_comments",
@@ -366,7 +366,7 @@ def _replaced_names(path: Path) -> Iterator[str]:
     if "setattr(" not in text and "patch" not in text:
         return
     tree = ast.parse(text)
-    modules = {}
+    modules: dict[str, str] = {}
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom):
             modules |= {it.asname or it.name: f"{node.module}.{it.name}" for it in node.names}

@@ -4,8 +4,8 @@ import pytest
 
 from grader.base.errors import NotDecided, RubricError
 from grader.lab.checks import driving
-from grader.lab.checks.driving import describe_driving
 from grader.ros.urdf import resting
+from grader.ros.urdf.driving import describe_driving
 from grader.ros.urdf.resting import body_of, find_rest
 from grader.ros.urdf.standing_robot import StandingRobot
 from tests.driving.test_laws import base, configuration, part

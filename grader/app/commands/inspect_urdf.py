@@ -211,7 +211,7 @@ def _inspected(
     driven = opened.driven_joints(urdf)
     if robot is None or not driven or not all(map(robot.robot.has_joint, driven)):
         return inspected
-    from grader.lab.checks.driving import describe_driving  # late: few robots name their wheels
+    from grader.ros.urdf.driving import describe_driving  # late: few robots name their wheels
 
     wheels = tuple(robot.robot.joint(joint).child for joint in driven)
     return replace(inspected, driving=describe_driving(robot, wheels), wheels=wheels)

@@ -11,9 +11,10 @@ from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.names import near
+from grader.base.quantities import point
 from grader.base.text import counted, enumerated
 from grader.base.toml_file import TomlPath, one_line_each
-from grader.lab.checks.outcome import Outcome, point
+from grader.lab.checks.outcome import Outcome
 from grader.lab.grading.deciding import decide
 from grader.lab.grading.grade import grade
 from grader.lab.grading.subjects import check_selectors, joints_at

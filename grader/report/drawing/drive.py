@@ -7,8 +7,8 @@ from typing import Any
 
 from grader.base.text import capitalised
 from grader.base.transforms import Rotation, Transform, Vector, rotation_about
-from grader.lab.checks.driving import plan_drive
 from grader.report.drawing.picture import Picture, Scene
+from grader.ros.urdf.driving import plan_drive
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Link, Mesh, Origin, Visual
 

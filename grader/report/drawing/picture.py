@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.text import counted, enumerated, quoted, quoted_end, texts_in
 from grader.base.transforms import Z_AXIS, Transform, Vector
-from grader.lab.checks.motion import travel_of, turning_joint
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Cylinder, Link, Mesh, Sphere, Visual
 from grader.ros.urdf.shapes import Shape, UnknownShape
+from grader.ros.urdf.wheel_travel import travel_of, turning_joint
 
 if TYPE_CHECKING:
     from grader.ros.package.mesh_loading import MeshLoader
