@@ -135,6 +135,14 @@ def enumerated(
     return last
 
 
+def sentence(message: str) -> str:
+    """Return a message as a printable sentence, with a capital and a full stop."""
+    text = capitalised(printable(message))
+    if text.endswith((".", "?")):
+        return text
+    return f"{text}."
+
+
 def in_quotes(names: Iterable[str]) -> str:
     """Return "'a', 'b' and 'c'"."""
     return enumerated([repr(name) for name in names])

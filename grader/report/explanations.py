@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
-from grader.base.text import counted, enumerated, format_points, printable, shell_quoted
+from grader.base.text import counted, enumerated, format_points, printable, sentence, shell_quoted
 from grader.base.toml_file import assignment, toml_literal
 from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.checks.check import Check
@@ -15,7 +15,7 @@ from grader.lab.checks.manual import MANUAL_CHECKS, answered, picture_named
 from grader.lab.checks.registry import check_names, find_check, unused_checks
 from grader.lab.rubric.criterion import Criterion, worth
 from grader.lab.rubric.rubric import Rubric, shipped_rubrics
-from grader.report.criteria import model_lines, sentence
+from grader.report.criteria import model_lines
 from grader.report.examples import example_blocks, explanation_of
 from grader.ros.known.parameter_texts import parameter_explanation
 from grader.ros.workspace.problem_kinds import EVERY_KIND

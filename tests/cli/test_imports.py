@@ -30,7 +30,7 @@ UNUSED = {
     "grader.lab.documents",
     "grader.lab.hints",
     "grader.base.markup",
-    "grader.report.writers.svg",
+    "grader.report.drawing",
     "grader.ros.mesh",
     "grader.ros.package.mesh_loading",
     "grader.ros.xacro",

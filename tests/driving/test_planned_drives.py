@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 
 from grader.report.drawing.drive import drive_data
-from grader.report.drawing.picture import picture_of, plain_picture
+from grader.report.drawing.graded_picture import picture_of
+from grader.report.drawing.picture import plain_picture
 from grader.report.drawing.space import space_data, without_names
 from grader.ros.urdf.driving import plan_drive
 from tests.driving.test_edges import BALL, LEFT, RIGHT

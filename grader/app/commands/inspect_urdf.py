@@ -15,7 +15,6 @@ from grader.app.settings import Settings, read_codes, read_settings
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
 from grader.base.text import MAX_NAMED, enumerated, printable_path
 from grader.files.tree import overlaid
-from grader.lab.submission.opening import open_workspace
 from grader.report.formats import InspectFormat, render_inspection
 from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.invocation import Saves, read_arguments, read_saves
@@ -26,6 +25,7 @@ from grader.ros.package.robot_file import Absent, Read, Unreadable
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import Reading
 from grader.ros.workspace.opened import OpenedWorkspace
+from grader.ros.workspace.opening import open_workspace
 
 _MAX_NAMED = 20
 

@@ -16,7 +16,8 @@ from grader.base.source import Source
 from grader.base.text import printable_path
 from grader.report.formats import Format, InspectFormat
 from grader.report.inspection import InspectedRobot, Inspection
-from grader.report.pages.student import inspection_html, problem_card, render_html
+from grader.report.pages.inspection_page import inspection_html, problem_card
+from grader.report.pages.student import render_html
 from grader.report.pages.viewing import ArgumentField, ProblemCard, Viewing
 from grader.ros.package.robot_file import Read, Unreadable
 

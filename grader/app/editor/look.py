@@ -12,8 +12,9 @@ from grader.base.reuse import Memory
 from grader.base.source import Edits, Location
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree
-from grader.report.findings import Finding, Mistake, findings_in_inspection
+from grader.report.findings import Finding, findings_in_inspection
 from grader.report.inspection import InspectedRobot, Inspection
+from grader.report.mistakes import Mistake
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.workspace.all_robots import read_workspace

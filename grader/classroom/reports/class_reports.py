@@ -328,7 +328,9 @@ def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[_Done]:
 
 def _still_of(report: Report) -> "Still":
     """Return the small picture of the robot of a report."""
-    from grader.report.drawing.picture import picture_of  # late: only the class's page needs numpy
+    from grader.report.drawing.graded_picture import (
+        picture_of,  # late: only the class's page needs numpy
+    )
     from grader.report.drawing.still import still_of
 
     picture = picture_of(report)

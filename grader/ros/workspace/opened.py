@@ -1,7 +1,7 @@
 """Opened files: their packages, and their robots."""
 
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,7 @@ from grader.files.tree import Tree, make_tree
 from grader.ros.known.releases import NOT_STATED, Release, StatedReleases
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Unreadable, Urdf
+from grader.ros.python.budget import Budget
 
 if TYPE_CHECKING:
     from grader.base.reuse import Memory
@@ -41,6 +42,8 @@ class OpenedWorkspace:
     distro: Release | None = None  # the release of ROS 2 that a lab is for
     stated: StatedReleases = NOT_STATED  # those that a workspace is for
     around: "Around | None" = None  # of a URDF on its own: reads the packages around it
+    neighbours: tuple[Package, ...] = ()  # the packages around a URDF on its own
+    budget: Budget = field(default_factory=Budget)  # of the work to read the URDF
     memory: "Memory | None" = None  # what was read of an earlier state of the files
 
     @cached_property
