@@ -18,9 +18,7 @@ from grader.lab.checks.outcome import (
     pending,
 )
 from grader.lab.submission.submission import Submission
-from grader.ros.package.package import Package
-from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.reader import Reading
+from grader.ros.api import Configuration, Package, Reading
 
 __all__ = [
     "About",

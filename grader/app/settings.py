@@ -13,8 +13,7 @@ from grader.base.names import did_you_mean
 from grader.base.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
 from grader.base.toml_types import simple_type, toml_type
 from grader.files.reading import read_capped
-from grader.ros.known.releases import Release
-from grader.ros.workspace.problem_kinds import EVERY_KIND
+from grader.ros.api import EVERY_KIND, Release
 
 _NAMES = ("grader.toml", "pyproject.toml")
 _MAX_SIZE = 256 * 1024  # bytes of such a file

@@ -45,7 +45,7 @@ from grader.report.criteria import (
     sum_text,
 )
 from grader.report.readings import UNDECIDED, VERDICTS, problem_line
-from grader.ros.xml.xml_problems import RECOVERED
+from grader.ros.api import RECOVERED
 
 _REMARKS = ("Marked manually", "Corrected after grading", "Comments")
 _MAX_LISTED = 12

@@ -17,8 +17,7 @@ from grader.lab.rubric.criterion import Criterion, worth
 from grader.lab.rubric.rubric import Rubric, shipped_rubrics
 from grader.report.criteria import model_lines
 from grader.report.examples import example_blocks, explanation_of
-from grader.ros.known.parameter_texts import parameter_explanation
-from grader.ros.workspace.problem_kinds import EVERY_KIND
+from grader.ros.api import EVERY_KIND, parameter_explanation
 
 _WIDTH = 80
 _FOR_INSTRUCTORS = "For instructors: how it is checked\n----------------------------------"

@@ -15,13 +15,10 @@ from grader.base.source import Base, Source
 from grader.base.text import counted, printable
 from grader.base.transforms import Transform
 from grader.report.readings import UNDECIDED, VERDICTS
-from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Joint
-from grader.ros.urdf.reader import Reading
+from grader.ros.api import Configuration, Joint, Reading
 
 if TYPE_CHECKING:
-    from grader.ros.package.mesh_loading import MeshLoader
-    from grader.ros.workspace.extent import Extent
+    from grader.ros.api import Extent, MeshLoader
 
 MAX_LISTED = 500  # links, or problems on a page
 _MAX_INDENT = 60

@@ -35,10 +35,7 @@ from grader.report.writers.rubric_test_result import (
     unexamined_line,
 )
 from grader.report.writing import Terminal, Warn, missing_folder, save_bytes
-from grader.ros.package.package import MANIFEST
-from grader.ros.package.robot_file import Absent, Read, Unreadable
-from grader.ros.urdf.kinematics import Configuration
-from grader.ros.workspace.opening import STANDARD_INPUT
+from grader.ros.api import MANIFEST, STANDARD_INPUT, Absent, Configuration, Read, Unreadable
 from grader.workers.pool import Processes, processors
 from grader.workers.queue import Progress
 

@@ -13,7 +13,7 @@ from grader.files.limits import ROBOT_ENDINGS
 from grader.report.findings import Finding, place_in_repository
 from grader.report.locations import SourceOf
 from grader.report.mistakes import Mistake
-from grader.ros.xml.xml_problems import RECOVERED
+from grader.ros.api import RECOVERED
 
 SOURCE = "grader"
 _SEVERITIES = {

@@ -35,7 +35,7 @@ from grader.lab.grading.report import Grade, Report, Result
 from grader.lab.submission.submission import Submission
 from grader.report.formats import Format, render
 from grader.report.writing import Terminal, make_folder, refuse_symlinks, save
-from grader.ros.package.robot_file import Absent
+from grader.ros.api import Absent
 from grader.workers.pool import Processes, WorkerError, processors
 from grader.workers.queue import Progress, Queue
 

@@ -12,7 +12,7 @@ from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric
 from grader.report.criteria import points_of
 from grader.report.drawing.picture import Body, Callout, Picture, Scene, scene_of
-from grader.ros.urdf.kinematics import Configuration
+from grader.ros.api import Configuration
 
 _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
 

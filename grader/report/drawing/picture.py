@@ -11,13 +11,22 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import counted, enumerated, quoted, quoted_end
 from grader.base.transforms import Z_AXIS, Transform, Vector
-from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Box, Cylinder, Link, Mesh, Sphere, Visual
-from grader.ros.urdf.shapes import Shape, UnknownShape
-from grader.ros.urdf.wheel_travel import travel_of, turning_joint
+from grader.ros.api import (
+    Box,
+    Configuration,
+    Cylinder,
+    Link,
+    Mesh,
+    Shape,
+    Sphere,
+    UnknownShape,
+    Visual,
+    travel_of,
+    turning_joint,
+)
 
 if TYPE_CHECKING:
-    from grader.ros.package.mesh_loading import MeshLoader
+    from grader.ros.api import MeshLoader
 
 _Rgba = tuple[float, float, float, float]
 

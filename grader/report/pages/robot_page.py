@@ -10,7 +10,7 @@ from grader.report.drawing.space import space_data
 from grader.report.drawing.three_views import STYLE, callout_lines, drawing_element
 from grader.report.pages.shell import SPACE_SCRIPTS, Assets, render_page
 from grader.report.pages.viewing import SCRIPT, SOURCES, STYLES, Viewing
-from grader.ros.urdf.model import Mesh
+from grader.ros.api import Mesh
 
 
 def render_robot_page(
