@@ -10,21 +10,21 @@ from importlib import import_module
 __version__ = "0.9.0"
 
 _MODULES = {
-    "Configuration": "ros.urdf.kinematics",
+    "Configuration": "ros.api",
     "GraderError": "base.errors",
-    "Joint": "ros.urdf.model",
-    "Link": "ros.urdf.model",
+    "Joint": "ros.api",
+    "Link": "ros.api",
     "MissingElement": "base.errors",
-    "Reading": "ros.urdf.reader",
+    "Reading": "ros.api",
     "Report": "lab.grading.report",
     "Result": "lab.grading.report",
-    "Robot": "ros.urdf.model",
+    "Robot": "ros.api",
     "Rubric": "lab.rubric.rubric",
     "RubricError": "base.errors",
     "Transform": "base.transforms",
     "grade": "app.api",
     "load_rubric": "lab.rubric.rubric",
-    "read_urdf": "ros.urdf.reader",
+    "read_urdf": "ros.api",
 }
 __all__ = list(_MODULES)
 

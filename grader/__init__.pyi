@@ -3,9 +3,7 @@ from grader.base.errors import GraderError, MissingElement, RubricError
 from grader.base.transforms import Transform
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.rubric import Rubric, load_rubric
-from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Joint, Link, Robot
-from grader.ros.urdf.reader import Reading, read_urdf
+from grader.ros.api import Configuration, Joint, Link, Reading, Robot, read_urdf
 
 __all__ = [
     "Configuration",

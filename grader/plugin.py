@@ -4,6 +4,8 @@ docs/python.md describes them. All other modules may change with any release.
 """
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.source import place
+from grader.base.toml_types import Colour, Direction, NonNegative, Size
 from grader.base.transforms import Transform, Vector
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
@@ -14,13 +16,9 @@ from grader.lab.checks.outcome import (
     measured_point,
     passed,
     pending,
-    place,
 )
-from grader.lab.checks.toml_types import Colour, Direction, NonNegative, Size
 from grader.lab.submission.submission import Submission
-from grader.ros.package.package import Package
-from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.reader import Reading
+from grader.ros.api import Configuration, Package, Reading
 
 __all__ = [
     "About",

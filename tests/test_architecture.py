@@ -1,10 +1,14 @@
 """A module imports from lower packages and rooms only, and there is no cycle."""
 
 import ast
+import re
+import tokenize
 from collections import Counter
 from collections.abc import Iterator
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
+from importlib import import_module
+from io import StringIO
 from itertools import chain
 from pathlib import Path
 
@@ -30,9 +34,9 @@ LAYERS = (
 )
 ROOMS = {
     "base": (
-        "errors markup merge_conflicts text reuse pairing transforms",
-        "source names processor_time",
-        "extents problems element_edits slips",
+        "errors markup merge_conflicts text reuse pairing transforms quantities",
+        "source names processor_time toml_types",
+        "extents problems element_edits slips toml_file",
         "ignore_comments",
     ),
     "ros": (
@@ -42,6 +46,7 @@ ROOMS = {
         "launch",
         "package",
         "workspace",
+        "api",
     ),
     "lab": (
         "documents",
@@ -53,11 +58,12 @@ ROOMS = {
         "authoring",
     ),
     "report": (
-        "locations screen json_data",
-        "criteria",
+        "locations screen json_data statuses",
+        "criteria readings",
         "content",
         "drawing examples inspection",
         "findings",
+        "mistakes",
         "writers",
         "pages",
         "explanations formats",
@@ -102,7 +108,7 @@ LIBRARIES = {
     "pypdf": {"lab.documents"},
     "numpy": {"report", "ros.urdf", "ros.mesh", "base.transforms"},
     "tomllib": {
-        "lab.rubric",
+        "base.toml_file",
         "app.bundle",
         "ros.known",
         "ros.build",
@@ -123,7 +129,7 @@ LIBRARIES = {
 # How dense the code may be: see `tests/prose.py`. A limit may only get lower, but that of nodes: what the code weighs
 # grows with what it can do, and with nothing else.
 LIMITS = {
-    "nodes": 712_800,
+    "nodes": 713_800,
     "nodes of a simple statement, mean": 14.6,
     "nodes of a simple statement, 90th percentile": 26,
     "comprehensions for each 1,000 nodes": 5.3,
@@ -135,7 +141,7 @@ LIMITS = {
     "packed functions over 200 nodes": 23,
     "small private functions that are used once": 14,
     "code that reads a message": 1,
-    "names of ros that other packages import": 150,
+    "names of ros that other packages import, besides its API": 129,
 }
 
 
@@ -211,6 +217,60 @@ def test_no_module_of_a_grading_reads_settings() -> None:
     """Only the inspection imports them."""
     for module in ("grader.app.grading", "grader.app.commands.watch", "grader.app.api"):
         assert not {"grader.app.settings", "grader.app.ignoring"} & {*imports(module)}
+
+
+def test_what_is_above_lab_imports_from_ros_by_its_api() -> None:
+    """The commands, reports, classes and plug-ins name no module inside of `ros`, also not for type checkers."""
+    places = {
+        (module, imported)
+        for module in MODULES
+        if module.split(".")[1:2] in (["app"], ["report"], ["classroom"], ["plugin"])
+        for imported in imports(module)
+        if imported.startswith("grader.ros")
+    }
+    assert len(places) > 20
+    assert {pair for pair in places if pair[1] != "grader.ros.api"} == set()
+
+
+def test_the_api_of_ros_has_the_names_that_type_checkers_see() -> None:
+    """Each name of the API is the one of the module that it is imported from for type checkers; each is used."""
+    api = import_module("grader.ros.api")
+    typed = list(names_of_api())
+    assert sorted(api._MODULES) == sorted(name for _, name in typed)
+    for module, name in typed:
+        assert getattr(api, name) is getattr(import_module(module), name)
+    with pytest.raises(AttributeError, match="no attribute 'Submission'"):
+        api.Submission  # noqa: B018
+
+
+def names_of_api() -> Iterator[tuple[str, str]]:
+    """Yield the modules of `ros` with the names of its public API."""
+    for node in ast.walk(prose().trees["grader.ros.api"]):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("grader.ros."):
+            yield from ((str(node.module), alias.name) for alias in node.names)
+
+
+def test_ros_knows_no_lab_and_no_submission() -> None:
+    """No name in `ros` speaks of them, and no docstring or comment."""
+    words = re.compile(r"(?i)submission|\blab(?:s|\b|_)")
+    texts = {
+        path.relative_to(ROOT).as_posix(): chain(*_words_of_code(path))
+        for module, path in MODULES.items()
+        if module.startswith("grader.ros.")
+    }
+    found = {(path, text) for path, lines in texts.items() for text in lines if words.search(text)}
+    assert found == set()
+
+
+def _words_of_code(path: Path) -> Iterator[list[str]]:
+    """Yield the names of a file's code, its comments and its docstrings."""
+    source = path.read_text(encoding="utf-8")
+    tokens = [*tokenize.generate_tokens(StringIO(source).readline)]
+    yield [token.string for token in tokens if token.type in (tokenize.NAME, tokenize.COMMENT)]
+    kinds = (ast.Module, ast.ClassDef, ast.FunctionDef)
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, kinds):
+            yield [ast.get_docstring(node) or ""]
 
 
 def test_check_families_do_not_import_each_other() -> None:
@@ -322,20 +382,20 @@ def figures_of_prose() -> dict[str, float]:
         "packed functions over 200 nodes": sum(it.is_packed(200) for it in code.functions),
         "small private functions that are used once": len(code.tiny_functions()),
         "code that reads a message": len(code.comparisons_of_messages()),
-        "names of ros that other packages import": len(names_from_ros()),
+        "names of ros that other packages import, besides its API": len(names_from_ros()),
     }
 
 
 def names_from_ros() -> set[tuple[str, str]]:
-    """Return the modules of `ros` with the names that other packages import from them."""
-    pairs = set()
+    """Return the modules of `ros` with the names that other packages import from them, and that are not of its API."""
+    pairs: set[tuple[str, str]] = set()
     for module in MODULES:
         if module.startswith("grader.ros."):
             continue
         for node in ast.walk(prose().trees[module]):
             if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("grader.ros."):
                 pairs |= {(str(node.module), alias.name) for alias in node.names}
-    return pairs
+    return {pair for pair in pairs - {*names_of_api()} if pair[0] != "grader.ros.api"}
 
 
 def test_no_test_replaces_a_name_that_another_module_imports() -> None:

@@ -10,12 +10,10 @@ from typing import Any, NamedTuple
 
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
+from grader.base.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
+from grader.base.toml_types import simple_type, toml_type
 from grader.files.reading import read_capped
-from grader.lab.checks.toml_types import simple_type, toml_type
-from grader.lab.rubric.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
-from grader.ros.known.releases import Release
-from grader.ros.workspace.problem_kinds import EVERY_KIND
-from grader.ros.workspace.rule_table import RULES
+from grader.ros.api import EVERY_KIND, RULES, Release
 
 _NAMES = ("grader.toml", "pyproject.toml")
 _MAX_SIZE = 256 * 1024  # bytes of such a file

@@ -174,3 +174,14 @@ class LazyLocation(NamedTuple):
         """Return the location of the attribute if the element has it, else of the tag."""
         tag = self.tag if self.inside is None else self.source.next_tag(self.tag, self.inside)
         return self.source.tag(tag, self.attribute)
+
+
+def place(
+    element: LazyLocation | None, attribute: str | None = None, inside: str | None = None
+) -> LazyLocation | None:
+    """Return the place of an element that was read from the file, of one of its attributes, or of
+    an element inside.
+    """
+    if element is not None:
+        return LazyLocation(element.source, element.tag, attribute, inside)
+    return None

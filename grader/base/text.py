@@ -135,6 +135,19 @@ def enumerated(
     return last
 
 
+def sentence(message: str) -> str:
+    """Return a message as a printable sentence, with a capital and a full stop."""
+    text = capitalised(printable(message))
+    if text.endswith((".", "?")):
+        return text
+    return f"{text}."
+
+
+def in_quotes(names: Iterable[str]) -> str:
+    """Return "'a', 'b' and 'c'"."""
+    return enumerated([repr(name) for name in names])
+
+
 def people_text(names: Collection[str], most: int = MAX_PEOPLE) -> str:
     """Return the names of people like `enumerated`: "Doe, Jane; Roe, Al and 3 more"."""
     return enumerated(names, most, separator="; " if any(", " in name for name in names) else ", ")

@@ -18,6 +18,7 @@ from grader.base.text import (
     first_lines,
     format_points,
     printable,
+    sentence,
     shell_quoted,
 )
 from grader.lab.checks.loading import urdf_loads
@@ -40,20 +41,13 @@ from grader.report.criteria import (
     looked_for,
     lost_points,
     points_of,
-    sentence,
     status_of,
     sum_text,
 )
-from grader.report.locations import location_text
-from grader.ros.xml.xml_problems import RECOVERED
+from grader.report.readings import UNDECIDED, VERDICTS, problem_line
+from grader.ros.api import RECOVERED
 
 _REMARKS = ("Marked manually", "Corrected after grading", "Comments")
-UNDECIDED = "xacro that cannot be determined statically"
-VERDICTS = {
-    "clean": "ROS 2 loads the file",
-    "degraded": "ROS 2 loads the file, but drops content of it",
-    "rejected": "ROS 2 rejects the file",
-}
 _MAX_LISTED = 12
 
 
@@ -532,14 +526,6 @@ def _evidence_text(found: EvidenceResult) -> str:
     perhaps = enumerated([file.words for file in found.possible], _MAX_LISTED, "or")
     return printable(
         f"{found.evidence.title}: {files or (f'perhaps {perhaps}' if perhaps else 'missing')}"
-    )
-
-
-def problem_line(problem: Problem) -> str:
-    """Return a problem with its code, severity and location."""
-    return (
-        f"{problem.code} {problem.severity} {location_text(problem.location)}: "
-        f"{printable(problem.message)}"
     )
 
 

@@ -13,10 +13,10 @@ from typing import Literal, NamedTuple, TypeVar
 from grader.base.source import Edits, Location
 from grader.base.text import (
     by_name,
-    capitalised,
     enumerated,
     format_points,
     printable,
+    sentence,
     signed_points,
 )
 from grader.lab.checks.manual import MANUAL_CHECKS
@@ -27,20 +27,6 @@ from grader.report.locations import SourceOf, excerpt_lines, location_text
 
 _T = TypeVar("_T")
 _K = TypeVar("_K", bound=Hashable)
-# The symbol of each status, that for a terminal in another encoding, the style on a terminal, and
-# the word.
-_STATUSES = (
-    ("passed", "\u2713", "+", "green", "Passed"),
-    ("failed", "\u2717", "X", "bold red", "Failed"),
-    ("skipped", "\u2212", "-", "yellow", "Skipped"),
-    ("pending", "?", "?", "cyan", "Needs manual grading"),
-    ("errored", "!", "!", "bold magenta", "Could not be graded"),
-    ("adjusted", "=", "=", "blue", "Corrected after grading"),
-    ("partial", "~", "~", "bold yellow", "Some points"),
-)
-SYMBOLS, ASCII_SYMBOLS, STYLES, STATUS_WORDS = (
-    {row[0]: row[column] for row in _STATUSES} for column in range(1, 5)
-)
 _MAX_FILES, _MAX_CRITERIA = 2, 3
 
 # Of a submission, of a criterion, and of the list of evidence, problems and files.
@@ -420,14 +406,6 @@ def counts_lines(location: Location) -> bool:
     page or heading.
     """
     return not location.path.lower().endswith((".pdf", ".docx"))
-
-
-def sentence(message: str) -> str:
-    """Return a message as a printable sentence, with a capital and a full stop."""
-    text = capitalised(printable(message))
-    if text.endswith((".", "?")):
-        return text
-    return f"{text}."
 
 
 def hint_text(entry: Entry, hint: Hint) -> str:

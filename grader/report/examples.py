@@ -8,8 +8,8 @@ from string import digits
 from typing import Any
 
 from grader.base.problems import Kind
+from grader.base.toml_file import read_toml, toml_literal
 from grader.files.reading import shipped_folder
-from grader.lab.rubric.toml_file import read_toml, toml_literal
 
 _CHECKS = "checks"
 

@@ -8,19 +8,17 @@ from collections.abc import Iterable, Iterator, Mapping
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
 from grader.base.problems import Kind
-from grader.base.text import counted, enumerated, format_points, printable, shell_quoted
+from grader.base.text import counted, enumerated, format_points, printable, sentence, shell_quoted
+from grader.base.toml_file import assignment, toml_literal
 from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.checks.check import Check
 from grader.lab.checks.manual import MANUAL_CHECKS, answered, picture_named
 from grader.lab.checks.registry import check_names, find_check, unused_checks
 from grader.lab.rubric.criterion import Criterion, worth
 from grader.lab.rubric.rubric import Rubric, shipped_rubrics
-from grader.lab.rubric.toml_file import assignment, toml_literal
-from grader.report.criteria import model_lines, sentence
+from grader.report.criteria import model_lines
 from grader.report.examples import example_blocks, explanation_of
-from grader.ros.known.parameter_texts import parameter_explanation
-from grader.ros.workspace.problem_kinds import EVERY_KIND
-from grader.ros.workspace.rule_table import RULES, Rule
+from grader.ros.api import EVERY_KIND, RULES, Rule, parameter_explanation
 
 _WIDTH = 80
 _FOR_INSTRUCTORS = "For instructors: how it is checked\n----------------------------------"

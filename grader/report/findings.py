@@ -9,12 +9,8 @@ from typing import NamedTuple
 
 from grader.base.problems import Problem, Severity
 from grader.base.source import Base, Location
-from grader.base.text import printable
+from grader.base.text import printable, sentence
 from grader.files.reading import sha256_of
-from grader.lab.grading.report import Report, Result
-from grader.lab.rubric.criterion import Criterion
-from grader.report.content import entries, other_problems, report_sections
-from grader.report.criteria import Entry, is_absent, is_failure, points_of, sentence
 from grader.report.examples import explanation_of
 from grader.report.inspection import Inspection
 from grader.report.locations import archive_around, calls_text, location_text
@@ -23,7 +19,7 @@ _NUMBER_OF_LINE = r"\blines? \d+(?:(?:, | and )\d+)*|:\d+"
 DOCUMENTATION = "https://urdf-grader.github.io/urdf-grader/"
 
 
-class _Rule(NamedTuple):
+class FindingKind(NamedTuple):
     """What a finding is a case of: a kind of problem, or a criterion."""
 
     id: str  # the code or the id
@@ -36,118 +32,28 @@ class _Rule(NamedTuple):
 class Finding(NamedTuple):
     """One thing that is wrong, with the place to look at."""
 
-    rule: _Rule
+    rule: FindingKind
     severity: Severity
     message: str  # printable, in one line
     location: Location
 
 
-def findings_in_report(report: Report) -> list[Finding]:
-    """Return the criteria that lose points or cannot be decided, and the other problems, in the
-    order of their places.
-    """
-    found = [_problem_finding(problem) for problem in other_problems(report)]
-    undecided = {result.criterion.id for result in report.pending_automatic}
-    for entry in entries(report).values():
-        is_mistake = is_failure(entry.result) and not entry.result.why_given
-        if is_mistake or entry.id in undecided:
-            found.append(_criterion_finding(entry, report))
-    return sorted(found, key=_place)
-
-
-class Mistake(NamedTuple):
-    """One mistake, with all criteria that fail because of it."""
-
-    finding: Finding  # of the criterion that shows it
-    besides: tuple[Finding, ...]  # of the other criteria that fail by it
-    # messages and places of the problems of files that these report
-    reported: frozenset[tuple[str, Location]]
-    advice: str  # the hint, and a grader's comment
-    cost: str  # in all: -8 points
-    names: str  # of the criteria that cost these: lidar-frame 6, lidar-on-top 2
-
-
-def mistakes_in_report(report: Report) -> list[Mistake]:
-    """Return the mistakes in the order of a report, then the criteria that cannot be decided."""
-    sections = report_sections(report)
-    found = [
-        _mistake(entry, report)
-        for entry in (*sections.mistakes, *sections.unbuilt)
-        if is_failure(entry.result)
-    ]
-    known = entries(report)
-    for result in report.pending_automatic:
-        entry = known[result.criterion.id]
-        mistake = _mistake(entry, report)
-        found.append(mistake._replace(cost=points_of([result])))
-    return found
-
-
-def _mistake(entry: Entry, report: Report) -> Mistake:
-    besides = []
-    for other in entry.also:
-        message = " ".join(other.texts("finding", "comment"))
-        besides.append(_criterion_finding(other, report)._replace(message=message))
-    reported = set()
-    for result in entry.results:
-        at, problem = result.outcome.location, result.outcome.problem or result.outcome.message
-        if at is not None:
-            reported.add((printable(problem) + calls_text(at), at))
-    return Mistake(
-        _criterion_finding(entry, report),
-        tuple(besides),
-        frozenset(reported),
-        " ".join(entry.texts("comment", "hint")),
-        entry.cost,
-        entry.names,
-    )
-
-
 def findings_in_inspection(inspection: Inspection) -> list[Finding]:
     """Return the problems of robots and packages, in the order of their places."""
-    return sorted(map(_problem_finding, inspection.problems), key=_place)
+    return sorted(map(finding_of_problem, inspection.problems), key=place_of)
 
 
-def _place(finding: Finding) -> tuple[str, int, int]:
+def place_of(finding: Finding) -> tuple[str, int, int]:
+    """Return the path, line and column of a finding, by which findings are sorted."""
     return finding.location[:3]
 
 
-def _problem_finding(problem: Problem) -> Finding:
+def finding_of_problem(problem: Problem) -> Finding:
+    """Return the finding of a problem of a file; its rule is the kind of problem."""
     kind, where = problem.kind, problem.location
     page = f"{DOCUMENTATION}problems.html#{kind.code.lower()}"
-    rule = _Rule(kind.code, kind.title, explanation_of(kind), page, problem.rule)
+    rule = FindingKind(kind.code, kind.title, explanation_of(kind), page, problem.rule)
     return Finding(rule, kind.severity, printable(problem.message) + calls_text(where), where)
-
-
-def _criterion_finding(entry: Entry, report: Report) -> Finding:
-    """Return the finding of a criterion: what was found, and the hint."""
-    result = entry.result
-    severity: Severity = "error"
-    if result.criterion.bonus or is_absent(result):
-        severity = "note"
-    elif not is_failure(result):
-        severity = "warning"
-    where = entry.location or result.outcome.location or Location(_main_file(result, report), 1, 1)
-    message = " ".join(entry.texts("finding", "comment", "hint")) + calls_text(where)
-    return Finding(_criterion_rule(result.criterion), severity, message, where)
-
-
-def _criterion_rule(criterion: Criterion) -> _Rule:
-    title = f"Passes when: {sentence(criterion.title)}"
-    page = ""
-    if not criterion.check.distribution:
-        page = f"{DOCUMENTATION}checks.html#{criterion.check.name}"
-    return _Rule(criterion.id, title, title, page)
-
-
-def _main_file(result: Result, report: Report) -> str:
-    """Return the file to look at if a criterion has no place: the package's or the URDF; empty
-    without both.
-    """
-    package = report.submission.package
-    if package is not None and result.criterion.check.subject not in ("urdf", "robot"):
-        return package.path("package.xml")
-    return report.submission.path or ""
 
 
 def place_in_repository(finding: Finding, base: Base) -> tuple[str, Location | None]:

@@ -74,9 +74,9 @@ class InspectFormat(FormatRow):
 
     TERMINAL = "terminal", "writers.inspection_terminal:inspection_terminal", "console"
     JSON = "json", "writers.inspection_json:inspection_json"
-    GITHUB = "github", "writers.annotations:inspection_github"
-    SVG = "svg", "writers.svg:inspection_svg"
-    HTML = "html", "pages.student:inspection_html"
+    GITHUB = "github", "writers.inspection_github:inspection_github"
+    SVG = "svg", "writers.inspection_svg:inspection_svg"
+    HTML = "html", "pages.inspection_page:inspection_html"
     CONCISE = "concise", "writers.concise:concise_inspection"
     SARIF = "sarif", "writers.sarif:sarif_inspection"
     CODEQUALITY = (

@@ -14,15 +14,11 @@ from grader.base.problems import Problem
 from grader.base.source import Base, Source
 from grader.base.text import counted, printable
 from grader.base.transforms import Transform
-from grader.report.content import UNDECIDED, VERDICTS
-from grader.report.criteria import alike
-from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Joint
-from grader.ros.urdf.reader import Reading
+from grader.report.readings import UNDECIDED, VERDICTS
+from grader.ros.api import Configuration, Joint, Reading
 
 if TYPE_CHECKING:
-    from grader.ros.package.mesh_loading import MeshLoader
-    from grader.ros.workspace.extent import Extent
+    from grader.ros.api import Extent, MeshLoader
 
 MAX_LISTED = 500  # links, or problems on a page
 _MAX_INDENT = 60
@@ -194,14 +190,16 @@ def robot_line(robot: InspectedRobot) -> str:
 
 def _tree(robot: Configuration) -> Iterator[tuple[str, str, Joint | None]]:
     """Yield every link after its parent: its indentation, its name, and its parent joint."""
-    children = dict(alike(robot.parent_joints.values(), lambda joint: joint.parent))
+    children: dict[str, list[Joint]] = {}
+    for joint in robot.parent_joints.values():
+        children.setdefault(joint.parent, []).append(joint)
     stack: list[tuple[str, str, Joint | None]] = [
         ("", root, None) for root in reversed(robot.roots)
     ]
     while stack:
         yield (link := stack.pop())
         indent = f"{link[0]}  " if len(link[0]) < _MAX_INDENT else link[0]
-        stack += [(indent, joint.child, joint) for joint in reversed(children.get(link[1], ()))]
+        stack += [(indent, joint.child, joint) for joint in reversed(children.get(link[1], []))]
 
 
 def joint_text(joint: Joint | None) -> str:

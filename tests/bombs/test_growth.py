@@ -9,9 +9,10 @@ import pytest
 from grader.files.reading import URDF_LIMIT
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import load_rubric
-from grader.lab.submission.opening import open_submission, open_workspace
+from grader.lab.submission.opening import open_submission
 from grader.ros.package.robot_file import Read
 from grader.ros.python import budget
+from grader.ros.workspace.opening import open_workspace
 from tests.bombs.files import Files, package
 from tests.bombs.generators import BOMBS
 from tests.examples import spread

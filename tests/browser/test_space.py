@@ -10,7 +10,7 @@ import pytest
 
 from grader.base.transforms import Transform, dot, rotation_about, rotation_from_rpy, unit
 from grader.report.drawing.drive import drive_data
-from grader.report.drawing.picture import picture_of
+from grader.report.drawing.graded_picture import picture_of
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Robot
 from grader.ros.urdf.reader import read_urdf

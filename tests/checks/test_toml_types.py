@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 import pytest
 
-from grader.lab.checks.toml_types import (
+from grader.base.toml_types import (
     Colour,
     Content,
     Count,

@@ -4,8 +4,8 @@ import pytest
 
 from grader.base.errors import NotDecided, RubricError
 from grader.lab.checks import driving
-from grader.lab.checks.driving import describe_driving
 from grader.ros.urdf import resting
+from grader.ros.urdf.driving import describe_driving, plan_drive
 from grader.ros.urdf.resting import body_of, find_rest
 from grader.ros.urdf.standing_robot import StandingRobot
 from tests.driving.test_laws import base, configuration, part
@@ -33,6 +33,17 @@ def test_a_line_on_how_a_robot_stands_and_drives() -> None:
     assert rover(low).startswith("on level ground, it leans by ")
     mesh = part("cover", '<mesh filename="package://a/b.stl"/>', "0 0 0.1")
     assert rover(BALL, mesh) == ""
+
+
+def test_no_line_on_wheels_that_may_be_omni_wheels() -> None:
+    """Nobody says what rollers three wheels have whose axes cross: where they drive is not known."""
+    places = (("a", "0.2 0 0", "0 1.5707963 0"), ("b", "0 0.2 0", ALONG), ("c", "0 -0.2 0", ALONG))
+    wheels = [part(name, WHEEL, xyz, rpy, ACROSS) for name, xyz, rpy in places]
+    robot = configuration(base("0.2 0.2 0.05", "0.01 0 0"), *wheels)
+    assert describe_driving(robot, ["a", "b", "c"]) == ""
+    drive = plan_drive(robot, ["a", "b", "c"])
+    assert drive is not None
+    assert drive.text == "on level ground, it stands level on 'a', 'b' and 'c'"
 
 
 @pytest.mark.parametrize("rollers", [None, [45.0, -45.0]])

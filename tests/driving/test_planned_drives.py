@@ -8,10 +8,11 @@ from typing import Any
 
 import pytest
 
-from grader.lab.checks.driving import plan_drive
 from grader.report.drawing.drive import drive_data
-from grader.report.drawing.picture import picture_of, plain_picture
+from grader.report.drawing.graded_picture import picture_of
+from grader.report.drawing.picture import plain_picture
 from grader.report.drawing.space import space_data, without_names
+from grader.ros.urdf.driving import plan_drive
 from tests.driving.test_edges import BALL, LEFT, RIGHT
 from tests.driving.test_laws import base, configuration, part
 from tests.samples import SAMPLES

@@ -7,8 +7,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.base.errors import RubricError
+from grader.base.toml_file import read_toml
 from grader.lab.rubric.rubric import shipped_rubrics
-from grader.lab.rubric.toml_file import read_toml
 from tests.examples import examples
 
 SHIPPED = next(iter(shipped_rubrics().values())).read_text(encoding="utf-8")[:3000]

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.lab.rubric.toml_file import TomlPath as Path
-from grader.lab.rubric.toml_file import key_lines, line_of
+from grader.base.toml_file import TomlPath as Path
+from grader.base.toml_file import key_lines, line_of
 from tests.examples import examples
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from grader.files.reading import URDF_LIMIT
-from grader.lab.submission.opening import open_workspace
+from grader.ros.workspace.opening import open_workspace
 from grader.ros.workspace.reading import read_agreement
 from tests.labs.variants import make_variant
 

@@ -1,7 +1,7 @@
 """Write the table of launch's classes from its sources: `python -m tests.package.launch_api LAUNCH LAUNCH_ROS`.
 
 The arguments are checkouts of github.com/ros2/launch and github.com/ros2/launch_ros (branch jazzy), which are parsed and
-not imported. The table is `grader/ros/launch/api.json`.
+not imported. The table is `grader/ros/launch/launch_classes.json`.
 """
 
 import ast
@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-TABLE = Path("grader/ros/launch/api.json")
+TABLE = Path("grader/ros/launch/launch_classes.json")
 PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml")
 SOURCE = "github.com/ros2/launch and github.com/ros2/launch_ros, branch jazzy, by python -m tests.package.launch_api"
 # What later releases export, so that a newer patch of Jazzy may: whether the name is there is not known.

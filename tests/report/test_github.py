@@ -7,7 +7,8 @@ from grader.base.problems import Problem
 from grader.base.source import Base, Location
 from grader.base.text import printable
 from grader.lab.grading.report import Report
-from grader.report.writers.annotations import command, render_github
+from grader.report.writers.annotations import render_github
+from grader.report.writers.workflow_commands import command
 from grader.ros.urdf.urdf_problems import UNDEFINED_MATERIAL
 from tests.report.readers import read_commands
 from tests.report.workflow_commands import Command

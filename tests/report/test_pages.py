@@ -75,7 +75,7 @@ def test_grade_without_html_imports_nothing_of_it() -> None:
 import sys
 from grader.app.cli.app import run
 assert run(["grade", "submissions/lab6/axis-negated", "--save", "markdown=/dev/null", "--save", "json=/dev/null"]) == 1
-loaded = [name for name in sys.modules if name.startswith(("jinja2", "markupsafe", "grader.report.pages", "grader.report.writers.svg"))]
+loaded = [name for name in sys.modules if name.startswith(("jinja2", "markupsafe", "grader.report.pages", "grader.report.drawing"))]
 assert not loaded, loaded
 """
     subprocess.run([sys.executable, "-c", program], check=True, cwd=ROOT, stdout=subprocess.DEVNULL)

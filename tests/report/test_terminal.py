@@ -16,7 +16,8 @@ from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import read_submission
 from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.writers.inspection_terminal import inspection_terminal
-from grader.report.writers.terminal import Page, excerpt_block, render_terminal
+from grader.report.writers.terminal import render_terminal
+from grader.report.writers.terminal_page import Page, excerpt_block
 from grader.ros.urdf.kinematics import Configuration
 from tests.samples import SAMPLES, opened
 

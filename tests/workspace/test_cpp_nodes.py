@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from grader.files.reading import URDF_LIMIT
-from grader.lab.submission.opening import open_workspace
+from grader.ros.workspace.opening import open_workspace
 from grader.ros.workspace.reading import read_agreement
 from tests.labs.variants import make_variant
 

@@ -12,7 +12,6 @@ from pathlib import Path
 import typer
 
 from grader.files.reading import shipped_folder
-from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
 
 _RUBRIC_FILE = "rubric.toml"
 _MAX_ROBOTS, _MAX_SIZE = 20, 1024 * 1024  # files, bytes of each
@@ -43,7 +42,7 @@ def offer_explained(context: typer.Context, incomplete: str) -> list[str]:
 
 def offer_codes(incomplete: str) -> list[str]:
     """Return the problem codes and the names of rules."""
-    from grader.ros.workspace.rule_table import RULES
+    from grader.ros.api import RULES
 
     codes: list[str] = []
     for file in sorted(shipped_folder("docs", "examples").glob("*.toml")):
@@ -89,6 +88,8 @@ def _text_of(file: Path) -> str:
 
 
 def _rubric_file(context: typer.Context) -> Path:
+    from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC  # late: an inspection has no rubric
+
     name = context.params.get("rubric") or DEFAULT_RUBRIC
     shipped = shipped_folder("rubrics") / name / _RUBRIC_FILE
     return shipped if shipped.is_file() else Path(name)

@@ -10,7 +10,7 @@ from grader.app.cli.streams import TERMINAL
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import InspectFormat
 from grader.report.invocation import ExitCode
-from grader.ros.known.releases import Release
+from grader.ros.api import Release
 
 _PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
 _ROBOT = "Show this robot of several whole: its name, or the end of its path."

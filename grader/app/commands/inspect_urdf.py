@@ -15,17 +15,21 @@ from grader.app.settings import Settings, read_codes, read_settings
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
 from grader.base.text import MAX_NAMED, enumerated, printable_path
 from grader.files.tree import overlaid
-from grader.lab.submission.opening import open_workspace
 from grader.report.formats import InspectFormat, render_inspection
 from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.invocation import Saves, read_arguments, read_saves
 from grader.report.repository import base_of, folder_of
 from grader.report.writing import Terminal, Warn
-from grader.ros.known.releases import Release
-from grader.ros.package.robot_file import Absent, Read, Unreadable
-from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.reader import Reading
-from grader.ros.workspace.opened import OpenedWorkspace
+from grader.ros.api import (
+    Absent,
+    Configuration,
+    OpenedWorkspace,
+    Read,
+    Reading,
+    Release,
+    Unreadable,
+    open_workspace,
+)
 
 _MAX_NAMED = 20
 
@@ -211,7 +215,7 @@ def _inspected(
     driven = opened.driven_joints(urdf)
     if robot is None or not driven or not all(map(robot.robot.has_joint, driven)):
         return inspected
-    from grader.lab.checks.driving import describe_driving  # late: few robots name their wheels
+    from grader.ros.api import describe_driving  # late: few robots name their wheels
 
     wheels = tuple(robot.robot.joint(joint).child for joint in driven)
     return replace(inspected, driving=describe_driving(robot, wheels), wheels=wheels)

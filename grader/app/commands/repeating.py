@@ -16,7 +16,7 @@ from grader.base.errors import GraderError, InputError, MachineError, RubricErro
 from grader.base.text import printable_path
 from grader.files.folder import read_folder
 from grader.report.screen import Screen, draw
-from grader.report.writers.terminal import Page
+from grader.report.writers.terminal_page import Page
 from grader.report.writing import Terminal
 
 _POLL = 0.2  # seconds between two looks, at least

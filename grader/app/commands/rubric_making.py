@@ -25,7 +25,7 @@ from grader.lab.authoring.samples import read_samples
 from grader.lab.checks.loading import urdf_loads
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.rubric.rubric_files import load_named
-from grader.lab.submission.opening import STANDARD_INPUT, open_with_packages
+from grader.lab.submission.opening import open_with_packages
 from grader.lab.submission.submission import Submission
 from grader.report.explanations import rubric_summary
 from grader.report.invocation import ExitCode, read_threshold
@@ -35,9 +35,7 @@ from grader.report.writers.rubric_test_result import (
     unexamined_line,
 )
 from grader.report.writing import Terminal, Warn, missing_folder, save_bytes
-from grader.ros.package.package import MANIFEST
-from grader.ros.package.robot_file import Absent, Read, Unreadable
-from grader.ros.urdf.kinematics import Configuration
+from grader.ros.api import MANIFEST, STANDARD_INPUT, Absent, Configuration, Read, Unreadable
 from grader.workers.pool import Processes, processors
 from grader.workers.queue import Progress
 

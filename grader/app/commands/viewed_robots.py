@@ -16,14 +16,14 @@ from grader.base.source import Source
 from grader.base.text import printable_path
 from grader.report.formats import Format, InspectFormat
 from grader.report.inspection import InspectedRobot, Inspection
-from grader.report.pages.student import inspection_html, problem_card, render_html
+from grader.report.pages.inspection_page import inspection_html, problem_card
+from grader.report.pages.student import render_html
 from grader.report.pages.viewing import ArgumentField, ProblemCard, Viewing
-from grader.ros.package.robot_file import Read, Unreadable
+from grader.ros.api import Read, Unreadable
 
 if TYPE_CHECKING:
     from grader.lab.grading.report import Report
-    from grader.ros.package.mesh_loading import MeshLoader
-    from grader.ros.urdf.reader import Reading
+    from grader.ros.api import MeshLoader, Reading
 
 _MAX_SHOWN = 5  # problems that break a robot
 

@@ -7,7 +7,7 @@ from grader.files.tree import Tree
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric_files import load_named
 from grader.lab.submission.opening import submission_of
-from grader.report.findings import mistakes_in_report
+from grader.report.mistakes import mistakes_in_report
 
 
 def grade_files(name: str, tree: Tree, identity: str) -> Graded:

@@ -10,7 +10,7 @@ from grader.app.editor.places import TextPlace
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import counted, enumerated, printable
 from grader.report.inspection import joint_text, main_root, pose_text
-from grader.ros.urdf.kinematics import Configuration
+from grader.ros.api import Configuration
 
 _MAX_NAMED = 3  # places
 

@@ -10,9 +10,10 @@ from grader.app.editor.look import Look
 from grader.app.editor.text_ranges import TextRanges
 from grader.base.source import Base, Location
 from grader.files.limits import ROBOT_ENDINGS
-from grader.report.findings import Finding, Mistake, place_in_repository
+from grader.report.findings import Finding, place_in_repository
 from grader.report.locations import SourceOf
-from grader.ros.xml.xml_problems import RECOVERED
+from grader.report.mistakes import Mistake
+from grader.ros.api import RECOVERED
 
 SOURCE = "grader"
 _SEVERITIES = {

@@ -11,7 +11,7 @@ from grader.base.text import quoted
 from grader.lab.hints.generators import word_edits
 from grader.lab.hints.name_edits import correction_edits
 from grader.lab.hints.robot_draft import Draft
-from grader.ros.package.robot_file import Read
+from grader.ros.api import Read
 
 
 def actions(look: Look, place: TextPlace, wanted: lsp.Range) -> list[lsp.CodeAction]:

@@ -12,14 +12,17 @@ from grader.base.reuse import Memory
 from grader.base.source import Edits, Location
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree
-from grader.report.findings import Finding, Mistake, findings_in_inspection
+from grader.report.findings import Finding, findings_in_inspection
 from grader.report.inspection import InspectedRobot, Inspection
-from grader.ros.package.robot_file import Read
-from grader.ros.urdf.kinematics import Configuration
-from grader.ros.workspace.all_robots import read_workspace
-from grader.ros.workspace.name_places import NamePlaces
-from grader.ros.workspace.names import Mismatch
-from grader.ros.workspace.opened import OpenedWorkspace
+from grader.report.mistakes import Mistake
+from grader.ros.api import (
+    Configuration,
+    Mismatch,
+    NamePlaces,
+    OpenedWorkspace,
+    Read,
+    read_workspace,
+)
 
 
 class ProvenFix(NamedTuple):

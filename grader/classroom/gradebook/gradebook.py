@@ -36,7 +36,7 @@ from grader.lab.grading.report import ManualComment, ManualMark, Report, without
 from grader.lab.rubric.criterion import DEADLINE, GRADE, TOTAL, Criterion
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.submission import Opening, Submission
-from grader.ros.package.robot_file import Absent, Unreadable
+from grader.ros.api import Absent, Unreadable
 
 _NOT_SUBMITTED = Outcome("skipped", "not graded: this part was not submitted")
 _MAX_SHARED = 10_000  # results

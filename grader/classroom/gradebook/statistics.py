@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from typing import NamedTuple
 
+from grader.base.quantities import in_millimetres
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.student_grade import Reason, StudentGrade
 from grader.classroom.results.equal_work import EqualWork, equal_work
-from grader.lab.checks.outcome import in_millimetres
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric
 

@@ -24,7 +24,7 @@ from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.labs import LabFolders
 from grader.lab.submission.opening import read_submission, submission_of
 from grader.lab.submission.submission import DEFAULTS, Opening, Submission
-from grader.ros.package.robots import is_robot
+from grader.ros.api import is_robot
 
 if TYPE_CHECKING:
     import hashlib

@@ -35,7 +35,7 @@ from grader.lab.grading.report import Grade, Report, Result
 from grader.lab.submission.submission import Submission
 from grader.report.formats import Format, render
 from grader.report.writing import Terminal, make_folder, refuse_symlinks, save
-from grader.ros.package.robot_file import Absent
+from grader.ros.api import Absent
 from grader.workers.pool import Processes, WorkerError, processors
 from grader.workers.queue import Progress, Queue
 
@@ -328,7 +328,9 @@ def _write_some(run: ReportRun, tasks: Sequence[_ReportTask]) -> list[_Done]:
 
 def _still_of(report: Report) -> "Still":
     """Return the small picture of the robot of a report."""
-    from grader.report.drawing.picture import picture_of  # late: only the class's page needs numpy
+    from grader.report.drawing.graded_picture import (
+        picture_of,  # late: only the class's page needs numpy
+    )
     from grader.report.drawing.still import still_of
 
     picture = picture_of(report)

@@ -47,7 +47,7 @@ from grader.classroom.results.results import RunGrade
 from grader.classroom.roster.lateness import time_text
 from grader.lab.rubric.criterion import GRADE
 from grader.report.criteria import alike
-from grader.report.writers.terminal import INDENT, Page
+from grader.report.writers.terminal_page import INDENT, Page
 
 _GAP = 2  # characters between two columns
 _MAX_ROWS = 40

@@ -8,8 +8,7 @@ from typing import NamedTuple
 from grader.classroom.results.results import StoredResult
 from grader.files.reading import sha256_of
 from grader.lab.submission.submission import Submission
-from grader.ros.package.robot_file import Read
-from grader.ros.urdf.normal_form import robot_hash, written_form
+from grader.ros.api import Read, robot_hash, written_form
 
 # students, or a tenth of the class: what more have in common comes from the handout
 _MAX_SHARING = 4

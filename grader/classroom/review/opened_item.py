@@ -29,11 +29,12 @@ from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.submission.submission import Submission
 from grader.report.criteria import answer_lines, counts_lines, is_manual
-from grader.report.drawing.picture import Picture, picture_of
+from grader.report.drawing.graded_picture import picture_of
+from grader.report.drawing.picture import Picture
 from grader.report.drawing.space import space_data, without_names
+from grader.report.drawing.three_views import callout_lines, drawing_element
 from grader.report.locations import location_text, source_lines
-from grader.report.writers.svg import callout_lines, drawing_element
-from grader.ros.package.package import SETUP
+from grader.ros.api import SETUP
 
 _MAX_PLACES, _AROUND = 3, 6  # places in files, and lines before and after each
 # The codes of what cannot be determined, by what a check looks at.

@@ -31,9 +31,9 @@ from grader.classroom.marks.marks import Mark
 from grader.classroom.roster.lateness import time_text
 from grader.lab.documents.pictures import EmbeddedPicture, NotShown
 from grader.report.criteria import model_lines
+from grader.report.drawing.three_views import STYLE
 from grader.report.locations import SourceLine
 from grader.report.pages.shell import SPACE_SCRIPTS, Assets, render_page
-from grader.report.writers.svg import STYLE
 
 _SOURCES = "img-src 'self'; frame-src 'self'; connect-src 'self'"
 _FILES = Path(__file__).parent / "files"

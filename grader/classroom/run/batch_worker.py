@@ -23,7 +23,7 @@ from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.rubric import Rubric, read_rubric
 from grader.lab.submission.submission import Opening, Submission
-from grader.ros.package.robot_file import Absent, Unreadable
+from grader.ros.api import Absent, Unreadable
 from grader.workers.pool import NO_MEMORY, WorkerError, out_of_time
 
 _MAX_ANSWER = 4000  # characters of an answer that are kept to compare it

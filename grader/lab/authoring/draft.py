@@ -14,6 +14,8 @@ from typing import Any, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.text import capitalised, cut, printable
+from grader.base.toml_file import assignment, read_toml, toml_literal
+from grader.base.toml_types import WrongValue
 from grader.lab.authoring.draft_choice import DraftChoice
 from grader.lab.authoring.element_facts import element_facts
 from grader.lab.authoring.facts import CarriedFact, Fact, Omission, Solution, robot_facts
@@ -27,10 +29,8 @@ from grader.lab.authoring.package_facts import (
 )
 from grader.lab.checks.outcome import Outcome
 from grader.lab.checks.registry import find_check
-from grader.lab.checks.toml_types import WrongValue
 from grader.lab.grading.subjects import without_selectors
 from grader.lab.rubric.rubric import Rubric, read_rubric
-from grader.lab.rubric.toml_file import assignment, read_toml, toml_literal
 from grader.lab.submission.submission import Submission
 from grader.ros.urdf.shapes import UnknownShape
 

@@ -11,9 +11,9 @@ from math import degrees, isfinite
 from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.quantities import point
 from grader.base.text import counted, enumerated
 from grader.base.transforms import rotation_from_rpy
-from grader.lab.checks.outcome import point
 from grader.lab.checks.visuals import MAX_SHAPES
 from grader.lab.submission.submission import Submission
 from grader.ros.package.mesh_files import mesh_file

@@ -10,6 +10,7 @@ from typing import Any
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import counted, enumerated
+from grader.base.toml_file import toml_literal
 from grader.lab.authoring.facts import (
     CarriedFact,
     Fact,
@@ -19,7 +20,6 @@ from grader.lab.authoring.facts import (
     are_joints_free,
 )
 from grader.lab.checks.parameters import measures
-from grader.lab.rubric.toml_file import toml_literal
 from grader.lab.submission.submission import Submission
 from grader.ros.build.places import PREFIX, is_of_one_machine
 from grader.ros.launch.launch_model import Launch

@@ -11,14 +11,15 @@ from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.names import near
+from grader.base.quantities import point
 from grader.base.text import counted, enumerated
-from grader.lab.checks.outcome import Outcome, point
+from grader.base.toml_file import TomlPath, one_line_each
+from grader.lab.checks.outcome import Outcome
 from grader.lab.grading.deciding import decide
 from grader.lab.grading.grade import grade
 from grader.lab.grading.subjects import check_selectors, joints_at
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric, load_rubric, shipped_rubrics, unknown_causes
-from grader.lab.rubric.toml_file import TomlPath, one_line_each
 
 _SIZES = ("size", "box", "cylinder", "sphere", "radius", "length", "mass")
 _PLACES, _NEAR = (

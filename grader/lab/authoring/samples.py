@@ -8,13 +8,13 @@ from typing import Literal, NamedTuple
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
 from grader.base.text import printable_path
+from grader.base.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
+from grader.base.toml_types import toml_type
 from grader.files.reading import read_capped
-from grader.lab.checks.toml_types import toml_type
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Result
 from grader.lab.rubric.keys import NAMES
 from grader.lab.rubric.rubric import Rubric
-from grader.lab.rubric.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
 from grader.lab.submission.opening import open_submission
 from grader.ros.package.robot_file import Read
 

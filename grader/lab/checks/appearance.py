@@ -6,10 +6,12 @@ from math import cos, radians
 from typing import TypeVar
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.quantities import SLACK, point, within
+from grader.base.source import place
+from grader.base.toml_types import Colour, NonNegative, Size
 from grader.base.transforms import IDENTITY_ROTATION, Vector, rotation_from_rpy
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import (
-    SLACK,
     Outcome,
     difference,
     failed,
@@ -17,11 +19,7 @@ from grader.lab.checks.outcome import (
     measured,
     other_unit,
     passed,
-    place,
-    point,
-    within,
 )
-from grader.lab.checks.toml_types import Colour, NonNegative, Size
 from grader.lab.checks.visuals import (
     VISIBLE,
     ShapeName,
@@ -29,10 +27,10 @@ from grader.lab.checks.visuals import (
     main_visual,
     shape_name,
     visible,
-    visuals,
 )
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Cylinder, Material, Sphere, Visual
+from grader.ros.urdf.visuals import visuals
 
 ABOUT = {
     "shows_box": About(("box", "visual"), picture="outline"),

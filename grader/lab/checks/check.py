@@ -11,8 +11,8 @@ from keyword import iskeyword, kwlist
 from typing import Any, Literal, NamedTuple, get_args, get_type_hints
 
 from grader.base.errors import InputError
+from grader.base.toml_types import TomlType, toml_type
 from grader.lab.checks.outcome import MISSING, SLIP, WRONG, Outcome
-from grader.lab.checks.toml_types import TomlType, toml_type
 
 # The ways in which the text of a robot is rewritten to an equal robot, in the order in which they
 # are tried.

@@ -5,24 +5,18 @@ from math import inf
 
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.pairing import most_pairs
+from grader.base.quantities import SLACK, in_degrees, in_millimetres, point
+from grader.base.source import place
 from grader.base.text import counted, quoted_end
+from grader.base.toml_types import NonNegative, RadiusAndLength, Size
 from grader.base.transforms import Vector
 from grader.lab.checks.check import About
-from grader.lab.checks.outcome import (
-    SLACK,
-    Outcome,
-    failed,
-    in_degrees,
-    in_millimetres,
-    passed,
-    place,
-    point,
-)
-from grader.lab.checks.toml_types import NonNegative, RadiusAndLength, Size
-from grader.lab.checks.visuals import MAX_SHAPES, visuals
+from grader.lab.checks.outcome import Outcome, failed, passed
+from grader.lab.checks.visuals import MAX_SHAPES
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Collision, Cylinder, Geometry, Mesh, Origin, Sphere, Visual
 from grader.ros.urdf.shapes import PlacedShape, Shape, ShapeDifference
+from grader.ros.urdf.visuals import visuals
 
 ABOUT = {
     "collision_matches_visual": About(("collision",)),

@@ -4,24 +4,18 @@ from itertools import product
 from operator import itemgetter
 
 from grader.base.errors import NotDecided
+from grader.base.quantities import SLACK, in_millimetres, point, within
+from grader.base.source import place
+from grader.base.toml_types import NonNegative
 from grader.base.transforms import X_AXIS, Z_AXIS, Vector
 from grader.lab.checks.check import About
-from grader.lab.checks.outcome import (
-    SLACK,
-    Outcome,
-    difference,
-    in_millimetres,
-    judged,
-    place,
-    point,
-    within,
-)
-from grader.lab.checks.toml_types import NonNegative
-from grader.lab.checks.visuals import ShapeName, main_visual, origin_place, placed, visuals
+from grader.lab.checks.outcome import Outcome, difference, judged
+from grader.lab.checks.visuals import ShapeName, main_visual
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Mesh
 from grader.ros.urdf.overlap import penetration
 from grader.ros.urdf.shapes import PlacedShape, UnknownShape
+from grader.ros.urdf.visuals import origin_place, placed, visuals
 
 ABOUT = {
     "stands_on": About(

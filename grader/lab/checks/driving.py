@@ -1,29 +1,17 @@
 """Checks of a robot as a whole: how it stands on level ground, and where its wheels drive it."""
 
 from collections.abc import Sequence
-from contextlib import suppress
-from math import degrees
-from typing import NamedTuple
 
-from grader.base.errors import MissingElement, NotDecided, RubricError
-from grader.base.source import LazyLocation
-from grader.base.text import enumerated
-from grader.base.transforms import X_AXIS, Z_AXIS, Vector, degrees_between
+from grader.base.errors import NotDecided, RubricError
+from grader.base.quantities import SLACK, in_degrees, in_millimetres
+from grader.base.text import in_quotes
+from grader.base.toml_types import Direction, NonNegative
 from grader.lab.checks.check import About
-from grader.lab.checks.outcome import (
-    SLACK,
-    Outcome,
-    difference,
-    in_degrees,
-    in_millimetres,
-    judged,
-    place,
-)
-from grader.lab.checks.toml_types import Direction, NonNegative
-from grader.lab.checks.visuals import axis_place, origin_place
+from grader.lab.checks.outcome import Outcome, difference, judged
+from grader.ros.urdf.driving import DRIVES_AHEAD, Drivetrain, RobotFault
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.shapes import UnknownShape
 from grader.ros.urdf.standing_robot import StandingRobot
+from grader.ros.urdf.visuals import origin_place
 
 ABOUT = {
     "stands_level": About(picture="outline"),
@@ -32,139 +20,8 @@ ABOUT = {
     "does_not_tip": About(picture="outline"),
 }
 
-_HANGING = 0.002  # metres above the ground from which on a wheel has no grip
-_ROUND = 0.002  # metres by which the lowest point of a wheel may rise and fall
-_MAX_SLIP = 0.05  # of the speed of the rim
-_SLOW = 0.05  # of the speed of the rims: a robot that is slower does not drive
-_OFF_CENTRE = 0.1  # of the distance between the wheels: how far the middle of a turn may be off
-_OTHER_SIZE = 0.01  # of the radius from which on a wheel is said to be of another size
-_ANGLE = 1.0  # degrees from which on a wheel is said to point elsewhere
-_BACKWARD = 135.0  # degrees off forward from which on a robot is said to drive backward
-_MAX_SLOPE = 45.0  # degrees between the axis of a wheel and the level
-_CROSSED = 30.0  # degrees between the axes of wheels that can only be omni wheels
-_OFF = 2.0  # degrees, or degrees for each metre, from which on a robot is said to drive elsewhere
-_LEANING = 1.0  # degrees from which on a robot is said to lean
 _LEVEL = 1e-4  # metres by which a link that is level with others may be off
 _MOST = 100.0  # m/s^2; nothing is said of more
-_NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
-
-
-def describe_driving(robot: Configuration, wheels: Sequence[str]) -> str:
-    """Return in one line how a robot stands, and where these links drive it; empty where it cannot
-    be determined.
-    """
-    try:
-        standing = StandingRobot(robot, wheels)
-        drives = drives_straight(robot, wheels=[*wheels])
-    except _NOT_KNOWN:
-        return ""
-    if standing.rest.has_fallen:
-        return "on level ground, it tips over"
-    message = drives.message
-    if drives.status != "passed":
-        message = f"when its wheels turn forward: {message}"
-    return f"{_describe_rest(standing)}; {message}"
-
-
-class Drive(NamedTuple):
-    """How a robot comes to rest on level ground, and where its wheels drive it then.
-
-    `plan_drive` makes it for pictures. `text` says in one line what one sees. While the `joints`
-    turn at 1 rad/s, `velocity` (m/s, in the frame of the base) is that of the centre of mass at
-    first, and `turn` (rad/s) how fast it turns to the left. Without joints, the wheels do not drive
-    the robot, or it cannot be determined where.
-    """
-
-    standing: StandingRobot
-    text: str
-    velocity: Vector = (0.0, 0.0, 0.0)
-    turn: float = 0.0
-    joints: tuple[str, ...] = ()
-
-
-def plan_drive(
-    robot: Configuration,
-    wheels: Sequence[str] = (),
-    base: str = "",
-    forward: Vector = X_AXIS,
-    rollers: Sequence[float] | None = None,
-) -> Drive | None:
-    """Return how a robot stands, and where these wheels drive it, as `stands_level` and
-    `drives_straight` compute it. None if it cannot be determined how it stands, or it has no wheel.
-
-    Without names of links that it has, its wheels are all links that a continuous joint turns about
-    a level axis, and that are round about it.
-    """
-    named = [link for link in wheels if robot.robot.has_link(link)]
-    if named != [*wheels] or not named:
-        rollers = None
-        named = named or _find_rolling_links(robot)
-    if not named:
-        return None
-    try:
-        standing = StandingRobot(robot, named, base if robot.robot.has_link(base) else "")
-    except _NOT_KNOWN:
-        return None
-    if standing.rest.has_fallen:
-        return Drive(standing, "on level ground, it tips over")
-    text = _describe_rest(standing)
-    try:
-        driven = _Driven(standing, rollers)
-        driven.refuse_crossed()
-    except _NOT_KNOWN:
-        return Drive(standing, text)
-    idle = driven.find_idle_wheels()
-    if idle:
-        return Drive(standing, "; ".join([text, *(fault.text for fault in idle)]))
-    faults = [fault.text for fault in driven.find_course_faults(forward, _OFF, _OFF)]
-    moves = "; ".join(faults) or "it drives straight ahead"
-    text = f"{text}; when its wheels turn forward, {moves}"
-    turning = driven.wheels
-    course = standing.drive(turning, [1.0] * len(turning), forward)
-    velocity = course.velocity_of(standing.rest.mass_centre)
-    joints = tuple(wheel.joint.name for wheel in turning)
-    return Drive(standing, text, velocity, course.turn, joints)
-
-
-def _find_rolling_links(robot: Configuration) -> list[str]:
-    """Return the links that a continuous joint turns about a level axis, and that are round about
-    it.
-    """
-    turning = []
-    for link in robot.robot.links:
-        with suppress(MissingElement, NotDecided):
-            types = [joint.type for joint in robot.chain(link.name)]
-            is_shaped = link.visuals or link.collisions
-            if is_shaped and types.count("continuous") == 1 and types[-1] == "continuous":
-                turning.append(link.name)
-    try:
-        wheels = StandingRobot(robot, turning).wheels() if turning else []
-    except _NOT_KNOWN:
-        return []
-    rolling = []
-    for wheel in wheels:
-        off_level = abs(90.0 - degrees_between(wheel.axis, Z_AXIS))
-        if off_level <= _MAX_SLOPE and wheel.measure_roundness(Z_AXIS) <= _ROUND:
-            rolling.append(wheel.link)
-    return rolling
-
-
-def _describe_rest(standing: StandingRobot) -> str:
-    """Return in one line how a robot stands."""
-    tilt, stands = standing.rest.tilt, "stands level"
-    if tilt > _LEANING:
-        stands = f"leans by {in_degrees(tilt)}"
-    return f"on level ground, it {stands} on {_in_quotes(standing.touching)}"
-
-
-class _RobotFault(NamedTuple):
-    """What a person would see, what was measured of it, what is allowed, and where to look."""
-
-    text: str
-    measured: float | None = None
-    tolerance: float | None = None
-    unit: str | None = None
-    at: LazyLocation | None = None
 
 
 def stands_level(
@@ -192,31 +49,31 @@ def stands_level(
     """
     standing = StandingRobot(robot, on, base)
     rest = standing.rest
-    faults: list[_RobotFault] = []
-    hanging: list[_RobotFault] = []
+    faults: list[RobotFault] = []
+    hanging: list[RobotFault] = []
     for link in on:
         height = standing.height(link)
         if not height <= tolerance + SLACK:
             text = f"{link!r} is {in_millimetres(height)} above the ground"
-            hanging.append(_RobotFault(text, height, tolerance, "m", origin_place(robot, link)))
+            hanging.append(RobotFault(text, height, tolerance, "m", origin_place(robot, link)))
     others = [link for link in standing.touching if link not in on]
     if rest.has_fallen:
-        faults.append(_RobotFault("it tips over"))
+        faults.append(RobotFault("it tips over"))
     elif not rest.tilt <= tilt + SLACK:
-        leaning = f"it leans by {in_degrees(rest.tilt)}, on {_in_quotes(standing.touching)}"
+        leaning = f"it leans by {in_degrees(rest.tilt)}, on {in_quotes(standing.touching)}"
         odd, height = standing.find_odd_height()
         if not hanging and abs(height) > _LEVEL:
             side = difference(height, "above", "below")
             leaning += f": with its base level, {odd!r} is {side} the others"
         at = hanging[0].at if hanging else origin_place(robot, odd)
-        faults += [_RobotFault(leaning, rest.tilt, tilt, "deg", at), *hanging]
+        faults += [RobotFault(leaning, rest.tilt, tilt, "deg", at), *hanging]
     else:
         faults += hanging
         if others:
-            text = f"it rests on {_in_quotes(others)}"
-            faults.append(_RobotFault(text, at=origin_place(robot, others[0])))
-    message = f"it stands level on {_in_quotes(on)}"
-    return _judge(standing, faults, message, _RobotFault("", rest.tilt, tilt, "deg"))
+            text = f"it rests on {in_quotes(others)}"
+            faults.append(RobotFault(text, at=origin_place(robot, others[0])))
+    message = f"it stands level on {in_quotes(on)}"
+    return _judge(standing, faults, message, RobotFault("", rest.tilt, tilt, "deg"))
 
 
 def drives_straight(
@@ -249,16 +106,13 @@ def drives_straight(
             it stands.
     """
     standing = StandingRobot(robot, wheels, base, is_level=level)
-    driven = _Driven(standing, rollers)
-    message = "with its wheels turning forward, it drives straight ahead"
+    driven = _read_drivetrain(standing, rollers)
     faults = driven.find_idle_wheels()
-    if faults:
-        return _judge(standing, faults, message, faults[0], by_mass=False)
-    driven.refuse_crossed()
-    faults = driven.find_uneven_wheels()
-    faults += driven.with_culprits(driven.find_course_faults(forward, angle, turn), forward)
-    fine = _RobotFault("", 0.0, angle, "deg")
-    return _judge(standing, faults, message, fine, by_mass=False)
+    if not faults:
+        _refuse_crossed(driven)
+        faults = driven.find_faults_ahead(forward, angle, turn)
+    fine = RobotFault("", 0.0, angle, "deg")
+    return _judge(standing, faults, DRIVES_AHEAD, fine, by_mass=False)
 
 
 def turns_in_place(
@@ -284,13 +138,13 @@ def turns_in_place(
             it stands.
     """
     standing = StandingRobot(robot, wheels, base, is_level=level)
-    driven = _Driven(standing, rollers)
+    driven = _read_drivetrain(standing, rollers)
     faults = driven.find_idle_wheels()
     if not faults:
-        driven.refuse_crossed()
+        _refuse_crossed(driven)
         faults = driven.find_turning_faults()
     message = "with its wheels turning against each other, it turns to the left in place"
-    return _judge(standing, faults, message, _RobotFault(""), by_mass=False)
+    return _judge(standing, faults, message, RobotFault(""), by_mass=False)
 
 
 def does_not_tip(robot: Configuration, *, on: list[str], acceleration: NonNegative) -> Outcome:
@@ -307,11 +161,11 @@ def does_not_tip(robot: Configuration, *, on: list[str], acceleration: NonNegati
     standing = StandingRobot(robot, on)
     at = origin_place(robot, on[-1])
     if standing.rest.has_fallen:
-        return _judge(standing, [_RobotFault("it tips over", at=at)], "", _RobotFault(""))
+        return _judge(standing, [RobotFault("it tips over", at=at)], "", RobotFault(""))
     limits = standing.tipping_accelerations()
     if limits is None:
-        text = f"its centre of mass is not over the area between {_in_quotes(on)}"
-        return _judge(standing, [_RobotFault(text, at=at)], "", _RobotFault(""))
+        text = f"its centre of mass is not over the area between {in_quotes(on)}"
+        return _judge(standing, [RobotFault(text, at=at)], "", RobotFault(""))
     faults = []
     ways = (("forward", "backward"), ("backward", "forward"))
     for limit, (way, falls) in zip(limits, ways, strict=True):
@@ -320,17 +174,35 @@ def does_not_tip(robot: Configuration, *, on: list[str], acceleration: NonNegati
                 f"accelerated {way}, it tips {falls} from {limit:.3g} m/s^2 on; it should bear "
                 f"{acceleration:g} m/s^2"
             )
-            faults.append(_RobotFault(text, limit, None, "m/s^2", at))
+            faults.append(RobotFault(text, limit, None, "m/s^2", at))
     least = min(*limits, _MOST)
     message = f"it does not tip over below {least:.3g} m/s^2"
-    return _judge(standing, faults, message, _RobotFault("", least, None, "m/s^2"))
+    return _judge(standing, faults, message, RobotFault("", least, None, "m/s^2"))
+
+
+def _read_drivetrain(standing: StandingRobot, rollers: list[float] | None) -> Drivetrain:
+    """Return the wheels that drive a robot; raise RubricError for rollers of other wheels."""
+    if rollers is not None and len(rollers) != len(standing.named):
+        raise RubricError(("rollers must have an angle for each of the wheels",))
+    return Drivetrain(standing, rollers)
+
+
+def _refuse_crossed(driven: Drivetrain) -> None:
+    """Raise NotDecided for wheels that may have rollers of which the rubric says nothing."""
+    if driven.crossed_wheels is not None:
+        first, second = driven.crossed_wheels
+        raise NotDecided(
+            f"the axes of {first!r} and {second!r} cross: the rubric does not say what rollers "
+            "they have",
+            "the axes of wheels cross",
+        )
 
 
 def _judge(
     standing: StandingRobot,
-    faults: Sequence[_RobotFault],
+    faults: Sequence[RobotFault],
     message: str,
-    fine: _RobotFault,
+    fine: RobotFault,
     *,
     by_mass: bool = True,
 ) -> Outcome:
@@ -345,192 +217,3 @@ def _judge(
     return judged(
         not faults, text, shown.measured, expected, shown.tolerance, shown.unit, at=shown.at
     )
-
-
-class _Culprit(NamedTuple):
-    """A wheel that does not drive as the others: how it differs, and where to look."""
-
-    link: str
-    how: str
-    at: LazyLocation | None
-
-
-class _Driven:
-    """The driven wheels of a robot that stands, and what is wrong with how they drive it."""
-
-    def __init__(self, standing: StandingRobot, rollers: Sequence[float] | None) -> None:
-        if rollers is not None and len(rollers) != len(standing.named):
-            raise RubricError(("rollers must have an angle for each of the wheels",))
-        self._standing, self._has_rollers = standing, rollers is not None
-        self.wheels = standing.wheels(rollers)
-
-    def find_idle_wheels(self) -> list[_RobotFault]:
-        """Return the faults of wheels that drive nothing: they are in the air, or lie flat."""
-        standing = self._standing
-        if standing.rest.has_fallen:
-            return [_RobotFault("it tips over")]
-        faults = []
-        for wheel in self.wheels:
-            height = standing.height(wheel.link)
-            off_level = abs(90.0 - degrees_between(wheel.axis, standing.rest.up))
-            if height > _HANGING + SLACK:
-                text = f"{wheel.link!r} is {in_millimetres(height)} above the ground"
-                at = origin_place(standing.robot, wheel.link)
-                faults.append(_RobotFault(text, height, _HANGING, "m", at))
-            elif off_level > _MAX_SLOPE:
-                off = in_degrees(off_level)
-                text = f"{wheel.link!r} does not roll: its axis is {off} off level"
-                faults.append(
-                    _RobotFault(text, off_level, _MAX_SLOPE, "deg", axis_place(wheel.joint))
-                )
-        return faults
-
-    def find_uneven_wheels(self) -> list[_RobotFault]:
-        """Return the faults of wheels that are not round about their joints."""
-        faults = []
-        for wheel in self.wheels:
-            uneven = wheel.measure_roundness(self._standing.rest.up)
-            if uneven > _ROUND + SLACK:
-                text = (
-                    f"{wheel.link!r} is not round about its joint: its lowest point rises and "
-                    f"falls by {in_millimetres(uneven)} as it turns"
-                )
-                faults.append(_RobotFault(text, uneven, _ROUND, "m", axis_place(wheel.joint)))
-        return faults
-
-    def refuse_crossed(self) -> None:
-        """Raise NotDecided for more than two wheels with axes that cross, which may have
-        rollers.
-        """
-        if self._has_rollers or len(self.wheels) < 3:
-            return
-        first = self.wheels[0]
-        for wheel in self.wheels[1:]:
-            off = degrees_between(first.axis, wheel.axis)
-            if min(off, 180.0 - off) > _CROSSED:
-                raise NotDecided(
-                    f"the axes of {first.link!r} and {wheel.link!r} cross: the rubric does not say "
-                    "what rollers they have",
-                    "the axes of wheels cross",
-                )
-
-    def find_course_faults(self, forward: Vector, angle: float, turn: float) -> list[_RobotFault]:
-        """Return what is wrong with the way that the robot drives while all wheels turn at one
-        rate.
-        """
-        course = self._standing.drive(self.wheels, [1.0] * len(self.wheels), forward)
-        at = axis_place(self.wheels[0].joint)
-        faults = []
-        if course.speed > _SLOW * course.rim_speed:
-            off, turned = course.off, degrees(course.turn) / course.speed
-            if abs(off) > _BACKWARD:
-                faults.append(_RobotFault("it drives backward", off, angle, "deg", at))
-            elif not abs(off) <= angle + SLACK:
-                text = f"it drives {in_degrees(abs(off))} to the {_side(off)} of straight ahead"
-                faults.append(_RobotFault(text, off, angle, "deg", at))
-            if not abs(turned) <= turn + SLACK:
-                radius = course.speed / abs(course.turn)
-                text = f"it drives a circle of radius {radius:.2g} m to the {_side(turned)}"
-                faults.append(_RobotFault(text, turned, turn, "deg/m", at))
-        else:
-            text = "it does not drive"
-            reach = max(map(abs, course.sides))
-            if abs(course.turn) * reach > _SLOW * course.rim_speed:
-                text = f"it turns on the spot to the {_side(course.turn)}"
-            faults.append(_RobotFault(text, course.speed, None, "m/s", at))
-        return [*faults, *self._find_slips(course.slips)]
-
-    def _find_slips(self, slips: Sequence[float]) -> list[_RobotFault]:
-        """Return that wheels slip, at the speeds of their contacts in m/s: one fault for all."""
-        shares: dict[str, float] = {}  # of the speed of the rim, of the wheels that slip
-        for wheel, slip in zip(self.wheels, slips, strict=True):
-            if slip > (_MAX_SLIP + SLACK) * wheel.radius:
-                shares[wheel.link] = slip / max(wheel.radius, slip)
-        if not shares:
-            return []
-        share = 100.0 * max(shares.values())
-        verb = "slips" if len(shares) == 1 else "slip"
-        text = f"{_in_quotes([*shares])} {verb} by {share:.3g} % of the speed of the rim"
-        at = axis_place(self.wheels[0].joint)
-        return [_RobotFault(text, share, 100.0 * _MAX_SLIP, "%", at)]
-
-    def find_turning_faults(self) -> list[_RobotFault]:
-        """Return what is wrong with the way that the robot turns while its wheels turn against each
-        other.
-        """
-        sides = self._standing.drive(self.wheels, [0.0] * len(self.wheels), X_AXIS).sides
-        rates = [-1.0 if side > 0.0 else 1.0 for side in sides]
-        course = self._standing.drive(self.wheels, rates, X_AXIS)
-        width, rim_speed = max(sides) - min(sides), course.rim_speed
-        if not width > _OFF_CENTRE * rim_speed:
-            return [_RobotFault("its wheels are not on two sides, so it cannot turn")]
-        at = axis_place(self.wheels[0].joint)
-        faults = []
-        if abs(course.turn) * width / 2.0 <= _SLOW * rim_speed:
-            text = "it does not turn"
-            if course.speed > _SLOW * rim_speed:
-                text = "it drives and does not turn"
-            faults.append(_RobotFault(text, course.turn, None, "rad/s", at))
-        elif course.turn < 0.0:
-            text = "it turns to the right; it should turn to the left"
-            faults.append(_RobotFault(text, course.turn, None, "rad/s", at))
-        elif course.speed / course.turn > _OFF_CENTRE * width + SLACK:
-            away = course.speed / course.turn
-            far = in_millimetres(away)
-            text = f"it turns about a point {far} from the middle between its wheels"
-            faults.append(_RobotFault(text, away, _OFF_CENTRE * width, "m", at))
-        return self.with_culprits(faults, X_AXIS)
-
-    def with_culprits(self, faults: list[_RobotFault], forward: Vector) -> list[_RobotFault]:
-        """Return faults of which the first says which wheels are the cause."""
-        culprits = [] if self._has_rollers or not faults else self._find_culprits(forward)
-        if not culprits:
-            return faults
-        causes = enumerated([f"{culprit.link!r} {culprit.how}" for culprit in culprits])
-        first = faults[0]._replace(text=f"{faults[0].text}: {causes}", at=culprits[0].at)
-        return [first, *faults[1:]]
-
-    def _find_culprits(self, forward: Vector) -> list[_Culprit]:
-        """Return the wheels that do not drive as the others: those that point elsewhere, or else
-        those of another size.
-        """
-        rates = [1.0] * len(self.wheels)
-        headings = self._standing.drive(self.wheels, rates, forward).headings
-        if all(abs(heading) <= _ANGLE for heading in headings):
-            return self._find_other_sizes()
-        if max(headings) - min(headings) <= _ANGLE:  # all alike
-            return []
-        culprits: list[_Culprit] = []
-        for wheel, off in zip(self.wheels, headings, strict=True):
-            at = axis_place(wheel.joint)
-            if abs(off) > 90.0:
-                culprits.append(_Culprit(wheel.link, "drives it backward", at))
-            elif abs(off) > _ANGLE:
-                how = f"points {in_degrees(abs(off))} to the {_side(off)}"
-                culprits.append(_Culprit(wheel.link, how, at))
-        return culprits
-
-    def _find_other_sizes(self) -> list[_Culprit]:
-        """Return the wheels whose radius is not the usual one."""
-        radii = sorted(wheel.radius for wheel in self.wheels)
-        usual = radii[len(radii) // 2]
-        culprits = []
-        for wheel in self.wheels:
-            share = wheel.radius / usual - 1.0
-            if abs(share) > _OTHER_SIZE:
-                size = "larger" if share > 0.0 else "smaller"
-                link = self._standing.robot.link(wheel.link)
-                at = axis_place(wheel.joint)
-                for element in link.collisions or link.visuals:
-                    at = place(element.geometry.location)
-                how = f"is {abs(share) * 100.0:.3g} % {size}"
-                culprits.append(_Culprit(wheel.link, how, at))
-        return culprits
-
-
-def _side(value: float) -> str:
-    return "left" if value > 0.0 else "right"
-
-
-def _in_quotes(links: Sequence[str]) -> str:
-    return enumerated([repr(link) for link in links])

@@ -9,9 +9,9 @@ from grader.base.names import similar_there
 from grader.base.pairing import most_pairs
 from grader.base.source import LazyLocation
 from grader.base.text import MAX_NAMED, enumerated, first_lines, quoted
+from grader.base.toml_types import Constraint, Content, NonNegative, Scalar
 from grader.lab.checks.check import MIMIC_TURNED, About
 from grader.lab.checks.outcome import Outcome, failed, passed
-from grader.lab.checks.toml_types import Constraint, Content, NonNegative, Scalar
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
 from grader.ros.package.trees import (

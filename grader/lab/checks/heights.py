@@ -4,33 +4,17 @@ from collections.abc import Callable, Sequence
 from math import inf
 
 from grader.base.errors import MissingElement
-from grader.base.source import LazyLocation
+from grader.base.quantities import SLACK, in_degrees, in_millimetres, point, within
+from grader.base.source import LazyLocation, place
 from grader.base.text import enumerated
+from grader.base.toml_types import NonNegative
 from grader.base.transforms import IDENTITY_ROTATION, Z_AXIS, turn_between
 from grader.lab.checks.check import About
-from grader.lab.checks.outcome import (
-    SLACK,
-    Outcome,
-    difference,
-    in_degrees,
-    in_millimetres,
-    judged,
-    measured,
-    place,
-    point,
-    within,
-)
-from grader.lab.checks.toml_types import NonNegative
-from grader.lab.checks.visuals import (
-    ShapeName,
-    main_visual,
-    origin_place,
-    placed,
-    shape_name,
-    span,
-)
+from grader.lab.checks.outcome import Outcome, difference, judged, measured
+from grader.lab.checks.visuals import ShapeName, main_visual, shape_name, span
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.shapes import UnknownShape
+from grader.ros.urdf.visuals import origin_place, placed
 
 ABOUT = {
     "bottom_at_height": About(("visual/origin",), picture="outline"),

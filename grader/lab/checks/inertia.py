@@ -5,9 +5,11 @@ shapes.
 from math import isfinite
 
 from grader.base.errors import MissingElement, NotDecided
+from grader.base.quantities import in_millimetres, point, within
+from grader.base.source import place
+from grader.base.toml_types import NonNegative
 from grader.lab.checks.check import About
-from grader.lab.checks.outcome import Outcome, failed, in_millimetres, judged, place, point, within
-from grader.lab.checks.toml_types import NonNegative
+from grader.lab.checks.outcome import Outcome, failed, judged
 from grader.lab.checks.visuals import MAX_SHAPES
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.mass_properties import (

@@ -10,25 +10,15 @@ from typing import Any, NamedTuple
 
 from grader.base.errors import MissingElement
 from grader.base.names import did_you_mean
-from grader.base.source import LazyLocation
+from grader.base.quantities import SLACK, in_degrees, in_millimetres, number_text, point, within
+from grader.base.source import LazyLocation, place
+from grader.base.toml_types import Direction, NonNegative
 from grader.base.transforms import FULL_TURN, Vector, cross, degrees_between, minus, unit
 from grader.lab.checks.check import MIMIC_TURNED, About
-from grader.lab.checks.outcome import (
-    SLACK,
-    Outcome,
-    failed,
-    in_degrees,
-    in_millimetres,
-    judged,
-    number_text,
-    place,
-    point,
-    within,
-)
-from grader.lab.checks.toml_types import Direction, NonNegative
-from grader.lab.checks.visuals import axis_place
+from grader.lab.checks.outcome import Outcome, failed, judged
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Dynamics, Joint
+from grader.ros.urdf.visuals import axis_place
 
 
 def _breaks_without_direction(arguments: Mapping[str, Any]) -> Collection[str]:

@@ -7,27 +7,20 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.source import LazyLocation
+from grader.base.quantities import SLACK, in_degrees
+from grader.base.source import LazyLocation, place
 from grader.base.text import quoted, quoted_end
+from grader.base.toml_types import NonNegative
 from grader.base.transforms import Vector, rotation_from_rpy, turn_between
 from grader.lab.checks.check import About
-from grader.lab.checks.outcome import (
-    SLACK,
-    Outcome,
-    failed,
-    in_degrees,
-    measured_point,
-    passed,
-    pending,
-    place,
-)
-from grader.lab.checks.toml_types import NonNegative
-from grader.lab.checks.visuals import placed, shape_name, visuals
+from grader.lab.checks.outcome import Outcome, failed, measured_point, passed, pending
+from grader.lab.checks.visuals import shape_name
 from grader.lab.submission.submission import Submission
 from grader.ros.package.mesh_files import MeshFile, mesh_file
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Mesh, Visual
+from grader.ros.urdf.visuals import placed, visuals
 
 ABOUT = {"shows_mesh": About(("mesh", "visual"), picture="outline")}
 

@@ -1,25 +1,20 @@
 """Checks of the motion of a link when its joint turns."""
 
 from dataclasses import replace
-from math import asin, degrees, hypot
-from typing import Literal
+from math import hypot
 
 from grader.base.errors import MissingElement
-from grader.base.transforms import Z_AXIS, Vector, cross, degrees_between, dot, minus, unit
+from grader.base.quantities import SLACK, in_degrees, in_millimetres, point
+from grader.base.source import place
+from grader.base.toml_types import Direction, NonNegative
+from grader.base.transforms import Z_AXIS, Vector, cross, degrees_between, unit
 from grader.lab.checks.check import About
-from grader.lab.checks.outcome import (
-    SLACK,
-    Outcome,
-    in_degrees,
-    in_millimetres,
-    judged,
-    place,
-    point,
-)
-from grader.lab.checks.toml_types import Direction, NonNegative
-from grader.lab.checks.visuals import axis_place, main_visual, placed, visuals
+from grader.lab.checks.outcome import Outcome, judged
+from grader.lab.checks.visuals import main_visual
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Cylinder, Joint
+from grader.ros.urdf.model import Cylinder
+from grader.ros.urdf.visuals import axis_place, placed
+from grader.ros.urdf.wheel_travel import travel_of, turning_joint
 
 ABOUT = {
     "rolls_forward": About(picture="wheel"),
@@ -27,11 +22,7 @@ ABOUT = {
     "turns_about_itself": About(picture="outline"),
 }
 
-_SMALL_ANGLE = 1e-3  # radians
-_STANDSTILL = 1e-9  # metres
-_MAX_SLOPE = 45.0  # degrees between the axis of a wheel and the level
 _MAX_SLANT = 45.0  # degrees off straight ahead within which a base is said to drive forward
-_NEARLY = 5.0  # degrees within which an axis is said to be vertical
 
 
 def rolls_forward(
@@ -74,40 +65,6 @@ def rolls_forward(
         way = "straight ahead" if off <= _MAX_SLANT else "forward"
         message += f"; it should drive it {way}"
     return judged(fine, message, travel, ahead, tolerance, "deg", at=at, detail=detail)
-
-
-def travel_of(
-    robot: Configuration, link: str, joint: Joint, base: str, up: Vector
-) -> tuple[Vector, Literal[""]] | tuple[None, str]:
-    """Return the direction in which a small positive rotation drives the base, or None and why the
-    wheel does not roll.
-
-    The direction is a unit vector in the base's frame, perpendicular to the unit vector `up`.
-    Raises MissingElement, NotDecided or UnknownShape if it cannot be determined.
-    """
-    shown = visuals(robot, link)
-    shapes = [placed(robot, link, visual, base) for visual in shown]
-    lowest = shapes[0]
-    if len(shapes) > 1:
-        lowest = min(shapes, key=lambda shape: shape.extent(up)[0])
-    low = lowest.farthest(minus((0.0, 0.0, 0.0), up))
-    motion = robot.displacement(link, joint, _SMALL_ANGLE, relative_to=base)
-    # While the ground holds the lowest point, the base moves the other way.
-    x, y, z = _flatten(minus(motion.apply(low), low), up)
-    travel = unit((-x, -y, -z)) if hypot(x, y, z) > _STANDSTILL else None
-    if travel is None:
-        return None, "its lowest point stays in place"
-    axis = robot.pose(joint.child, relative_to=base).rotate(robot.axis(joint))
-    slope = degrees(asin(min(1.0, abs(dot(axis, up)))))
-    if slope <= _MAX_SLOPE + SLACK:
-        return travel, ""
-    is_vertical = slope >= 90.0 - _NEARLY
-    tilt = (
-        "it turns about a vertical axis"
-        if is_vertical
-        else f"its axis is {in_degrees(slope)} off level"
-    )
-    return None, tilt
 
 
 def axis_along(
@@ -194,14 +151,6 @@ def turns_about_itself(
     return judged(fine, message, away, 0.0, tolerance, "m", at=at, detail="" if fine else detail)
 
 
-def turning_joint(robot: Configuration, link: str, base: str) -> Joint:
-    """Return the turning joint next to a link, on the path to the base; raise MissingElement where
-    nothing turns.
-    """
-    message = f"no joint between {base!r} and {link!r} turns; one should be continuous or revolute"
-    return robot.joint_between(base, link, ("continuous", "revolute"), message)
-
-
 def _as_turning(robot: Configuration, link: str) -> Configuration:
     """Return the robot with the parent joint of a link continuous."""
     joint = robot.parent_joints.get(link)
@@ -213,12 +162,6 @@ def _as_turning(robot: Configuration, link: str) -> Configuration:
     return Configuration(
         replace(robot.known, joints=tuple(joints)), robot.positions, is_guarded=robot.is_guarded
     )
-
-
-def _flatten(vector: Vector, up: Vector) -> Vector:
-    """Return the part of a vector in the plane across a unit direction."""
-    lifted = dot(vector, up)
-    return (vector[0] - lifted * up[0], vector[1] - lifted * up[1], vector[2] - lifted * up[2])
 
 
 def _describe_heading(off: float, travel: Vector, base: str) -> str:

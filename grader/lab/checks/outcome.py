@@ -3,10 +3,10 @@ frame.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
-from math import isfinite, isnan
+from math import isfinite
 from typing import Literal, NamedTuple
 
+from grader.base.quantities import SLACK, in_millimetres, point, within
 from grader.base.source import LazyLocation, Location
 from grader.base.transforms import Vector
 
@@ -14,9 +14,6 @@ Status = Literal["passed", "failed", "skipped", "pending", "errored"]
 _Measured = bool | float | str | tuple[float, ...] | tuple[str, ...] | Mapping[str, str] | None
 _AnyPlace = Location | LazyLocation | None
 
-# A tolerance includes its end: 0.152 is within 0.002 of 0.15, although the floats differ by
-# slightly more.
-SLACK = 1e-9
 _SIDES = ("too large", "too small")
 # begins the names of the frames of a base: its x axis points forward, y left, z up (REP 103, REP
 # 105)
@@ -27,7 +24,6 @@ _DIRECTIONS = (
     ("too high", "too low"),
 )
 _UNITS = ((1000.0, "millimetres"), (100.0, "centimetres"))
-_FEW, _MANY = 100.0, 1e7  # from here on: no decimals, an exponent
 # The causes of failures that every check has; an outcome without one is of the first.
 WRONG, MISSING, SLIP = "wrong", "missing", "slip"
 
@@ -166,11 +162,6 @@ def location_of(at: _AnyPlace) -> Location | None:
     return at
 
 
-def within(actual: float, expected: float, tolerance: float) -> bool:
-    """Return whether a value is within a tolerance of another; never true of NaN."""
-    return abs(actual - expected) <= tolerance + SLACK
-
-
 def measured(
     what: str,
     actual: float,
@@ -254,48 +245,3 @@ def other_unit(actual: Sequence[float], expected: Sequence[float]) -> str:
 def difference(off: float, over: str = _SIDES[0], under: str = _SIDES[1]) -> str:
     """Return how far a length in metres is off, and to which side."""
     return f"{in_millimetres(off)} {over if off > 0 else under}"
-
-
-def number_text(value: float, digits: int = 9) -> str:
-    """Return a number of a URDF for a message."""
-    if isnan(value):
-        return "missing or unreadable"
-    return f"{value + 0.0:.{digits}g}"
-
-
-def in_millimetres(length: float) -> str:
-    """Return the size of a difference in metres, rounded for reading: 25 mm."""
-    millimetres = abs(length) * 1000
-    if _FEW <= millimetres < _MANY:
-        return f"{millimetres:.0f} mm"
-    return f"{millimetres:.3g} mm"
-
-
-def in_degrees(angle: float) -> str:
-    """Return an angle in degrees, rounded for reading: 1.5 degrees."""
-    return f"{angle:.3g} degree{'' if f'{angle:.3g}' == '1' else 's'}"
-
-
-@lru_cache(maxsize=4096)
-def point(values: tuple[float, ...]) -> str:
-    """Return coordinates as a URDF writes them, rounded for reading."""
-    return " ".join(map(_short_number, values))
-
-
-def place(
-    element: LazyLocation | None, attribute: str | None = None, inside: str | None = None
-) -> LazyLocation | None:
-    """Return the place of an element that was read from the file, of one of its attributes, or of
-    an element inside.
-    """
-    if element is not None:
-        return LazyLocation(element.source, element.tag, attribute, inside)
-    return None
-
-
-@lru_cache(maxsize=4096)
-def _short_number(value: float) -> str:
-    if abs(value) >= _MANY:
-        return f"{value:.3g}"
-    text = f"{value:.4f}".rstrip("0").rstrip(".")
-    return "0" if text in ("-0", "") else text

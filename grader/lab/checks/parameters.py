@@ -9,16 +9,17 @@ from typing import Any, Literal
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.names import closest, similar_there
 from grader.base.text import enumerated, quoted
+from grader.base.toml_types import Content, NonNegative, Scalar
 from grader.base.transforms import Vector
 from grader.lab.checks.outcome import Outcome, failed, passed
-from grader.lab.checks.toml_types import Content, NonNegative, Scalar
-from grader.lab.checks.visuals import main_visual, placed
+from grader.lab.checks.visuals import main_visual
 from grader.lab.submission.submission import Submission
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Cylinder, Joint, Sphere
+from grader.ros.urdf.visuals import placed
 from grader.ros.workspace.workspace import Workspace
 
 _Measure = Literal["radius", "length", "distance", "lower", "upper", "velocity", "effort"]

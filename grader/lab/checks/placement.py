@@ -2,24 +2,17 @@
 
 from math import acos, degrees
 
-from grader.base.source import LazyLocation
+from grader.base.quantities import SLACK, in_degrees, point
+from grader.base.source import LazyLocation, place
+from grader.base.toml_types import Direction, NonNegative
 from grader.base.transforms import Z_AXIS, Vector, dot, minus, rotation_from_rpy, turn_between, unit
 from grader.lab.checks.check import About
-from grader.lab.checks.outcome import (
-    SLACK,
-    Outcome,
-    failed,
-    in_degrees,
-    location_of,
-    measured_point,
-    place,
-    point,
-)
-from grader.lab.checks.toml_types import Direction, NonNegative
-from grader.lab.checks.visuals import ShapeName, main_visual, origin_place, placed
+from grader.lab.checks.outcome import Outcome, failed, location_of, measured_point
+from grader.lab.checks.visuals import ShapeName, main_visual
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Mesh, Visual
 from grader.ros.urdf.shapes import UnknownShape
+from grader.ros.urdf.visuals import origin_place, placed
 
 _LOOSE = {"joint": "a joint between the two links moves"}
 ABOUT = {

@@ -8,9 +8,9 @@ from typing import Annotated
 from grader.base.errors import MissingElement
 from grader.base.problems import Problem
 from grader.base.text import MAX_NAMED, counted, enumerated
+from grader.base.toml_types import Constraint
 from grader.lab.checks.check import About, everything
 from grader.lab.checks.outcome import Outcome, failed, passed, pending
-from grader.lab.checks.toml_types import Constraint
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.reader import Reading

@@ -9,20 +9,13 @@ from weakref import WeakKeyDictionary
 
 from grader.base.errors import MissingElement, NotDecided, RubricError
 from grader.base.names import similar_there
+from grader.base.quantities import SLACK, in_degrees, in_millimetres, point
+from grader.base.source import place
 from grader.base.text import counted, enumerated, quoted
+from grader.base.toml_types import Constraint, NonNegative
 from grader.base.transforms import Transform
 from grader.lab.checks.check import About
-from grader.lab.checks.outcome import (
-    SLACK,
-    Outcome,
-    failed,
-    in_degrees,
-    in_millimetres,
-    passed,
-    place,
-    point,
-)
-from grader.lab.checks.toml_types import Constraint, NonNegative
+from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint, Robot
 

@@ -8,10 +8,12 @@ from typing import Any
 
 from grader.base.errors import MissingElement
 from grader.base.names import did_you_mean
+from grader.base.quantities import number_text
+from grader.base.source import place
 from grader.base.text import counted, enumerated
+from grader.base.toml_types import Count
 from grader.lab.checks.check import About
-from grader.lab.checks.outcome import Outcome, failed, judged, number_text, passed, place
-from grader.lab.checks.toml_types import Count
+from grader.lab.checks.outcome import Outcome, failed, judged, passed
 from grader.lab.checks.visuals import visible
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint

@@ -5,13 +5,11 @@ from itertools import repeat
 from math import inf
 from typing import Literal
 
-from grader.base.errors import MissingElement
-from grader.base.source import LazyLocation
-from grader.base.transforms import Vector, unit
-from grader.lab.checks.outcome import place, within
+from grader.base.quantities import within
+from grader.base.transforms import Vector
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Box, Cylinder, Geometry, Joint, Mesh, Sphere, Visual
-from grader.ros.urdf.shapes import PlacedShape
+from grader.ros.urdf.model import Box, Cylinder, Geometry, Mesh, Sphere, Visual
+from grader.ros.urdf.visuals import placed, visuals
 
 MAX_SHAPES = 50  # of one link that are compared with each other
 VISIBLE = 0.01  # the smallest alpha of a colour that shows
@@ -21,16 +19,6 @@ _SHAPES: dict[str, type[Box] | type[Cylinder] | type[Sphere]] = {
     "cylinder": Cylinder,
     "sphere": Sphere,
 }
-
-
-def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
-    """Return the visuals of a link that have a size; raise MissingElement if there is none."""
-    found = robot.link(link)
-    shown = tuple(visual for visual in found.visuals if not visual.geometry.is_empty)
-    if not shown:
-        message = f"link {link!r} has no visual with a size"
-        raise MissingElement("visual", link, message=message, location=place(found.location))
-    return shown
 
 
 def visible(robot: Configuration, link: str) -> list[Visual]:
@@ -63,14 +51,6 @@ def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Vi
     )
 
 
-def placed(robot: Configuration, link: str, visual: Visual, relative_to: str) -> PlacedShape:
-    """Return the shape of a visual in the frame of another link; raise MissingElement where its
-    pose is not defined.
-    """
-    pose = visual.origin.placed_in(robot.pose(link, relative_to=relative_to))
-    return PlacedShape(visual.geometry, pose)
-
-
 def span(
     robot: Configuration, link: str, relative_to: str, direction: Vector
 ) -> tuple[float, float]:
@@ -86,28 +66,6 @@ def span(
 def shape_name(geometry: Geometry) -> str:
     """Return the name of a shape: a box, a cylinder, a sphere, a mesh."""
     return f"a {type(geometry).__name__.lower()}"
-
-
-def origin_place(robot: Configuration, link: str) -> LazyLocation | None:
-    """Return the place of the origin that puts a link into its parent's frame."""
-    joint = robot.parent_joints.get(link)
-    if joint is None:
-        return place(robot.link(link).location)
-    return place(joint.origin.location if joint.origin else None, "xyz") or place(joint.location)
-
-
-def axis_place(joint: Joint) -> LazyLocation | None:
-    """Return the place that gives an axis its direction: the joint's rpy if the axis is z of a
-    rotated frame.
-    """
-    is_z = (
-        joint.axis_location is not None
-        and joint.axis is not None
-        and unit(joint.axis) == (0.0, 0.0, 1.0)
-    )
-    if is_z and joint.origin is not None and any(joint.origin.rpy):
-        return place(joint.origin.location, "rpy")
-    return place(joint.axis_location, "xyz") or joint.location
 
 
 def all_within(actual: Sequence[float], expected: Sequence[float], tolerance: float) -> bool:

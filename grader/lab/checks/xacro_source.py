@@ -9,10 +9,10 @@ from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.names import similar_there
 from grader.base.source import LazyLocation, Location
 from grader.base.text import MAX_NAMED, counted, enumerated, quoted
+from grader.base.toml_types import Count
 from grader.files.reading import URDF_LIMIT
 from grader.lab.checks.check import About, everything
 from grader.lab.checks.outcome import Outcome, failed, passed
-from grader.lab.checks.toml_types import Count
 from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.reader import find_xacro

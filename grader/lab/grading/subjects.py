@@ -8,10 +8,10 @@ from typing import Any
 
 from grader.base.errors import MissingElement
 from grader.base.problems import Problem
+from grader.base.quantities import point
 from grader.base.source import Source
 from grader.base.text import enumerated, quoted
 from grader.lab.checks.check import Check, Subject
-from grader.lab.checks.outcome import point
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import ReferenceSolution, Rubric
 from grader.lab.submission.submission import Submission

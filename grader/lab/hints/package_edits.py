@@ -106,7 +106,7 @@ def _proposals_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
     the package's name.
     """
     if not kind:
-        yield from package_names(task, task.package.lab_name or task.package.share.split("/")[1])
+        yield from package_names(task, task.package.wanted_name or task.package.share.split("/")[1])
         return
     yield from file_proposals(task, kind)
     if kind in (SETUP, "launch"):

@@ -9,9 +9,8 @@ from datetime import datetime
 from decimal import Decimal
 from typing import Any, Literal
 
-from grader.lab.checks.check import Check
-from grader.lab.checks.registry import check_names, usable_check
-from grader.lab.checks.toml_types import (
+from grader.base.toml_file import KeyTable
+from grader.base.toml_types import (
     Constraint,
     TomlType,
     constrained,
@@ -19,8 +18,9 @@ from grader.lab.checks.toml_types import (
     simple_type,
     toml_type,
 )
+from grader.lab.checks.check import Check
+from grader.lab.checks.registry import check_names, usable_check
 from grader.lab.rubric.hint_levels import HintLevel
-from grader.lab.rubric.toml_file import KeyTable
 from grader.ros.known.releases import Release
 
 MAX_POINTS = 1_000_000

@@ -10,10 +10,10 @@ from typing import Any
 from grader.base.errors import RubricError
 from grader.base.names import did_you_mean
 from grader.base.text import printable_path
+from grader.base.toml_file import TomlPath, complain_of, read_toml
 from grader.files.reading import read_capped
 from grader.lab.checks.manual import answered
 from grader.lab.rubric.rubric import Rubric, find_rubric, read_rubric
-from grader.lab.rubric.toml_file import TomlPath, complain_of, read_toml
 
 
 def load_with_answers(name: str, file: Path | None = None) -> Rubric:

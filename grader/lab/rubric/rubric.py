@@ -14,6 +14,14 @@ from grader.base.errors import InputError, RubricError
 from grader.base.names import did_you_mean
 from grader.base.reuse import Memory
 from grader.base.text import printable_path, shell_quoted, texts_in
+from grader.base.toml_file import (
+    TomlPath,
+    TomlRow,
+    complain_of,
+    key_lines,
+    line_of,
+    read_toml,
+)
 from grader.files.limits import ARCHIVES, ROBOT_ENDINGS
 from grader.files.reading import read_capped, sha256_of, shipped_folder
 from grader.lab.checks.check import LINK_ARGUMENTS
@@ -28,14 +36,6 @@ from grader.lab.rubric.criterion import (
     Part,
 )
 from grader.lab.rubric.hint_levels import HintLevel
-from grader.lab.rubric.toml_file import (
-    TomlPath,
-    TomlRow,
-    complain_of,
-    key_lines,
-    line_of,
-    read_toml,
-)
 from grader.lab.rubric.validation import BoundCarried, BoundCheck, Validation
 from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Submission

@@ -7,12 +7,12 @@ from typing import Any
 
 from grader.base.errors import InputError
 from grader.base.text import enumerated, texts_in
+from grader.base.toml_file import KeyTable, TomlPath, TomlRow, TomlRowReader, shorten_value
+from grader.base.toml_types import WrongValue
 from grader.lab.checks.check import LINK_ARGUMENTS, Check
 from grader.lab.checks.registry import check_names, find_check
-from grader.lab.checks.toml_types import WrongValue
 from grader.lab.rubric import keys
 from grader.lab.rubric.criterion import DEADLINE, GRADE, TOTAL
-from grader.lab.rubric.toml_file import KeyTable, TomlPath, TomlRow, TomlRowReader, shorten_value
 from grader.ros.urdf.link_tree import JOINT_OF, is_selector
 
 _MAX_LISTED = 20  # names in one message

@@ -115,8 +115,6 @@ class Submission(OpenedWorkspace):
     several: str = ""  # the note that says that several robots fit
     other_lab: str = ""  # the folder of another lab, where it is graded
     opening: Opening = DEFAULTS
-    budget: Budget = field(default_factory=Budget)  # of the work to read it
-    neighbours: tuple[Package, ...] = ()  # those around a URDF on its own
     reopen: "Callable[[Tree], Submission] | None" = None  # opens other files in the same way
     # Those of its documents that were read, by the files that they are among: copies of it have
     # them as well.

@@ -7,10 +7,8 @@ from typing import Any
 
 from grader.base.text import capitalised
 from grader.base.transforms import Rotation, Transform, Vector, rotation_about
-from grader.lab.checks.driving import plan_drive
 from grader.report.drawing.picture import Picture, Scene
-from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Link, Mesh, Origin, Visual
+from grader.ros.api import Configuration, Link, Mesh, Origin, Visual, plan_drive
 
 _MAX_COORDINATE = 1e5  # metres, and rad/s
 _DIGITS = 5  # of metres and parts of 1

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from grader.base.text import quoted_end
 from grader.report.drawing.picture import Scene
-from grader.ros.urdf.model import Mesh
+from grader.ros.api import Mesh
 
 if TYPE_CHECKING:
-    from grader.ros.package.mesh_loading import MeshLoader
+    from grader.ros.api import MeshLoader
 
 _MAX_TRIANGLES = 50_000  # of one mesh
 _MAX_OF_ROBOT = 300_000

@@ -1,8 +1,5 @@
-"""The content of a picture of a robot: its shapes and frames, differences from the reference,
-failed criteria.
-
-The scene is what is shown of any robot: shapes in their colours, frames, and driving directions of
-wheels.
+"""The content of a picture of a robot: its shapes in their colours, frames, and driving directions
+of wheels; of a graded robot also what `graded_picture.py` adds to it.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -11,19 +8,25 @@ from dataclasses import dataclass, field, replace
 from math import isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from grader.base.errors import InputError, MissingElement, NotDecided
-from grader.base.text import counted, enumerated, quoted, quoted_end, texts_in
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.text import counted, enumerated, quoted, quoted_end
 from grader.base.transforms import Z_AXIS, Transform, Vector
-from grader.lab.checks.motion import travel_of, turning_joint
-from grader.lab.grading.report import Report, Result
-from grader.lab.rubric.criterion import Criterion
-from grader.lab.rubric.rubric import Rubric
-from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Box, Cylinder, Link, Mesh, Sphere, Visual
-from grader.ros.urdf.shapes import Shape, UnknownShape
+from grader.ros.api import (
+    Box,
+    Configuration,
+    Cylinder,
+    Link,
+    Mesh,
+    Shape,
+    Sphere,
+    UnknownShape,
+    Visual,
+    travel_of,
+    turning_joint,
+)
 
 if TYPE_CHECKING:
-    from grader.ros.package.mesh_loading import MeshLoader
+    from grader.ros.api import MeshLoader
 
 _Rgba = tuple[float, float, float, float]
 
@@ -38,7 +41,6 @@ _MESHES, _UNKNOWN = (
     "the size or place of a shape is zero, too large or not known",
 )
 _NOT_KNOWN = (MissingElement, NotDecided, UnknownShape)
-_SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name what it examines
 
 
 class Body(NamedTuple):
@@ -241,20 +243,15 @@ def _wheel(scene: Scene, link: str) -> Wheel | None:
     return None
 
 
-class _Callout(NamedTuple):
-    """The criteria that failed on a link."""
+class Callout(NamedTuple):
+    """What is marked at a link of a graded robot: the criteria that failed on it."""
 
     number: int
-    link: str  # empty for criteria on the whole robot
-    point: (
-        Vector | None
-    )  # what marks it, in metres in the scene's frame; None if the link has no pose there
-    results: tuple[Result, ...]
-
-    @property
-    def names(self) -> list[str]:
-        """The ids of the criteria."""
-        return [result.criterion.id for result in self.results]
+    link: str  # empty for the whole robot
+    # what marks it, in metres in the scene's frame; None if the link has no pose there
+    point: Vector | None
+    names: tuple[str, ...]  # the ids of the criteria
+    cost: str  # what they are worth in all: 8 points
 
 
 @dataclass(frozen=True, slots=True)
@@ -271,7 +268,7 @@ class Picture:
     frames: tuple[
         Transform, ...
     ]  # poses of the reference's links whose frames failed, or that the robot has not
-    callouts: tuple[_Callout, ...]
+    callouts: tuple[Callout, ...]
     # The arguments of `plan_drive`: the wheels that drive it, and what a rubric says of them.
     driving: Mapping[str, Any] = field(default_factory=dict)
 
@@ -288,130 +285,3 @@ def plain_picture(
     if robot is not None and frame is not None:
         return Picture(scene_of(robot, frame, meshes=meshes), (), (), (), {"wheels": wheels})
     return None
-
-
-def picture_of(report: Report) -> Picture | None:
-    """Return the picture of a graded robot; None if there is no robot, or if it can no longer be
-    read.
-    """
-    if report.submission.robot is None or not report.submission.robot.links:
-        return None
-    robot = Configuration(report.submission.robot)
-    solution = _reference(report.rubric)
-    frame, reference_frame = _frames(report.rubric, robot, solution)
-    if frame is None:
-        return None
-    wheels = [*dict.fromkeys(_wheels(report.rubric, robot))]
-    scene = scene_of(robot, frame, wheels, report.submission.meshes)
-    reference = None
-    if solution is not None and reference_frame:
-        reference = scene_of(solution, reference_frame, wheels)
-    lost = [result for result in report.results if _is_marked(result)]
-    by_link = _by_link(lost, robot, solution)
-    callouts = []
-    for number, (link, results) in enumerate(by_link.items(), 1):
-        point = scene.centre(link)
-        if point is None and reference is not None:
-            point = reference.centre(link)
-        callouts.append(_Callout(number, link, point, tuple(results)))
-    driving = _find_driving(report.rubric, robot, wheels)
-    if reference is None:
-        return Picture(scene, (), (), tuple(callouts), driving)
-    outlines, frames = _expected(scene, reference, by_link)
-    return Picture(scene, outlines, frames, tuple(callouts), driving)
-
-
-def _reference(rubric: Rubric) -> Configuration | None:
-    """Return the reference solution; None if the hint level does not show it."""
-    if rubric.solution is None or rubric.hints in ("none", "place"):
-        return None
-    with suppress(InputError):
-        return rubric.solution.robot
-    return None
-
-
-def _frames(
-    rubric: Rubric, robot: Configuration, solution: Configuration | None
-) -> tuple[str | None, str | None]:
-    """Return the links in whose frames both robots are drawn: the rubric's base, else the roots."""
-    tree, base = robot.main_tree, robot.selected_or_name(rubric.base)
-    if solution is None:
-        return (base if base in tree else next(iter(tree), None)), None
-    other_tree, other_base = solution.main_tree, solution.selected_or_name(rubric.base)
-    if base in tree and other_base in other_tree:
-        return base, other_base
-    return next(iter(tree), None), next(iter(other_tree), None)
-
-
-def _wheels(rubric: Rubric, robot: Configuration) -> Iterator[str]:
-    """Yield the links that the rubric expects to roll."""
-    for criterion in rubric.criteria:
-        if criterion.check.about.picture == "wheel":
-            given = criterion.arguments
-            for name in given["wheels"] if "wheels" in given else [given["link"]]:
-                yield robot.selected_or_name(str(name))
-
-
-def _find_driving(rubric: Rubric, robot: Configuration, wheels: Sequence[str]) -> Mapping[str, Any]:
-    """Return the wheels that drive a robot, and what the first criterion on them says besides."""
-    for criterion in rubric.criteria:
-        given = criterion.arguments
-        if criterion.check.name == "drives_straight":
-            named = [robot.selected_or_name(wheel) for wheel in given["wheels"]]
-            others = {key: given[key] for key in ("base", "forward", "rollers") if key in given}
-            return {"wheels": named, **others}
-    return {"wheels": wheels}
-
-
-def _is_marked(result: Result) -> bool:
-    """Return whether a picture marks a criterion: it failed on the robot, and its points are
-    lost.
-    """
-    is_about_robot = result.criterion.check.subject in ("urdf", "robot")
-    return (
-        is_about_robot
-        and result.outcome.status == "failed"
-        and result.is_lost
-        and result.manual_mark is None
-    )
-
-
-def _by_link(
-    lost: Sequence[Result], robot: Configuration, solution: Configuration | None
-) -> dict[str, list[Result]]:
-    """Return the criteria by the link that they are about, in the rubric's order; by "" for several
-    links, or none.
-    """
-    found: dict[str, list[Result]] = {}
-    for result in lost:
-        links = [*_links(result.criterion, robot, solution)]
-        found.setdefault(links[0] if len(links) == 1 else "", []).append(result)
-    return found
-
-
-def _links(
-    criterion: Criterion, robot: Configuration, solution: Configuration | None
-) -> Iterator[str]:
-    """Yield the links that a criterion examines and that one of the robots has."""
-    subject = next(
-        (criterion.arguments[key] for key in _SUBJECTS if key in criterion.arguments), None
-    )
-    for link in dict.fromkeys(robot.selected_or_name(name) for name in texts_in(subject)):
-        if robot.robot.has_link(link) or (solution is not None and solution.robot.has_link(link)):
-            yield link
-
-
-def _expected(
-    scene: Scene, reference: Scene, by_link: Mapping[str, Sequence[Result]]
-) -> tuple[tuple[Body, ...], tuple[Transform, ...]]:
-    """Return the bodies and the frames of the reference that the failed criteria are about."""
-    links_with_shape = {body.link for body in scene.bodies}
-    shapes, frames = set[str](), set[str]()
-    for link, results in by_link.items():
-        kinds = {result.criterion.check.about.picture for result in results}
-        if "outline" in kinds or link not in links_with_shape:
-            shapes.add(link)
-        if "frame" in kinds or link not in scene.poses:
-            frames.add(link)
-    outlines = tuple(body for body in reference.bodies if body.link in shapes)
-    return outlines, tuple(pose for link, pose in reference.poses.items() if link in frames)

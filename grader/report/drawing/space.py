@@ -11,8 +11,7 @@ from typing import Any
 from grader.base.transforms import Transform, unit
 from grader.report.drawing.drive import drive_data, rounded
 from grader.report.drawing.picture import Body, Picture
-from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Box, Cylinder, Joint, Mesh
+from grader.ros.api import Box, Configuration, Cylinder, Joint, Mesh
 
 _MAX_LINKS = 500  # in software, a browser moves more only in seconds
 _WITHOUT_LIMITS = {"prismatic": 1.0}  # metres to each side; the other joints turn by half a turn

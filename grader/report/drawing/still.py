@@ -18,7 +18,7 @@ from grader.report.drawing.views import (
     hull,
     points_of,
 )
-from grader.ros.urdf.model import Box, Cylinder
+from grader.ros.api import Box, Cylinder
 
 Still = tuple[tuple[str, str], ...]  # the colour and the path data of each face
 

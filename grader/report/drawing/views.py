@@ -14,7 +14,7 @@ import numpy as np
 
 from grader.base.transforms import Transform, Vector
 from grader.report.drawing.picture import Body, Picture
-from grader.ros.urdf.model import Box, Sphere
+from grader.ros.api import Box, Sphere
 
 Place = tuple[float, float]
 _Points = Any  # an array of shape (n, 3), or (n, 2) in a view

@@ -1,17 +1,9 @@
-"""The pages about one robot: the report for the student, with three views of the robot, and an
-inspection.
-"""
+"""The page of a report for the student, with three views of the robot."""
 
 from base64 import b64encode
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import groupby
-from typing import Any
 
-from markupsafe import Markup
-
-from grader import __version__
-from grader.base.problems import Problem
-from grader.base.source import Source
 from grader.base.text import format_points, printable
 from grader.lab.documents.pictures import PDF, EmbeddedPicture
 from grader.lab.grading.criterion_pictures import may_have_pictures, pictures_of
@@ -19,8 +11,6 @@ from grader.lab.grading.report import Report
 from grader.report import content
 from grader.report.content import report_sections
 from grader.report.criteria import (
-    STATUS_WORDS,
-    SYMBOLS,
     CriteriaGroup,
     Entry,
     alike,
@@ -29,24 +19,15 @@ from grader.report.criteria import (
     is_manual,
     status_of,
 )
-from grader.report.drawing.picture import Picture, picture_of, plain_picture
-from grader.report.drawing.space import space_data
-from grader.report.inspection import (
-    MAX_LISTED,
-    Inspection,
-    effect,
-    lists,
-    look_of,
-    robot_line,
-)
+from grader.report.drawing.graded_picture import picture_of
+from grader.report.drawing.three_views import NO_PICTURE
 from grader.report.locations import diff_lines, location_text, source_lines
-from grader.report.pages.shell import SPACE_SCRIPTS, Assets, render_page
-from grader.report.pages.viewing import SCRIPT, SOURCES, STYLES, ProblemCard, Viewing
-from grader.report.writers.svg import NO_PICTURE, STYLE, callout_lines, drawing_element
-from grader.ros.urdf.model import Mesh
+from grader.report.pages.robot_page import render_robot_page
+from grader.report.pages.shell import Assets
+from grader.report.pages.viewing import Viewing
+from grader.report.statuses import STATUS_WORDS, SYMBOLS
 
 _MAX_PICTURES = 6 * 1024 * 1024  # bytes on a page
-_CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 
 
 def render_html(report: Report, viewing: Viewing | None = None) -> str:
@@ -57,8 +38,7 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
     numbers = {}  # of the callouts in the picture, by criterion
     for callout in picture.callouts if picture is not None else ():
         if callout.point is not None:
-            for result in callout.results:
-                numbers[result.criterion.id] = callout.number
+            numbers.update(dict.fromkeys(callout.names, callout.number))
     sections = list(report_sections(report).sections)
     entries = [entry for section in sections for entry in section.entries]
     cards = {}
@@ -96,7 +76,7 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
         "no_picture": NO_PICTURE,
     }
     assets = Assets(scripts="student.js", sources="img-src data:")
-    return _render("student.html", values, picture, assets, cards, viewing)
+    return render_robot_page("student.html", values, picture, assets, cards, viewing)
 
 
 def _pictures(report: Report, entries: Sequence[Entry]) -> Mapping[str, list[tuple[str, str]]]:
@@ -127,69 +107,3 @@ def _part_cards(report: Report) -> list[tuple[str, str, list[CriteriaGroup]]]:
         results = [result for group in members for result in group.results]
         cards.append((report.rubric.part(part).title, earned_text(*results), members))
     return cards
-
-
-def inspection_html(inspection: Inspection, viewing: Viewing | None = None) -> str:
-    """Return the inspection as an HTML page, with the joints at the given positions; of `grader
-    view` with `viewing`.
-    """
-    robot = inspection.robot
-    configuration = robot.configuration if robot is not None else None
-    path = robot.path if robot is not None else inspection.path
-    lines = [(each.path, f": {robot_line(each)}") for each in inspection.robots]
-    values = {
-        "version": __version__,
-        "title": printable(configuration.robot.name if configuration is not None else path),
-        "path": path,
-        "effect": effect(inspection),
-        "extent": inspection.extent.words if inspection.extent is not None else "",
-        "verdict": _CLASSES.get(look_of(inspection), "failed"),
-        "problems": [
-            problem_card(problem, inspection.source) for problem in inspection.problems[:MAX_LISTED]
-        ],
-        "lists": [("Robots", lines)] if robot is None and lines else lists(robot),
-    }
-    relative_to = robot.relative_to if robot is not None else None
-    meshes = robot.meshes if robot is not None else None
-    wheels = robot.wheels if robot is not None else ()
-    picture = plain_picture(configuration, relative_to, meshes, wheels)
-    return _render("inspection.html", values, picture, Assets(), {}, viewing)
-
-
-def problem_card(problem: Problem, source_of: Callable[[str], Source | None]) -> ProblemCard:
-    """Return a problem with its line, and its place in the source."""
-    line = content.problem_line(problem)
-    return ProblemCard(problem.severity, line, source_lines(problem.location, source_of))
-
-
-def _render(
-    template: str,
-    values: Mapping[str, object],
-    picture: Picture | None,
-    assets: Assets,
-    cards: Mapping[str, str],
-    viewing: Viewing | None,
-) -> str:
-    """Return a page about the robot of a picture, if there is one; `cards` are the entries of its
-    criteria.
-    """
-    drawn = drawing_element(picture, legend=False) if picture is not None else ""
-    views = Markup(drawn)  # noqa: S704  an element, whose text is escaped
-    meshes: Mapping[Mesh, str] = {}
-    if picture is not None and viewing is not None:
-        picture, meshes = viewing.with_meshes(picture)
-    space = space_data(picture, cards, meshes) if picture is not None else None
-    legend = callout_lines(picture) if picture is not None else []
-    shown = {"picture": picture, "views": views, "legend": legend, "has_space": space is not None}
-    data: dict[str, Any] = {"robot": space} if space is not None else {}
-    scripts, styles, rules = assets.scripts, "text.css robot.css student.css", STYLE
-    if viewing is not None:  # the same for each version: the policy of a page stays
-        scripts, styles = f"{scripts} {SPACE_SCRIPTS} {SCRIPT}", f"{styles} {STYLES}"
-        assets = assets._replace(sources=SOURCES)
-        data["view"] = viewing.data
-    elif space is not None:
-        scripts = f"{scripts} {SPACE_SCRIPTS}"
-    if not drawn and viewing is None:
-        rules = ""
-    assets = assets._replace(scripts=scripts, styles=styles, rules=rules)
-    return render_page(template, {**values, **shown, "viewing": viewing}, data, assets)

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from grader.report.drawing.mesh_data import MeshStore
 from grader.report.drawing.picture import Picture
 from grader.report.locations import SourceLine
-from grader.ros.urdf.model import Mesh
+from grader.ros.api import Mesh
 
 if TYPE_CHECKING:
-    from grader.ros.package.mesh_loading import MeshLoader
+    from grader.ros.api import MeshLoader
 
 SCRIPT, STYLES = "view.js", "view.css"
 SOURCES = "img-src data:; connect-src 'self'"

@@ -2,12 +2,10 @@
 follows.
 """
 
-from collections.abc import Iterable
 from functools import cache
 from typing import Any, get_args
 
 from grader.base.extents import ended
-from grader.base.problems import Problem
 from grader.base.source import Certainty
 from grader.lab.grading.report import Hint, Report, Result
 from grader.report.json_data import (
@@ -18,7 +16,6 @@ from grader.report.json_data import (
     GRADER,
     HASH,
     NUMBER,
-    PLACE,
     POINTS,
     RUBRIC,
     TEXT,
@@ -37,26 +34,8 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.report.locations import SourceOf
+from grader.report.writers.problem_json import LOCATION, PROBLEM, problems_with_ends
 
-# The end is the place after the last character; where it is not known, that of the start.
-_EXTENT = {**PLACE, **each(COUNT, "end_line end_column")}
-_CALL = JsonObject(
-    {
-        "macro": (TEXT, lambda call: call[0]),
-        "location": (JsonObject(_EXTENT), lambda call: call[1]),
-    }
-)
-_LOCATION = JsonObject({**_EXTENT, "calls": Many(_CALL)}, ("calls",))
-PROBLEM = JsonObject(
-    {
-        "code": {"type": "string", "pattern": "^[A-Z]+[0-9]{3}$"},
-        "rule": (nullable(TEXT), lambda problem: problem.rule or None),
-        "severity": {"enum": ["error", "warning", "note"]},
-        "message": TEXT,
-        "location": _LOCATION,
-    }
-)
 _CERTAINTY = {"enum": list(get_args(Certainty))}
 _HINT = JsonObject(
     {
@@ -113,7 +92,7 @@ _RESULT = JsonObject(
         **inner("outcome", {"tolerance": nullable(POINTS), "unit": nullable(TEXT)}),
         "because": nullable(TEXT),
         "carried": (nullable(TEXT), lambda result: result.carried or None),
-        "location": (Maybe(_LOCATION), "outcome.location"),
+        "location": (Maybe(LOCATION), "outcome.location"),
         "feedback": (TEXT, _feedback),
         "hints": (Many(_HINT), _hints),
         **ADDITIONS.keys,
@@ -183,11 +162,3 @@ def _with_ends(report: Report) -> Report:
     return report._replace(
         results=tuple(results), problems=problems_with_ends(report.problems, source_of)
     )
-
-
-def problems_with_ends(problems: Iterable[Problem], source_of: SourceOf) -> tuple[Problem, ...]:
-    """Return problems whose locations have their ends."""
-    found = []
-    for problem in problems:
-        found.append(problem._replace(location=ended(problem.location, source_of)))
-    return tuple(found)

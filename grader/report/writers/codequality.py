@@ -4,14 +4,13 @@ https://docs.gitlab.com/ci/testing/code_quality/#code-quality-report-format
 """
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from grader.base.problems import Severity
 from grader.base.source import Base
-from grader.lab.grading.report import Report
 from grader.report.findings import (
     Finding,
     findings_in_inspection,
-    findings_in_report,
     fingerprints,
     message_in_repository,
     place_in_repository,
@@ -19,11 +18,16 @@ from grader.report.findings import (
 from grader.report.inspection import Inspection
 from grader.report.json_data import list_to_json
 
+if TYPE_CHECKING:
+    from grader.lab.grading.report import Report
+
 _SEVERITIES: dict[Severity, str] = {"error": "major", "warning": "minor", "note": "info"}
 
 
-def render_codequality(report: Report, base: Base) -> str:
+def render_codequality(report: "Report", base: Base) -> str:
     """Return the findings of a report, with the ids of criteria as names of checks."""
+    from grader.report.mistakes import findings_in_report  # late: only a report has criteria
+
     return _issues(findings_in_report(report), base)
 
 

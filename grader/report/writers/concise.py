@@ -3,16 +3,21 @@ matchers. The paths begin in the current folder; without a finding there is no l
 """
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from grader.base.source import Base
 from grader.base.text import printable
-from grader.lab.grading.report import Report
-from grader.report.findings import Finding, findings_in_inspection, findings_in_report
+from grader.report.findings import Finding, findings_in_inspection
 from grader.report.inspection import Inspection
 
+if TYPE_CHECKING:
+    from grader.lab.grading.report import Report
 
-def render_concise(report: Report, base: Base) -> str:
+
+def render_concise(report: "Report", base: Base) -> str:
     """Return the findings of a report, with the ids of criteria in place of codes."""
+    from grader.report.mistakes import findings_in_report  # late: only a report has criteria
+
     return _lines(findings_in_report(report), base)
 
 

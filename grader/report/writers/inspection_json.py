@@ -20,7 +20,7 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.report.writers.as_json import PROBLEM, problems_with_ends
+from grader.report.writers.problem_json import PROBLEM, problems_with_ends
 
 
 def _poses(robot: InspectedRobot) -> dict[str, list[list[float]] | None]:

@@ -15,7 +15,7 @@ from grader.report.inspection import (
     robot_line,
 )
 from grader.report.locations import calls_text
-from grader.report.writers.terminal import INDENT, LOOKS, Page, block, excerpt_block
+from grader.report.writers.terminal_page import INDENT, SEVERITY_LOOKS, Page, block, excerpt_block
 
 _MAX_PROBLEMS = 30
 _STYLES = dict(zip(EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=True))
@@ -57,7 +57,7 @@ def _problem_rows(console: Console, inspection: Inspection) -> Iterator[Text]:
     for problem in inspection.problems[:_MAX_PROBLEMS]:
         where = problem.location
         name = f"{problem.code} {problem.severity:<7} "
-        head = Text.assemble("  ", (name, LOOKS[problem.severity]))
+        head = Text.assemble("  ", (name, SEVERITY_LOOKS[problem.severity]))
         file = "line " if where.path == urdf else f"{printable(where.path)}:"
         place = f"{file}{where.line}{calls_text(where)}: "
         message = Text.assemble((place, "dim"), printable(problem.message))

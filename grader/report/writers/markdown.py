@@ -16,7 +16,6 @@ from grader.lab.grading.report import Report
 from grader.report import content
 from grader.report.content import report_sections
 from grader.report.criteria import (
-    SYMBOLS,
     Answer,
     CriteriaGroup,
     Diff,
@@ -29,6 +28,7 @@ from grader.report.criteria import (
     is_failure,
 )
 from grader.report.locations import diff_lines, excerpt_lines, location_text
+from grader.report.statuses import SYMBOLS
 
 _HTML = {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
 _ACTIVE = re.compile(

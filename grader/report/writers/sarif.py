@@ -7,18 +7,16 @@ https://docs.github.com/en/code-security/code-scanning/integrating-with-code-sca
 import json
 from collections.abc import Sequence
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from grader import __version__
 from grader.base.extents import ended
 from grader.base.source import Base
-from grader.lab.grading.report import Report
 from grader.report.findings import (
     DOCUMENTATION,
     Finding,
     findings_in_inspection,
-    findings_in_report,
     fingerprints,
     message_in_repository,
     place_in_repository,
@@ -27,12 +25,17 @@ from grader.report.inspection import Inspection
 from grader.report.json_data import to_json
 from grader.report.locations import SourceOf
 
+if TYPE_CHECKING:
+    from grader.lab.grading.report import Report
+
 _SCHEMA = "https://json.schemastore.org/sarif-2.1.0.json"
 _ROOT = "%SRCROOT%"  # of the repository, as GitHub calls it
 
 
-def render_sarif(report: Report, base: Base) -> str:
+def render_sarif(report: "Report", base: Base) -> str:
     """Return the findings of a report; their rules are criteria and kinds of problems."""
+    from grader.report.mistakes import findings_in_report  # late: only a report has criteria
+
     return _log(findings_in_report(report), base, cache(report.submission.source))
 
 

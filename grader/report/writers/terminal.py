@@ -7,23 +7,20 @@ of a submission is never interpreted as markup or control codes.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING, NamedTuple, get_args
+from typing import TYPE_CHECKING, get_args
 
 from rich.console import Console
 from rich.style import Style
 from rich.text import Text
 
 from grader.base.problems import Problem
-from grader.base.source import Location, Source
+from grader.base.source import Location
 from grader.base.text import counted, enumerated, format_points, printable
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import worth
 from grader.report import content
 from grader.report.content import ReportSections, report_sections
 from grader.report.criteria import (
-    ASCII_SYMBOLS,
-    STYLES,
-    SYMBOLS,
     Answer,
     Block,
     CriteriaGroup,
@@ -42,88 +39,36 @@ from grader.report.criteria import (
     remarks_on,
     status_of,
 )
-from grader.report.locations import diff_lines, excerpt, location_text
+from grader.report.locations import diff_lines, location_text
 from grader.report.screen import link_to
+from grader.report.statuses import STYLES
+from grader.report.writers.terminal_page import (
+    INDENT,
+    SEVERITY_LOOKS,
+    Page,
+    block,
+    excerpt_block,
+    height_of,
+)
 
 if TYPE_CHECKING:
-    from rich.table import Table
+    pass
 
 
-INDENT = 2
-LOOKS: Mapping[Role, str] = {
+_LOOKS: Mapping[Role, str] = {
     **dict.fromkeys(get_args(Role), ""),
     **dict.fromkeys(("result", "comment", "hint"), "bold"),
     **dict.fromkeys(("graded", "provenance", "expected", "part", "ignored", "there"), "dim"),
-    **dict.fromkeys(("missing", "alike", "carried", "warning"), "yellow"),
+    **dict.fromkeys(("missing", "alike", "carried"), "yellow"),
+    "error": SEVERITY_LOOKS["error"],
+    "warning": SEVERITY_LOOKS["warning"],
+    "note": SEVERITY_LOOKS["note"],
     "feedback": "italic",
-    "error": "bold red",
-    "note": "cyan",
 }
 _DIFF_STYLES = {"-": "red", "+": "green"}
 _MAX_WHOLE = 5  # mistakes in full
 _MAX_ROWS, _HEIGHT_OF_END = 18, 2  # of a report of one mistake; its last lines
 _MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
-
-
-class Page(NamedTuple):
-    """The rows of a report for a console. All texts are printable."""
-
-    console: Console
-    rows: list[Text]
-
-    @property
-    def height(self) -> int:
-        """The number of rows so far that are not empty."""
-        return sum(_height(row) for row in self.rows if row.plain)
-
-    def close_up(self, most: int) -> None:
-        """Remove empty rows, the last ones first, until there are at most so many rows; none if
-        they are too many without.
-        """
-        empty = [index for index, row in enumerate(self.rows) if not row.plain]
-        excess = self.height + len(empty) - most
-        if 0 < excess <= len(empty):
-            for index in reversed(empty[-excess:]):
-                del self.rows[index]
-
-    def leave_row(self) -> None:
-        """Add an empty row."""
-        self.rows.append(Text())
-
-    def title(self, text: str | Text, style: str = "bold") -> None:
-        """Add a title below an empty row."""
-        self.leave_row()
-        self.line(text, style)
-
-    def line(self, text: str | Text, style: str = "") -> None:
-        """Add a line, with an indent where it wraps."""
-        self.inset(text, style, head=Text())
-
-    def inset(
-        self, text: str | Text, style: str = "", indent: int = INDENT, head: Text | None = None
-    ) -> None:
-        """Add a text below a title or an item."""
-        self.rows.append(
-            block(self.console, Text(text, style) if isinstance(text, str) else text, indent, head)
-        )
-
-    def item(self, status: str, *parts: str | tuple[str, str]) -> None:
-        """Add texts, with their styles, behind the symbol of a status."""
-        self.inset(Text.assemble(*parts), head=self.mark(status) + Text(" "))
-
-    def mark(self, status: str) -> Text:
-        """Return the symbol of a status in its colour."""
-        return Text(_symbol(self.console, SYMBOLS[status], ASCII_SYMBOLS[status]), STYLES[status])
-
-    def table(self, table: "Table") -> None:
-        """Add a table, which a terminal may be too narrow for."""
-        self.print()
-        self.console.print(table)
-
-    def print(self) -> None:
-        """Print the rows so far, all at once: a print costs more than a row."""
-        self.console.print(Text("\n").join(self.rows), overflow="ignore", no_wrap=True, crop=False)
-        self.rows.clear()
 
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
@@ -157,7 +102,7 @@ def _show_brief(report: Report, found: ReportSections, page: Page) -> None:
     if found.carried:
         page.leave_row()
     for line in found.carried:
-        page.line(line.text, LOOKS[line.role])
+        page.line(line.text, _LOOKS[line.role])
     if is_unfinished:
         _show_later(report, found_line, found.missing, page)
     else:
@@ -190,7 +135,7 @@ def _show_later(report: Report, found: str, missing: Sequence[Line], page: Page)
     if texts:
         page.leave_row()
     for text in texts:
-        page.line(text, LOOKS["missing"])
+        page.line(text, _LOOKS["missing"])
 
 
 def _show_missing(missing: Sequence[Line], page: Page) -> None:
@@ -198,7 +143,7 @@ def _show_missing(missing: Sequence[Line], page: Page) -> None:
     if missing:
         page.title("Not found")
     for line in missing:
-        page.inset(line.text, LOOKS[line.role])
+        page.inset(line.text, _LOOKS[line.role])
 
 
 def _show_start(report: Report, page: Page) -> None:
@@ -207,8 +152,8 @@ def _show_start(report: Report, page: Page) -> None:
     """
     submission = report.submission
     rejected = ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
-    page.line(content.graded_line(report) + rejected, LOOKS["graded"])
-    page.line(content.result_line(report), LOOKS["result"])
+    page.line(content.graded_line(report) + rejected, _LOOKS["graded"])
+    page.line(content.result_line(report), _LOOKS["result"])
     if submission.package is not None and submission.package.folder:
         folder = f"{submission.package.folder}/"
     else:
@@ -217,7 +162,7 @@ def _show_start(report: Report, page: Page) -> None:
     if package and not (submission.path or "").startswith(folder or "urdf/"):
         page.line(package, "dim")
     for line in content.notes(report):
-        page.line(line, LOOKS["note"])
+        page.line(line, _LOOKS["note"])
 
 
 def _show_mistakes(mistakes: Sequence[Entry], report: Report, page: Page) -> None:
@@ -259,7 +204,7 @@ def _show_entry(entry: Entry, report: Report, page: Page, blocks: Iterable[Block
     for part in blocks:
         match part:
             case Line(role, text) if role != "finding":
-                page.inset(text, LOOKS[role])
+                page.inset(text, _LOOKS[role])
             case Location():
                 source = source_of(part.path)
                 if source is not None and source.line(part.line).strip():
@@ -295,35 +240,6 @@ def _entry_head(entry: Entry, page: Page) -> Text:
     return Text.assemble(
         page.mark(entry.status), " ", (title, "bold"), (f"  {name}", "dim"), f"  {points}"
     )
-
-
-def block(console: Console, text: Text, indent: int, head: Text | None = None) -> Text:
-    """Return text that keeps its indent when it wraps; `head` is in place of the indent of the
-    first line.
-    """
-    lines = text.wrap(console, max(8, console.width - indent))
-    for line in lines:
-        line.rstrip()
-    return (Text(" " * indent) if head is None else head) + Text("\n" + " " * indent).join(lines)
-
-
-def excerpt_block(console: Console, source: Source, where: Location, indent: int) -> Text:
-    """Return the source line of a location, and a line that underlines the marked part."""
-    number = str(where.line)
-    before, meant, after = excerpt(source, where, max(8, console.width - indent - len(number) - 3))
-    mark, bar = _symbol(console, "\u2500", "-"), _symbol(console, "\u2502", "|")
-    text = Text.assemble(
-        (f"{' ' * indent}{number} {bar} ", "dim"), (before + meant + after).rstrip()
-    )
-    under = " " * len(before) + mark * max(1, len(meant))
-    return text.append(f"\n{' ' * (indent + len(number))} {bar} ", "dim").append(under, "red")
-
-
-def _symbol(console: Console, fancy: str, plain: str) -> str:
-    """Return a symbol, or its ASCII form if the terminal cannot show it."""
-    if console.encoding.lower().startswith("utf"):
-        return fancy
-    return plain
 
 
 def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
@@ -378,7 +294,7 @@ def _show_files(report: Report, page: Page, most: int) -> None:
     if listed:
         page.leave_row()
     rows = [_problem_row(problem, page) for problem in listed[:_MAX_PROBLEMS]]
-    if most and page.height + sum(map(_height, rows)) + _HEIGHT_OF_END > most:
+    if most and page.height + sum(map(height_of, rows)) + _HEIGHT_OF_END > most:
         rows = []
     page.rows.extend(rows)
     rest = len(problems) - len(rows)
@@ -399,13 +315,9 @@ def _show_files(report: Report, page: Page, most: int) -> None:
 
 def _problem_row(problem: Problem, page: Page) -> Text:
     """Return a problem with its code and place."""
-    name = (f"{problem.code} {problem.severity} ", LOOKS[problem.severity])
+    name = (f"{problem.code} {problem.severity} ", _LOOKS[problem.severity])
     text = Text.assemble(name, _place(problem.location, page), f": {printable(problem.message)}")
     return block(page.console, text, INDENT, Text())
-
-
-def _height(text: Text) -> int:
-    return text.plain.count("\n") + 1
 
 
 def _show_end(report: Report, page: Page) -> None:
@@ -430,7 +342,7 @@ def _show_end(report: Report, page: Page) -> None:
 def _show_everything(report: Report, found: ReportSections, page: Page) -> None:
     """Add a report, without its last lines."""
     for line in content.head(report):
-        page.line(line.text, LOOKS[line.role])
+        page.line(line.text, _LOOKS[line.role])
     for section in found.sections:
         _show_section(section, report, page)
     _show_parts(report, page)
@@ -448,9 +360,8 @@ def _show_section(section: Section, report: Report, page: Page) -> None:
             page.leave_row()
         _show_entry(entry, report, page, entry.blocks)
     for line in section.lines:
-        page.inset(
-            line.text, LOOKS[line.role], 2 * INDENT if line.role in ("found", "missing") else INDENT
-        )
+        indent = 2 * INDENT if line.role in ("found", "missing") else INDENT
+        page.inset(line.text, _LOOKS[line.role], indent)
 
 
 def _show_parts(report: Report, page: Page) -> None:

@@ -138,7 +138,7 @@ def parse_cpp(data: bytes, path: str, budget: Budget) -> CppSyntax:
 
 @cache
 def _parser() -> "Parser":
-    # Late: few submissions have C++.
+    # Late: few workspaces have C++.
     from tree_sitter import Language, Parser
     from tree_sitter_cpp import language
 

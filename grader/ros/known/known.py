@@ -21,7 +21,7 @@ _OF_WORKSPACES = (
 
 
 class _Known(TypedDict):
-    """What packages define that are not submitted; the files say what each table means."""
+    """What packages define that are not in a workspace; the files say what each table means."""
 
     frames: list[str]
     transform_publishers: list[str]
@@ -105,8 +105,8 @@ def _machine() -> _Machine:
 
 
 def is_on_every_machine(package: str) -> bool:
-    """Return whether a package is on every machine of a lab, whether package.xml names it or
-    not.
+    """Return whether a package is on every machine with ROS 2, whether package.xml names it
+    or not.
     """
     return package in _machine()["packages"] or package in _machine()["other_packages"]
 

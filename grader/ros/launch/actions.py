@@ -9,9 +9,9 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 from grader.ros.build.places import PREFIX
-from grader.ros.launch.api import CONDITION, ENTITY, SOURCE, class_named, is_a
 from grader.ros.launch.call_arguments import items_in, kind_of
 from grader.ros.launch.components import load_components, start_container
+from grader.ros.launch.launch_classes import CONDITION, ENTITY, SOURCE, class_named, is_a
 from grader.ros.launch.launch_model import (
     NAMESPACE,
     Context,
@@ -59,7 +59,7 @@ from grader.ros.python.values import (
 )
 
 _MAX_ACTIONS = 5_000
-_OF_ACTION = 100  # parts of the work that a submission may ask for
+_OF_ACTION = 100  # parts of the work that a workspace may ask for
 _MAX_DEPTH = 40
 _MAX_PERIOD = 60.0  # seconds that a person waits for a timer
 _LATE = (

@@ -12,7 +12,7 @@ from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
 from grader.base.names import did_you_mean
-from grader.ros.launch.api import (
+from grader.ros.launch.launch_classes import (
     ENTITY,
     JOINED_PATH,
     PROCESS,

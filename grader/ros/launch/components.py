@@ -4,8 +4,8 @@ starts, as launch_ros does.
 What components publish, and which parameters they get, is not evaluated.
 """
 
-from grader.ros.launch.api import COMPONENT
 from grader.ros.launch.call_arguments import items_in
+from grader.ros.launch.launch_classes import COMPONENT
 from grader.ros.launch.launch_model import Container, Context, Findings, LoadedComponent
 from grader.ros.launch.started_nodes import namespace_below
 from grader.ros.launch.substitutions import CONDITIONS, condition_holds, known_text

@@ -19,8 +19,8 @@ from grader.ros.config.yaml_nodes import (
     read_yaml,
     yaml_value,
 )
-from grader.ros.launch.api import COMPONENT, class_named, front_end
 from grader.ros.launch.call_arguments import TYPED, check
+from grader.ros.launch.launch_classes import COMPONENT, class_named, front_end
 from grader.ros.launch.launch_model import Findings, LaunchFault
 from grader.ros.launch.substitutions import boolean
 from grader.ros.python.parse import START, Position

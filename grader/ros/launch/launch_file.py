@@ -20,7 +20,8 @@ from grader.base.source import Location, Source
 from grader.ros.build.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.launch.actions import ActionVisitor, Include, NotIncluded
-from grader.ros.launch.api import (
+from grader.ros.launch.call_arguments import LaunchFunctions, join_path, kind_of
+from grader.ros.launch.launch_classes import (
     DESCRIPTION,
     JOINED_PATH,
     PATH,
@@ -29,7 +30,6 @@ from grader.ros.launch.api import (
     exports,
     is_a,
 )
-from grader.ros.launch.call_arguments import LaunchFunctions, join_path, kind_of
 from grader.ros.launch.launch_model import (
     MAX_STEPS,
     Contents,
@@ -108,12 +108,12 @@ def read_launch(
 
     Args:
         data: The file's contents.
-        path: Its path in the submission.
+        path: Its path in the workspace.
         installed: Its path below the prefix after a build.
         machine: What is installed besides.
         arguments: The launch arguments that it is given.
         memory: The launch files that were read before.
-        work: The budget of all files of the submission.
+        work: The budget of all files of the workspace.
     """
     work = work or Budget()
 

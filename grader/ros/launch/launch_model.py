@@ -78,21 +78,21 @@ def not_evaluated(reason: str) -> str:
 
 
 class Machine(Protocol):
-    """What is installed on the machine of a launch file: what builds of the submitted packages
-    install, and ROS 2.
+    """What is installed on the machine of a launch file: what builds of the packages of the
+    workspace install, and ROS 2.
     """
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
         """Return an installed file by its path below the prefix: its bytes, and its path in the
-        submission.
+        workspace.
         """
 
     def has_package(self, name: str) -> bool:
         """Return whether a package certainly is on the machine."""
 
     def misspelt_package(self, name: str) -> str | None:
-        """Return the submitted package that the name of one that certainly is not there stands
-        for.
+        """Return the package of the workspace that the name of one that certainly is not there
+        stands for.
         """
 
     def files_in(self, folder: str) -> "Sequence[str] | None":

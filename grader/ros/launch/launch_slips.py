@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterator, Mapping
 
 from grader.base.names import closest, near
 from grader.base.slips import Slip
-from grader.ros.launch.api import class_named, exports
+from grader.ros.launch.launch_classes import class_named, exports
 from grader.ros.python.parse import Code, location_in, position_of
 
 _FUNCTION = "generate_launch_description"

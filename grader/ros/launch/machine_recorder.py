@@ -26,7 +26,7 @@ class MachineRecorder:
         return self._answers.ask(lambda machine: machine.has_package(name))
 
     def misspelt_package(self, name: str) -> str | None:
-        """Return the submitted package that a name stands for."""
+        """Return the package of the workspace that a name stands for."""
         return self._answers.ask(lambda machine: machine.misspelt_package(name))
 
     def files_in(self, folder: str) -> "Sequence[str] | None":

@@ -17,7 +17,7 @@ from grader.files.limits import SETUP_ASSISTANT
 from grader.ros.build.places import BY_MOVEIT, PREFIX, SHARE
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
 from grader.ros.known.known import moveit_launches
-from grader.ros.launch.api import DESCRIPTION
+from grader.ros.launch.launch_classes import DESCRIPTION
 from grader.ros.launch.launch_model import (
     Contents,
     Context,

@@ -321,7 +321,7 @@ def _is_uniform(values: list[Any]) -> bool:
 
 _OpenFile = Callable[
     [str], tuple[bytes, str] | None
-]  # returns an installed file, and its path in the submission
+]  # returns an installed file, and its path in the workspace
 
 
 def set_for_all(
@@ -502,7 +502,7 @@ def parameters_of(
     Args:
         node: The node, as it is started.
         open_file: Returns the parameter file at a path below the prefix, and its path in the
-            submission.
+            workspace.
         name: The name that the node has in its program if the launch file gives it none; or the
             full name of another node of the same process, such as a controller.
         read: Returns the sections of a parameter file.

@@ -2,7 +2,7 @@
 given.
 
 These files are the robot and the configuration of RViz. `ros/known/launch_files.toml` lists the
-nodes that launch files of well-known packages start, which submissions include but do not contain.
+nodes that launch files of well-known packages start, which workspaces include but do not contain.
 """
 
 import posixpath
@@ -500,7 +500,7 @@ def _tables_in(parameters: Value) -> Iterator[dict[Any, Value]]:
 
 
 def is_of_ros(package: str) -> bool:
-    """Return whether a package is on every machine that runs ROS 2 in a lab."""
+    """Return whether a package is on every machine that runs ROS 2."""
     return is_on_every_machine(package) or package in started_by_launch_files()
 
 

@@ -202,11 +202,11 @@ def _fault_of_path(package: Package, path: str) -> str:
 
 def _place_in_unknown(package: Package, owner: str, rest: str, file: "NamedFile") -> FilePlace:
     """Return what is known of a path in the share folder of a package that is not part of the
-    submission.
+    workspace.
 
     Raises MissingElement if it should be.
     """
-    if owner in package.lab_packages:
+    if owner in package.wanted_packages:
         raise MissingElement("package", owner, message=f"no package is named {owner!r}")
     what = _WORDS[file.purpose]
     fault = "" if package.depends_on(owner) else _fault_of_owner(package, owner, rest, what)
@@ -220,7 +220,7 @@ def _place_in_unknown(package: Package, owner: str, rest: str, file: "NamedFile"
 
 
 def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
-    """Return how the name of a package that is not part of the submission is wrong; empty where
+    """Return how the name of a package that is not part of the workspace is wrong; empty where
     that is not known.
     """
     # A path may lack a slash after the package's name: get_package_share_directory(...) +

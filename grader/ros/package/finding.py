@@ -98,7 +98,7 @@ def read_packages(
     """Return the packages in a file tree, the one that matches best first.
 
     Among packages of one name it is one that is no backup, then the one with most of the files that
-    a lab asks for, above all the URDF at its path; then the least deep, then the first in
+    are wanted, above all the URDF at its path; then the least deep, then the first in
     alphabetical order.
 
     Args:
@@ -106,8 +106,8 @@ def read_packages(
         urdf: The path of the URDF in the package.
         name: The name that the package should have.
         names: The names of all packages, if there are several.
-        memory: The launch files that were read for the same lab.
-        installed: The packages that are on the lab's machines.
+        memory: The launch files that were read for the same names.
+        installed: The packages that are on the machines besides those of ROS 2.
         most: How many are read.
         are_whole: Whether packages also have the files of those in them, as builds copy them.
     """
@@ -128,8 +128,8 @@ def read_packages(
             _read_manifest(files, f"{folder}/{MANIFEST}" if folder else MANIFEST),
             known,
             generated=tree.generated,
-            lab_name=name,
-            lab_packages=names,
+            wanted_name=name,
+            wanted_packages=names,
             installed_besides=installed,
             ignored_by=_find_marker(tree, folder),
             inner=inner,
@@ -226,7 +226,7 @@ def _inner_folders(files: Tree, folder: str, folders: Sequence[str]) -> tuple[st
 
 
 def _read_manifest(files: Tree, path: str) -> Manifest | None:
-    """Return the package.xml among the files of a package, by its path in the submission."""
+    """Return the package.xml among the files of a package, by its path in the workspace."""
     if MANIFEST not in files.files:
         return None
     try:

@@ -22,7 +22,7 @@ from grader.ros.urdf.reader import read_robot, read_urdf
 class InstalledRobot(NamedTuple):
     """A robot as it is installed.
 
-    `missing` are files of the submission that it needs and a build does not install; `warning` is
+    `missing` are files of the workspace that it needs and a build does not install; `warning` is
     the first text that xacro writes to standard error.
     """
 
@@ -31,7 +31,7 @@ class InstalledRobot(NamedTuple):
 
 
 class _InstalledFiles:
-    """The files that builds of the submitted packages install, as the workspace of xacro."""
+    """The files that builds of the packages install, as the workspace of xacro."""
 
     is_part = False
 
@@ -65,7 +65,7 @@ class _InstalledFiles:
         return owner.tree.files[source].read(URDF_LIMIT)
 
     def note_missing(self, path: str) -> None:
-        """Note a file that the submission has, but does not install."""
+        """Note a file that the workspace has, but does not install."""
         name = posixpath.basename(path)
         if any(
             posixpath.basename(own) == name for owner in self.owners for own in owner.tree.files

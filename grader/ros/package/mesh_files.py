@@ -65,8 +65,8 @@ class MeshFile(NamedTuple):
         return f"the mesh {quoted_end(self.written)} of {quoted(link)} {fault}"
 
     def why_not_found(self, packages: Sequence[Package], tree: Tree) -> str:
-        """Return why ROS 2 does not find a package's file after a build; empty if it does, or no
-        package was submitted.
+        """Return why ROS 2 does not find a package's file after a build; empty if it does, or if
+        there is no package.
 
         Raises NotDecided where that cannot be determined statically.
         """
@@ -88,14 +88,14 @@ class MeshFile(NamedTuple):
         return _fault_in_package(package, f"share/{self.package}/{path}", tree)
 
     def content_fault(self, packages: Sequence[Package]) -> str:
-        """Return what is wrong with the content of its file in a submitted package; empty if
+        """Return what is wrong with the content of its file in the workspace; empty if
         nothing is, or there is no such file. Raises NotDecided.
         """
         file = self.file_in(packages)
         return content_fault(file, self.path) if file is not None else ""
 
     def file_in(self, packages: Sequence[Package]) -> File | None:
-        """Return its file in a submitted package; None if there is none."""
+        """Return its file in a package of the workspace; None if there is none."""
         package = packages[0].find(self.package) if packages else None
         if package is None:
             return None
@@ -137,7 +137,7 @@ def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterat
     """Yield a warning for each mesh that RViz certainly does not find on another machine, or after
     a build.
 
-    A file of a package that was not submitted may be installed, and so may a file:// path outside
+    A file of a package outside the workspace may be installed, and so may a file:// path outside
     of home folders.
     """
     robot = urdf.loaded.robot
@@ -206,8 +206,8 @@ def _path_from_xacro(path: str) -> tuple[str, str] | None:
 
 
 def _without_package(name: str, path: str, packages: Sequence[Package], tree: Tree) -> str:
-    """Return that no submitted package has a name; raise NotDecided if one may be in an archive
-    that is closed.
+    """Return that no package of the workspace has a name; raise NotDecided if one may be in an
+    archive that is closed.
     """
     if tree.unopened:
         reason = "an archive could not be opened"

@@ -1,4 +1,4 @@
-"""A ROS 2 package of a submission: its files are read one by one when they are needed, each
+"""A ROS 2 package of a workspace: its files are read one by one when they are needed, each
 once, and never run.
 """
 
@@ -49,7 +49,7 @@ _KINDS = {
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Package:
-    """One ROS 2 package of a submission, whose files are read and never run.
+    """One ROS 2 package of a workspace, whose files are read and never run.
 
     `finding.py` finds the packages of a file tree.
     Checks ask it what a build installs, what its launch files start, and what RViz shows; launch
@@ -66,20 +66,20 @@ class Package:
     ('arm', 'src/arm', {'share/arm/package.xml': 'package.xml'})
     """
 
-    folder: str  # its path in the submission
+    folder: str  # its path in the workspace
     tree: Tree  # its files, by their paths in the package
     manifest: "Manifest | None"
-    packages: dict[str, "Package"]  # all of the submission, by their names
-    generated: tuple[str, ...] = ()  # paths in the submission that a build has copied
-    lab_name: str = ""  # the name that the lab gives it
-    lab_packages: tuple[str, ...] = ()  # the names of all packages of the lab, if there are several
-    installed_besides: frozenset[str] = frozenset()  # packages that are on the lab's machines
+    packages: dict[str, "Package"]  # all of the workspace, by their names
+    generated: tuple[str, ...] = ()  # paths in the workspace that a build has copied
+    wanted_name: str = ""  # the name by which it was looked for
+    wanted_packages: tuple[str, ...] = ()  # of several that were looked for, the names of all
+    installed_besides: frozenset[str] = frozenset()  # packages that are on its machines
     ignored_by: str = ""  # the path of a file for which colcon ignores it
     # Folders of packages in it, each with a slash, whose files it has: a build copies them.
     inner: tuple[str, ...] = ()
     memory: Memory = field(default_factory=Memory)
     arguments: "Mapping[str, str]" = field(default_factory=dict)  # that its launch files are given
-    work: Budget = field(default_factory=Budget)  # to read and compare all files of the submission
+    work: Budget = field(default_factory=Budget)  # to read and compare all files of the workspace
     # The package without other launch arguments: what a build installs does not depend on them.
     _original: "Package | None" = None
     budget: Budget = field(init=False)  # of the evaluation of its files
@@ -90,13 +90,13 @@ class Package:
         object.__setattr__(self, "budget", Budget(whole=self.work))
 
     def path(self, path: str) -> str:
-        """Return a path of the package as one of the submission."""
+        """Return a path of the package as one of the workspace."""
         if self.folder:
             return f"{self.folder}/{path}"
         return path
 
     def holds(self, path: str) -> bool:
-        """Return whether a path of the submission is in the package."""
+        """Return whether a path of the workspace is in the package."""
         return path.startswith(self.path(""))
 
     def under(self, arguments: "Mapping[str, str]") -> "Package":
@@ -117,7 +117,7 @@ class Package:
         ).name
 
     def find(self, name: str) -> "Package | None":
-        """Return the package of the submission that ROS 2 finds by a name: this one, if it has
+        """Return the package of the workspace that ROS 2 finds by a name: this one, if it has
         the name.
         """
         if name == self.name:
@@ -156,10 +156,10 @@ class Package:
 
     @cached_property
     def share(self) -> str:
-        """The folder below the prefix where ros2 looks for its files: by the lab's name if it
-        has it, else its own.
+        """The folder below the prefix where ros2 looks for its files: by the wanted name
+        if it has it, else its own.
         """
-        return f"share/{self.lab_name if self.lab_name in self.names else self.name}/"
+        return f"share/{self.wanted_name if self.wanted_name in self.names else self.name}/"
 
     @property
     def is_cmake(self) -> bool:
@@ -438,7 +438,7 @@ class Package:
         )
 
     def owner_of_opened(self, launch: "Launch") -> "Package":
-        """Return the package of the submission whose RViz file a launch file opens; without one,
+        """Return the package of the workspace whose RViz file a launch file opens; without one,
         the package itself.
         """
         paths = [it.path for it in launch.named("rviz") if it.path is not None]
@@ -477,8 +477,8 @@ class Package:
         return self, *self.packages.values()
 
     def has_package(self, name: str) -> bool:
-        """Return whether a package certainly is on the machine: submitted, declared as needed,
-        named by the lab, or part of ROS 2.
+        """Return whether a package certainly is on the machine: in the workspace, declared as
+        needed, installed besides, or part of ROS 2.
         """
         from grader.ros.launch.started_nodes import (
             is_of_ros,  # late: as the readers of launch files
@@ -493,13 +493,13 @@ class Package:
         )
 
     def misspelt_package(self, name: str) -> str | None:
-        """Return the submitted package that the name of one that certainly is not on the machine
-        stands for, if there is one.
+        """Return the package of the workspace that the name of one that certainly is not on the
+        machine stands for, if there is one.
         """
         from grader.ros.known.known import is_known_package  # late: as above
 
-        # Where a package does not have the lab's name, that of the package is wrong.
-        if name == self.lab_name or self.has_package(name) or is_known_package(name):
+        # Where a package does not have the wanted name, that of the package is wrong.
+        if name == self.wanted_name or self.has_package(name) or is_known_package(name):
             return None
         return near(name, [package.name for package in self._all])
 
@@ -533,7 +533,7 @@ class Package:
         )
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
-        """Return what a build of any submitted package installs at a path below the prefix, with
+        """Return what a build of any of its packages installs at a path below the prefix, with
         the file's path.
         """
         for package in self.packages.values():

@@ -1,4 +1,4 @@
-"""The messages, services and actions that a package of a submission generates code for."""
+"""The messages, services and actions that a package of a workspace generates code for."""
 
 import posixpath
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ _BYTES_A_PART = 8
 
 
 class _OwnInterface(NamedTuple):
-    """A message, service or action of a package, and the path of its file in the submission."""
+    """A message, service or action of a package, and the path of its file in the workspace."""
 
     interface: Interface
     path: str

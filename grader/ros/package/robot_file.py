@@ -1,4 +1,4 @@
-"""The URDF of a submission, as one of three states, and what ROS 2 makes of it with the files
+"""A URDF that was looked for, as one of three states, and what ROS 2 makes of it with the files
 around.
 """
 
@@ -46,7 +46,7 @@ class OtherCandidate(NamedTuple):
 
 
 class Absent:
-    """No file of the submission is a URDF; `blank` is the path of one without content."""
+    """No file is a URDF; `blank` is the path of one without content."""
 
     __slots__ = ("blank",)
 

@@ -1,4 +1,4 @@
-"""The budget to which reading a submission is charged: the work of documents, expressions and
+"""The budget to which reading a workspace is charged: the work of documents, expressions and
 searches.
 """
 
@@ -8,10 +8,10 @@ from pathlib import PurePosixPath
 from grader.ros.python import values as py
 from grader.ros.python.values import parts_of, refuse, too_large
 
-READING = 500_000  # parts that reading one submission may produce or look at: some 0.5 s
-# Parts that reading all files of a submission and comparing their names may take, besides one for
+READING = 500_000  # parts that reading one workspace may produce or look at: some 0.5 s
+# Parts that reading all files of a workspace and comparing their names may take, besides one for
 # each byte of text: what is large is no attack.
-_OF_SUBMISSION = 400_000
+_OF_WORKSPACE = 400_000
 PYTHON_LIMIT = 128 * 1024  # bytes of a file; a syntax tree takes several hundred times as much
 _MAX_TEXT = 512 * 1024  # bytes of a text that count
 CHARACTERS, _BITS = 16, 256  # that count as one part
@@ -19,7 +19,7 @@ _FOLDER = "the name of a folder on the machine is not known"
 
 
 class OutOfBudget(py.EvaluationSignal):
-    """The budget of a submission is spent: nothing more of it can be expanded or evaluated."""
+    """The budget of a workspace is spent: nothing more of it can be expanded or evaluated."""
 
 
 class Budget:
@@ -28,7 +28,7 @@ class Budget:
 
     They are charged before the work, and counted, so that a result is the same on every machine.
     `stand_ins` are the texts that stand for folders that are not known: no value may depend on
-    them. `whole` is the budget of all files of a submission, to which all is charged as well.
+    them. `whole` is the budget of all files of a workspace, to which all is charged as well.
     """
 
     def __init__(
@@ -67,7 +67,7 @@ class Budget:
             )
 
     def take_of_whole(self, parts: int) -> bool:
-        """Charge parts to the budget of the submission alone; return whether they were left."""
+        """Charge parts to the budget of the workspace alone; return whether they were left."""
         if self.whole is not None:
             self.whole.left -= parts
         return not self.is_spent
@@ -167,5 +167,5 @@ class Budget:
 
 
 def whole_budget(sizes: Iterable[int]) -> Budget:
-    """Return the budget of all files of a submission, of texts of these sizes in bytes."""
-    return Budget(_OF_SUBMISSION + sum(min(size, _MAX_TEXT) for size in sizes))
+    """Return the budget of all files of a workspace, of texts of these sizes in bytes."""
+    return Budget(_OF_WORKSPACE + sum(min(size, _MAX_TEXT) for size in sizes))

@@ -65,7 +65,7 @@ class Constants(Interpreter):
         is_package: bool,
     ) -> None:
         """`nodes` are those of the module; of calls, those of the functions are evaluated. `work`
-        is the budget of all files of the submission.
+        is the budget of all files of the workspace.
         """
         super().__init__(functions, {}, budget=Budget(_MAX_STEPS, whole=work))
         self._full_name, self._is_package, self._is_open = name, is_package, binds_unseen(nodes)

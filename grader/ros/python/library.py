@@ -19,7 +19,7 @@ from grader.ros.python import values as py
 from grader.ros.python.values import iterate
 
 MAX_PATH = 4_096  # characters
-# stands for the name of the package's folder, which the submission does not determine
+# stands for the name of the package's folder, which the workspace does not determine
 PACKAGE_FOLDER = "<package>"
 _OWN = ("dirname", "basename", "normpath", "split", "splitext", "isabs")
 _SETUPTOOLS_PUBLIC = (

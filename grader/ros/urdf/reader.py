@@ -57,8 +57,8 @@ class Reading(NamedTuple):
     the file.
 
     `read_urdf` makes it of any text, and never raises; xacro is expanded before, in
-    `grader.ros.xacro`. A submission holds the reading of its URDF; checks get it as `urdf`, reports
-    list its problems, and hints edit what it was read from.
+    `grader.ros.xacro`. Checks get it as `urdf`, reports list its problems, and hints edit what it
+    was read from.
 
     >>> text = '<robot name="r"><link name="base"/><joint name="j" type="fixed"/></robot>'
     >>> reading = read_urdf(text)

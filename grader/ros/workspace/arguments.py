@@ -46,7 +46,7 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _included_arguments(workspace: Workspace, launch: Launch, owner: str) -> Iterator[Fact]:
-    """Yield the arguments of launch files that are not submitted, which a launch file passes on by
+    """Yield the arguments of launch files outside the workspace, which a launch file passes on by
     including them.
     """
     for passed in launch.passed:

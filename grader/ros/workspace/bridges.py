@@ -233,7 +233,7 @@ def _without_topic(row: _BridgeRow, nameless: dict[str, _NamelessSensor]) -> Ite
         f"nothing publishes {quoted(row.gz)} in Gazebo: the sensor {quoted(sensor.name)} has no "
         f"<topic> ({at.file_and_line})"
     )
-    # A model that is not submitted may publish it.
+    # A model that is not in the workspace may publish it.
     yield Mismatch(SENSOR_TOPIC, message, row.location, at, is_certain=False)
 
 
@@ -294,7 +294,7 @@ def _no_type(workspace: Workspace, row: _BridgeRow) -> Iterator[Mismatch]:
 
 def bridge_files(workspace: Workspace) -> set[str]:
     """Return the files with rows that launch files give to bridges, by their paths in the
-    submission.
+    workspace.
     """
     paths: list[Any] = []
     for _, node in workspace.nodes:

@@ -36,7 +36,7 @@ class _Reference(NamedTuple):
 
 def mesh_size_problems(workspace: Workspace) -> list[Problem]:
     """Return a warning for each mesh that is about 1000 times as large as it should be, or as
-    small, as far as meshes are read before the budget of the submission is spent.
+    small, as far as meshes are read before the budget of the workspace is spent.
     """
     meshes, found = _Meshes(workspace), dict[tuple[str, Location], Problem]()
     with suppress(NotDecided, InputError):

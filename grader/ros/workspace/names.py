@@ -39,8 +39,8 @@ class Use(NamedTuple):
 
 
 class Open(NamedTuple):
-    """That names of a kind may be defined by what is not submitted, or, for a reason, by what is
-    not evaluated.
+    """That names of a kind may be defined by what is not in the workspace, or, for a reason, by
+    what is not evaluated.
     """
 
     kind: DefinedKind

@@ -1,7 +1,7 @@
 """Opened files: their packages, and their robots."""
 
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -12,6 +12,7 @@ from grader.files.tree import Tree, make_tree
 from grader.ros.known.releases import NOT_STATED, Release, StatedReleases
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Absent, OtherCandidate, Read, Unreadable, Urdf
+from grader.ros.python.budget import Budget
 
 if TYPE_CHECKING:
     from grader.base.reuse import Memory
@@ -28,7 +29,7 @@ _NO_FILES = make_tree("", (), ())
 class OpenedWorkspace:
     """The packages and the robots of opened files: a URDF on its own, a folder or an archive."""
 
-    id: str  # the name of the file or folder; of a submission, the student
+    id: str  # the name of the file or folder, or of whose it is
     urdf: Urdf  # of a workspace, all of whose robots are read, absent
     other_candidates: tuple[OtherCandidate, ...] = ()  # other robots and packages
     packages: tuple[Package, ...] = ()  # the one that matches best first
@@ -38,9 +39,11 @@ class OpenedWorkspace:
     robots: tuple[Read | Unreadable, ...] = ()  # of a workspace, all of whose robots are read
     ros1_packages: tuple[Package, ...] = ()  # whose names are not compared
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
-    distro: Release | None = None  # the release of ROS 2 that a lab is for
+    distro: Release | None = None  # the release of ROS 2 that whoever opens it wants
     stated: StatedReleases = NOT_STATED  # those that a workspace is for
     around: "Around | None" = None  # of a URDF on its own: reads the packages around it
+    neighbours: tuple[Package, ...] = ()  # the packages around a URDF on its own
+    budget: Budget = field(default_factory=Budget)  # of the work to read the URDF
     memory: "Memory | None" = None  # what was read of an earlier state of the files
 
     @cached_property

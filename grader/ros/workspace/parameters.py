@@ -168,7 +168,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
         is_known = (
             workspace.package_of(node) is not None or node.package in known()["without_frames"]
         )
-        # Without a similar name, the sections may be those of nodes that are not submitted.
+        # Without a similar name, the sections may be those of nodes that are not in the workspace.
         if name not in lacking or (meant is None and (is_passed or not is_known)):
             continue
         key = meant or unread[0]

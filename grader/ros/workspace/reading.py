@@ -100,7 +100,7 @@ class _Facts(NamedTuple):
 
 @lru_cache(maxsize=2)
 def read_agreement(workspace: Workspace) -> Agreement:
-    """Return what does not agree in a workspace; what is found before the budget of the submission
+    """Return what does not agree in a workspace; what is found before the budget of the workspace
     is spent, and that the rest is not compared.
     """
     facts, error = facts_once(workspace)
@@ -119,7 +119,7 @@ def read_agreement(workspace: Workspace) -> Agreement:
 
 @lru_cache(maxsize=2)
 def facts_once(workspace: Workspace) -> _Facts:
-    """Return what files define and use, as far as it is read before the budget of the submission is
+    """Return what files define and use, as far as it is read before the budget of the workspace is
     spent.
     """
     facts: list[Fact] = []

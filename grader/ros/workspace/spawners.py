@@ -67,7 +67,7 @@ def _named(words: Sequence[str | None]) -> Iterator[str]:
 
 
 def _is_defined_by_files(workspace: Workspace, words: Sequence[str | None]) -> bool:
-    """Return whether the controllers of a spawner are defined by files that are submitted, and not
+    """Return whether the controllers of a spawner are defined by files of the workspace, and not
     by its arguments.
     """
     files = [path for option, path in pairwise(words) if option in ("-p", "--param-file")]

@@ -138,11 +138,11 @@ class Workspace:
 
     @property
     def is_spent(self) -> bool:
-        """Whether more is left to read and compare than a submission may ask for."""
+        """Whether more is left to read and compare than a workspace may ask for."""
         return self._work.is_spent
 
     def charge(self, parts: int) -> None:
-        """Charge the work of comparing names to the budget of the submission. Raises NotDecided."""
+        """Charge the work of comparing names to the budget of the workspace. Raises NotDecided."""
         try:
             self._work.charge(parts)
         except OutOfBudget:
@@ -248,7 +248,7 @@ class Workspace:
 
     @cached_property
     def yaml_files(self) -> Mapping[str, YamlNode | YamlFault]:
-        """The YAML files that are no launch files, by their paths in the submission; or why one
+        """The YAML files that are no launch files, by their paths in the workspace; or why one
         is not read.
         """
         files: dict[str, YamlNode | YamlFault] = {}
@@ -462,7 +462,7 @@ class Workspace:
         return tree if isinstance(tree, YamlNode) else None
 
     def source_of(self, path: str) -> str | None:
-        """Return the file of the submission that is installed at a path, which begins with the
+        """Return the file of the workspace that is installed at a path, which begins with the
         prefix's stand-in.
         """
         inside = posixpath.normpath(path).removeprefix(f"{PREFIX}/")
@@ -470,7 +470,7 @@ class Workspace:
 
     @cached_property
     def _sources_of_installed(self) -> Mapping[str, str]:
-        """The files of the submission, by the paths below the prefix where they are installed."""
+        """The files of the workspace, by the paths below the prefix where they are installed."""
         sources: dict[str, str] = {}
         for package in self.packages:
             for target, source in package.installed.items():
@@ -479,7 +479,7 @@ class Workspace:
 
     @cached_property
     def parameter_files(self) -> Mapping[str, list[StartedNode]]:
-        """The parameter files, by their paths in the submission, with the nodes that are given
+        """The parameter files, by their paths in the workspace, with the nodes that are given
         them.
         """
         nodes: dict[str, list[StartedNode]] = {}
@@ -489,7 +489,7 @@ class Workspace:
         return nodes
 
     def files_given(self, node: StartedNode) -> Iterator[str]:
-        """Yield the parameter files that a node is given, by their paths in the submission."""
+        """Yield the parameter files that a node is given, by their paths in the workspace."""
         for given in node.parameters or ():
             path = self.source_of(given.path) if given.path and given.is_plain else None
             if path is not None:
@@ -531,7 +531,7 @@ class Workspace:
 
     @cached_property
     def controller_files(self) -> frozenset[str]:
-        """The parameter files, by their paths in the submission, that Gazebo and spawners give
+        """The parameter files, by their paths in the workspace, that Gazebo and spawners give
         controllers.
         """
         given = [*self._simulated]
@@ -673,7 +673,7 @@ class Workspace:
         return tuple(empty)
 
     def begins_with(self, path: str, start: bytes) -> bool:
-        """Return whether a file of the submission begins with some bytes."""
+        """Return whether a file of the workspace begins with some bytes."""
         file = self.tree.files.get(path)
         return file is not None and file.read(len(start), first=True) == start
 
@@ -794,7 +794,7 @@ def _nodes_of(package: Package) -> PackageNodes:
     setup = package.installation
     if setup is None or not any(target.sources for target in setup.targets):
         return found
-    from grader.ros.package.cpp_nodes import read_cpp_nodes  # late: few submissions have C++
+    from grader.ros.package.cpp_nodes import read_cpp_nodes  # late: few workspaces have C++
 
     compiled = read_cpp_nodes(package)
     return found._replace(

@@ -215,7 +215,7 @@ def expand(
     edits: Edits = (),
 ) -> _Expansion:
     """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in
-    the submission.
+    the workspace.
 
     `others` says what is known of other arguments. With `edits`, which surely are meant, `meant` is
     the expansion of the files after these, too.

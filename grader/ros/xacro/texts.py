@@ -46,7 +46,7 @@ _OF_PIECE, _OF_NAME = (
     20,
 )  # what a part of a text, and comparing a name with another one, are charged
 _MAX_SHOWN = 60  # characters of a name
-# where the packages are for $(find package): in a folder that no submission has
+# where the packages are for $(find package): in a folder that no workspace has
 INSTALLED = "/install"
 
 
@@ -69,7 +69,7 @@ class Texts:
         is_own: Callable[[str], bool],
     ) -> None:
         """`own` are functions that need the document, such as load_yaml; `is_own`: whether a
-        package was submitted.
+        package is in the workspace.
         """
         self.arguments = arguments
         self.other_arguments: OtherArguments = "default"

@@ -1,4 +1,4 @@
-"""The files that a xacro file names: where they are in the submission, and what is in them."""
+"""The files that a xacro file names: where they are in the workspace, and what is in them."""
 
 import posixpath
 import re
@@ -29,11 +29,11 @@ _OF_FILE, _OF_NAME = (
 
 
 class SurroundingFiles(Protocol):
-    """The files around a xacro file: those of its submission."""
+    """The files around a xacro file: those of its workspace."""
 
     @property
     def budget(self) -> Budget:
-        """The budget of the submission."""
+        """The budget of the workspace."""
 
     @property
     def paths(self) -> Collection[str]:
@@ -81,7 +81,7 @@ class Files:
         ] = {}  # the tags that include files, and the paths of these
 
     def has_package(self, name: str) -> bool:
-        """Return whether a package is, or may be, part of the submission."""
+        """Return whether a package is, or may be, part of the workspace."""
         return (
             self._workspace.is_part
             or not self._workspace.paths
@@ -89,7 +89,7 @@ class Files:
         )
 
     def path(self, text: str) -> str:
-        """Return the path in the submission of a file that the innermost file names. Raises
+        """Return the path in the workspace of a file that the innermost file names. Raises
         Undetermined.
         """
         if len(text) > _MAX_PATH:

@@ -1,5 +1,5 @@
-"""The classes of launch, launch_ros, launch_xml and launch_yaml (ROS 2 Jazzy), as `api.json` lists
-them.
+"""The classes of launch, launch_ros, launch_xml and launch_yaml (ROS 2 Jazzy), as
+`launch_classes.json` lists them.
 """
 
 import json

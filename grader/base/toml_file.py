@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from grader.base.errors import RubricError
 from grader.base.names import did_you_mean
 from grader.base.text import cut, enumerated, printable, printable_path
-from grader.lab.checks.toml_types import TomlType, WrongValue, simple_type
+from grader.base.toml_types import TomlType, WrongValue, simple_type
 
 TomlPath = tuple[str | int, ...]
 TomlRow = dict[str, Any]
@@ -244,7 +244,7 @@ def _key_names(tokens: list[str]) -> list[str]:
 
 
 class KeyTable(NamedTuple):
-    """A table of the rubric: what one is called, and its keys."""
+    """A table of a TOML file: what one is called, and its keys."""
 
     name: str
     keys: Mapping[str, TomlType]

@@ -1,4 +1,4 @@
-"""The types of the values in a rubric: name, JSON Schema and conversion of each, made from Python
+"""The types of values in a TOML file: name, JSON Schema and conversion of each, made from Python
 annotations.
 """
 

@@ -1,0 +1,57 @@
+"""The page of an inspection."""
+
+from collections.abc import Callable
+
+from grader import __version__
+from grader.base.problems import Problem
+from grader.base.source import Source
+from grader.base.text import printable
+from grader.report.drawing.picture import plain_picture
+from grader.report.inspection import (
+    MAX_LISTED,
+    Inspection,
+    effect,
+    lists,
+    look_of,
+    robot_line,
+)
+from grader.report.locations import source_lines
+from grader.report.pages.robot_page import render_robot_page
+from grader.report.pages.shell import Assets
+from grader.report.pages.viewing import ProblemCard, Viewing
+from grader.report.readings import problem_line
+
+_CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
+
+
+def inspection_html(inspection: Inspection, viewing: Viewing | None = None) -> str:
+    """Return the inspection as an HTML page, with the joints at the given positions; of `grader
+    view` with `viewing`.
+    """
+    robot = inspection.robot
+    configuration = robot.configuration if robot is not None else None
+    path = robot.path if robot is not None else inspection.path
+    lines = [(each.path, f": {robot_line(each)}") for each in inspection.robots]
+    values = {
+        "version": __version__,
+        "title": printable(configuration.robot.name if configuration is not None else path),
+        "path": path,
+        "effect": effect(inspection),
+        "extent": inspection.extent.words if inspection.extent is not None else "",
+        "verdict": _CLASSES.get(look_of(inspection), "failed"),
+        "problems": [
+            problem_card(problem, inspection.source) for problem in inspection.problems[:MAX_LISTED]
+        ],
+        "lists": [("Robots", lines)] if robot is None and lines else lists(robot),
+    }
+    relative_to = robot.relative_to if robot is not None else None
+    meshes = robot.meshes if robot is not None else None
+    wheels = robot.wheels if robot is not None else ()
+    picture = plain_picture(configuration, relative_to, meshes, wheels)
+    return render_robot_page("inspection.html", values, picture, Assets(), {}, viewing)
+
+
+def problem_card(problem: Problem, source_of: Callable[[str], Source | None]) -> ProblemCard:
+    """Return a problem with its line, and its place in the source."""
+    line = problem_line(problem)
+    return ProblemCard(problem.severity, line, source_lines(problem.location, source_of))

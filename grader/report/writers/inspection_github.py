@@ -1,0 +1,28 @@
+"""An inspection as annotations of its files for GitHub."""
+
+from grader.base.text import printable
+from grader.report.inspection import Inspection, effect
+from grader.report.writers.workflow_commands import (
+    Annotation,
+    annotation_place,
+    annotation_text,
+    command,
+    limited_annotations,
+)
+
+
+def inspection_github(inspection: Inspection) -> str:
+    """Return the annotations of an inspection: what ROS 2 does as a notice, then its problems,
+    errors first.
+    """
+    found = [
+        Annotation(
+            problem.code,
+            problem.severity,
+            annotation_text([printable(problem.message)], problem.location, inspection.base),
+            annotation_place(problem.location, inspection.source, inspection.base),
+        )
+        for problem in inspection.problems
+    ]
+    first = command("notice", {}, printable(inspection.path), effect(inspection))
+    return "".join([first, *limited_annotations(found, 1)])

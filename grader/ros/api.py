@@ -1,0 +1,107 @@
+"""The public API of `ros`: what the rest of the grader uses of it, besides the checks, hints and
+rubric tools, which take robots and packages apart. All other names may move at any time.
+
+**Read.** `open_workspace` reads what is at a path, `read_workspace` a file tree, and `read_urdf`
+one URDF. Nothing is run or imported, and no text raises: a URDF that ROS 2 rejects is a `Reading`
+with the verdict `rejected`, and a file that cannot be opened is `Unreadable`. Only a path without
+anything that can be read raises InputError. Files are read as the programs of ROS 2 read them, by
+default those of Jazzy: a URDF as urdfdom on TinyXML2, xacro as xacro, a package as colcon, ament
+and launch.
+
+**Ask.** A `Robot` has values, and a `Configuration` has poses. Lengths and sizes are metres, angles
+are radians about fixed axes x, y, z (REP 103), masses are kilograms. A vector is three floats, and
+a pose is a `Transform`: `T_a_b` maps points of frame b to frame a. What a file lacks raises
+MissingElement, which names what exists; what cannot be determined statically raises NotDecided; a
+shape whose size is not known raises UnknownShape.
+
+**Show.** Every element, `Problem` and `Mismatch` has its place: path, line and column from 1.
+
+A name is imported with its module when it is first asked for: most commands need few of them.
+
+>>> from grader.ros.api import Configuration, read_urdf
+>>> robot = read_urdf('<robot name="r"><link name="base"/></robot>').robot
+>>> Configuration(robot).pose("base").translation
+(0.0, 0.0, 0.0)
+"""
+# ruff: noqa: PLC0414  mypy takes a name that is imported `as` itself for one of this module
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from grader.ros.known.parameter_texts import parameter_explanation as parameter_explanation
+    from grader.ros.known.releases import Release as Release
+    from grader.ros.package.mesh_loading import MeshLoader as MeshLoader
+    from grader.ros.package.package import MANIFEST as MANIFEST
+    from grader.ros.package.package import SETUP as SETUP
+    from grader.ros.package.package import Package as Package
+    from grader.ros.package.robot_file import Absent as Absent
+    from grader.ros.package.robot_file import Read as Read
+    from grader.ros.package.robot_file import Unreadable as Unreadable
+    from grader.ros.package.robots import is_robot as is_robot
+    from grader.ros.urdf.driving import Drive as Drive
+    from grader.ros.urdf.driving import describe_driving as describe_driving
+    from grader.ros.urdf.driving import plan_drive as plan_drive
+    from grader.ros.urdf.kinematics import Configuration as Configuration
+    from grader.ros.urdf.model import Box as Box
+    from grader.ros.urdf.model import Cylinder as Cylinder
+    from grader.ros.urdf.model import Joint as Joint
+    from grader.ros.urdf.model import Link as Link
+    from grader.ros.urdf.model import Mesh as Mesh
+    from grader.ros.urdf.model import Origin as Origin
+    from grader.ros.urdf.model import Robot as Robot
+    from grader.ros.urdf.model import Sphere as Sphere
+    from grader.ros.urdf.model import Visual as Visual
+    from grader.ros.urdf.normal_form import robot_hash as robot_hash
+    from grader.ros.urdf.normal_form import written_form as written_form
+    from grader.ros.urdf.reader import Reading as Reading
+    from grader.ros.urdf.reader import read_urdf as read_urdf
+    from grader.ros.urdf.shapes import Shape as Shape
+    from grader.ros.urdf.shapes import UnknownShape as UnknownShape
+    from grader.ros.urdf.wheel_travel import travel_of as travel_of
+    from grader.ros.urdf.wheel_travel import turning_joint as turning_joint
+    from grader.ros.workspace.all_robots import read_workspace as read_workspace
+    from grader.ros.workspace.extent import Extent as Extent
+    from grader.ros.workspace.name_places import NamePlaces as NamePlaces
+    from grader.ros.workspace.names import Mismatch as Mismatch
+    from grader.ros.workspace.opened import OpenedWorkspace as OpenedWorkspace
+    from grader.ros.workspace.opening import STANDARD_INPUT as STANDARD_INPUT
+    from grader.ros.workspace.opening import open_workspace as open_workspace
+    from grader.ros.workspace.problem_kinds import EVERY_KIND as EVERY_KIND
+    from grader.ros.workspace.rule_table import RULES as RULES
+    from grader.ros.workspace.rule_table import Rule as Rule
+    from grader.ros.xml.xml_problems import RECOVERED as RECOVERED
+else:
+    _NAMES = {
+        "known.parameter_texts": "parameter_explanation",
+        "known.releases": "Release",
+        "package.mesh_loading": "MeshLoader",
+        "package.package": "MANIFEST SETUP Package",
+        "package.robot_file": "Absent Read Unreadable",
+        "package.robots": "is_robot",
+        "urdf.driving": "Drive describe_driving plan_drive",
+        "urdf.kinematics": "Configuration",
+        "urdf.model": "Box Cylinder Joint Link Mesh Origin Robot Sphere Visual",
+        "urdf.normal_form": "robot_hash written_form",
+        "urdf.reader": "Reading read_urdf",
+        "urdf.shapes": "Shape UnknownShape",
+        "urdf.wheel_travel": "travel_of turning_joint",
+        "workspace.all_robots": "read_workspace",
+        "workspace.extent": "Extent",
+        "workspace.name_places": "NamePlaces",
+        "workspace.names": "Mismatch",
+        "workspace.opened": "OpenedWorkspace",
+        "workspace.opening": "STANDARD_INPUT open_workspace",
+        "workspace.problem_kinds": "EVERY_KIND",
+        "workspace.rule_table": "RULES Rule",
+        "xml.xml_problems": "RECOVERED",
+    }
+    _MODULES = {name: module for module, names in _NAMES.items() for name in names.split()}
+
+    def __getattr__(name: str) -> object:
+        """Return a name of the API, and keep it."""
+        if name not in _MODULES:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        value = getattr(import_module(f"grader.ros.{_MODULES[name]}"), name)
+        globals()[name] = value
+        return value
