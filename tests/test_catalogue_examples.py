@@ -210,7 +210,7 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(
     if (
         code == "REF012"
     ):  # one file that is short enough for an example asks for less than is allowed
-        monkeypatch.setattr(budget, "_OF_SUBMISSION", 5_000)
+        monkeypatch.setattr(budget, "_OF_WORKSPACE", 5_000)
     for side in ("wrong", "right"):
         files, lines = files_of(code, side)
         submission = opened(tmp_path / side, files)

@@ -56,7 +56,7 @@ def test_work_grows_as_the_input(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     """Twice the input takes at most 2.3 times the work, beyond that of an empty package."""
-    monkeypatch.setattr(budget, "_OF_SUBMISSION", _TINY)
+    monkeypatch.setattr(budget, "_OF_WORKSPACE", _TINY)
     inputs = {"empty": package(), "one": BOMBS[name](_SIZE), "two": BOMBS[name](2 * _SIZE)}
     folders = {size: _written(tmp_path / size, files) for size, files in inputs.items()}
     read(folders["empty"])  # what is loaded once

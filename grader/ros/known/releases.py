@@ -8,6 +8,7 @@ from typing import Literal, NamedTuple, get_args
 
 from grader.base.text import MAX_NAMED, enumerated
 
+# A release of ROS 2, oldest first: https://docs.ros.org/en/rolling/Releases.html
 Release = Literal["foxy", "galactic", "humble", "iron", "jazzy", "kilted", "rolling"]
 RELEASES: tuple[Release, ...] = get_args(Release)
 NameKind = Literal[

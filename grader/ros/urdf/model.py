@@ -110,7 +110,9 @@ class Sphere:
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A mesh file. Only pictures open it, so to checks its extent is unknown."""
+    """A mesh file, with a factor of its size along each axis. Only pictures open it, so to checks
+    its extent is unknown.
+    """
 
     filename: str
     scale: Vector = (1.0, 1.0, 1.0)
@@ -159,8 +161,8 @@ class Material:
 
 @dataclass(frozen=True, slots=True)
 class Visual:
-    """One shape that a link shows. `material` is resolved; None if ROS 2 has no colour for it, or
-    cannot read it.
+    """One shape that a link shows, placed in its frame. `material` is resolved; None if ROS 2 has
+    no colour for it, or cannot read it.
     """
 
     geometry: Geometry

@@ -15,7 +15,7 @@ from grader.base.text import quoted
 from grader.base.transforms import AXES, Transform, Vector, dot, minus, turn_between, unit
 from grader.ros.urdf.model import Box, Cylinder, Geometry, Mesh, Sphere
 
-Shape = Box | Cylinder | Sphere
+Shape = Box | Cylinder | Sphere  # whose size is known, in metres
 
 # relative to its length; a direction that leans less from a face's normal means the whole face
 _TIE = 1e-9

@@ -27,7 +27,18 @@ _NO_FILES = make_tree("", (), ())
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OpenedWorkspace:
-    """The packages and the robots of opened files: a URDF on its own, a folder or an archive."""
+    """The packages and the robots of opened files: a URDF on its own, a folder or an archive.
+
+    `open_workspace` makes it of a path, `read_workspace` of a file tree. Commands show its robots,
+    its problems and how much of it was read. What is not asked for is not read.
+
+    >>> from grader.files.tree import make_tree, overlaid
+    >>> from grader.ros.api import read_workspace
+    >>> files = {"arm.urdf": b"<robot name='arm'><link name='base'/></robot>"}
+    >>> opened = read_workspace(overlaid(make_tree("ws", (), ()), files), "ws", 10_000, {})
+    >>> [robot.path for robot in opened.robots], opened.extent().robots
+    (['arm.urdf'], 1)
+    """
 
     id: str  # the name of the file or folder, or of whose it is
     urdf: Urdf  # of a workspace, all of whose robots are read, absent

@@ -17,7 +17,7 @@ from grader.ros.package.robot_file import Surroundings, read_as_ros
 from grader.ros.python.budget import Budget
 from grader.ros.workspace.opened import OpenedWorkspace
 
-STANDARD_INPUT = "-"
+STANDARD_INPUT = "-"  # as the path of a URDF
 # Files that are never meant as a URDF.
 _NO_URDFS = frozenset(
     {
