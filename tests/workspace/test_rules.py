@@ -23,7 +23,7 @@ def test_a_sentence_says_what_is_right() -> None:
     """It is one sentence, and no two rules have the same."""
     sentences = [rule.sentence for rule in RULES.values()]
     assert len({*sentences}) == len(sentences)
-    assert [text for text in sentences if not re.fullmatch(r"[A-Z<a-z].*[a-z>\d]\.", text)] == []
+    assert [text for text in sentences if not re.fullmatch(r"[A-Z<a-z].*[\w>)]\.", text)] == []
 
 
 def test_every_rule_is_named_by_a_finder() -> None:
