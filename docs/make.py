@@ -2,11 +2,13 @@
 date.
 """
 
+import json
 import re
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from io import StringIO
+from itertools import chain
 from pathlib import Path
 from typing import Any, get_args
 
@@ -38,6 +40,7 @@ from grader.report.examples import example_blocks, explanation_of, wrong_and_rig
 from grader.report.explanations import CAUSES_OF_CHECK, EFFECTS, default_text, rules_of
 from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal
+from grader.ros.known.package_files import IndexedKey, facts_in_file, packages_with_files
 from grader.ros.known.parameter_rows import NodeRows, known_nodes, node_rows
 from grader.ros.workspace.problem_kinds import EVERY_KIND
 
@@ -83,6 +86,7 @@ def pages() -> dict[str, str]:
             "grade-one-submission.md", ["```", terminal(report).rstrip(), "```"]
         ),
         "report.svg": picture(report),
+        "../grader/ros/known/index.toml": index_of_packages(),
         **{f"schemas/{name}.json": to_json(json_schema(name)) for name in get_args(SchemaName)},
     }
 
@@ -152,6 +156,24 @@ def known_parameters() -> Iterator[str]:
         count = sum(len(known.own_rows) for known in nodes)
         source = nodes[0].source.partition(",")[0]
         yield f"| {package} | {names} | {count} | {source} |"
+
+
+def index_of_packages() -> str:
+    """Return the packages that have each fact of which readers need those of all packages."""
+    lines = [
+        "# The packages that have a fact, for readers of all that have it. Written by docs/make.py."
+    ]
+    for key in get_args(IndexedKey):
+        packages = [package for package in sorted(packages_with_files()) if has_fact(package, key)]
+        lines.append(f"{key} = {json.dumps(packages)}")
+    return "\n".join(lines) + "\n"
+
+
+def has_fact(package: str, key: str) -> bool:
+    """Return whether a package, or a program, controller or launch file of it has a fact."""
+    facts = facts_in_file(package)
+    parts = [facts.get(kind, {}).values() for kind in ("program", "controller", "launch")]
+    return any(key in table for table in chain([facts], *parts))
 
 
 def misconfigurations() -> Iterator[str]:

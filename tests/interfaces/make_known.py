@@ -1,7 +1,7 @@
 """Write the interfaces of well-known packages: `python -m tests.interfaces.make_known CHECKOUT...`.
 
 The arguments are clones of the repositories in PACKAGES with the branches of their releases, which are read with git and
-not checked out. The tables are `grader/ros/known/interfaces/PACKAGE.toml`.
+not checked out. The tables stand at the end of `grader/ros/known/packages/PACKAGE.toml`. What stands before them is kept.
 
 With the package `rosbags` of PyPI installed, the messages of Kilted are those that it has.
 """
@@ -24,8 +24,8 @@ from grader.ros.interfaces.interface_types import (
     InterfaceSection,
 )
 from grader.ros.known.releases import RELEASES, Release
+from tests.known.tables import write_tables
 
-FOLDER = Path("grader/ros/known/interfaces")
 # The repositories, with the packages that are taken from each.
 PACKAGES = {
     "common_interfaces": (
@@ -66,7 +66,6 @@ Types = dict[str, Interface]  # by msg/Twist
 
 def main(checkouts: Iterable[str]) -> None:
     """Write the tables of the packages of these checkouts."""
-    FOLDER.mkdir(exist_ok=True)
     for checkout in checkouts:
         repository = name_of(checkout)
         by_release = {release: types_of(checkout, repository, release) for release in RELEASES}
@@ -76,8 +75,7 @@ def main(checkouts: Iterable[str]) -> None:
             if kilted:
                 services = {name: it for name, it in found["kilted"].items() if it.kind != "msg"}
                 found["kilted"] = {**kilted, **services}
-            text = table_of(found, repository)
-            (FOLDER / f"{package}.toml").write_text(text, encoding="utf-8")
+            write_tables(package, table_of(found, repository))
 
 
 def name_of(checkout: str) -> str:

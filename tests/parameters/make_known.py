@@ -1,9 +1,9 @@
 """Write the parameters of controllers: `python -m tests.parameters.make_known CHECKOUT...`.
 
 The arguments are clones of the repositories in SOURCES with the branches of their releases, which are
-read with git and not checked out. The tables are `grader/ros/known/parameters/PACKAGE.toml`: what the
-files of generate_parameter_library say, with what `by_hand.toml` beside this script adds. Nothing of
-their descriptions is copied.
+read with git and not checked out. The tables stand at the end of `grader/ros/known/packages/PACKAGE.toml`:
+what the files of generate_parameter_library say, with what `by_hand.toml` beside this script adds.
+Nothing of their descriptions is copied. What stands before them is kept.
 """
 
 import re
@@ -19,9 +19,10 @@ import yaml
 
 from grader.ros.known.parameter_rows import COVERED
 from grader.ros.known.releases import Release
+from tests.known.tables import write_tables
 
-FOLDER = Path("grader/ros/known/parameters")
 BY_HAND = Path(__file__).with_name("by_hand.toml")
+_COMMENT = "# By python -m tests.parameters.make_known, of the branches of Humble to Kilted.\n"
 _STEERING = "steering_controllers_library/src/steering_controllers_library.yaml"
 _GRIPPER = "gripper_controllers/src/gripper_action_controller_parameters.yaml"
 _FORWARD = "forward_command_controller/src/forward_command_controller_parameters.yaml"
@@ -133,9 +134,8 @@ def main(checkouts: Iterable[str]) -> None:
         nodes = tables.setdefault(package_of(node), {})
         nodes[node] = with_additions(nodes.get(node, {}), added)
     for package, nodes in tables.items():
-        text = "# By python -m tests.parameters.make_known, of the branches of Humble to Kilted.\n"
-        text += "".join(text_of_node(node, table) for node, table in sorted(nodes.items()))
-        FOLDER.joinpath(f"{package}.toml").write_text(text, encoding="utf-8")
+        texts = [text_of_node(node, table) for node, table in sorted(nodes.items())]
+        write_tables(package, "".join([_COMMENT, *texts]))
 
 
 def package_of(node: str) -> str:

@@ -3,13 +3,14 @@
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
+from grader.ros.known.package_files import FOLDER
+from grader.ros.known.package_rows import usual_names
 from grader.ros.known.parameter_rows import (
     COVERED,
     ParameterRow,
@@ -18,7 +19,6 @@ from grader.ros.known.parameter_rows import (
     node_rows,
     row_for,
     rows_of,
-    usual_names,
 )
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.workspace.all_robots import read_workspace
@@ -26,7 +26,6 @@ from grader.ros.workspace.names import Mismatch
 from grader.ros.workspace.reading import read_agreement
 from tests.workspace.rovers import FILES
 
-FOLDER = Path("grader/ros/known/parameters")
 MAX_SIZE = 400 * 1024  # bytes of the rows in the wheel
 _PACKAGE = ("package.xml", "setup.py", "setup.cfg", "resource/rover", "rover/__init__.py")
 _PROGRAMS = ("rover/pilot.py", "rover/horn.py")  # of the entry points of setup.py

@@ -1,5 +1,5 @@
 """The messages, services and actions of well-known packages, by release: the tables of
-known/interfaces, each of which is read when it is needed.
+known/packages, each of which is read when it is needed.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -14,7 +14,7 @@ from grader.ros.interfaces.interface_types import (
     InterfaceKind,
     InterfaceSection,
 )
-from grader.ros.known.known import interface_table
+from grader.ros.known.package_tables import interface_table
 from grader.ros.known.releases import RELEASES, Release
 
 _ABSENT = "absent"

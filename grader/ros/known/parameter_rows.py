@@ -1,25 +1,32 @@
-"""The parameters of well-known nodes, controllers and plugins, by release: the rows of the folder
-`parameters`, of which the file of one package is read when it is needed.
+"""The parameters of well-known nodes, controllers and plugins, by release: rows of the files of
+their packages.
 
 docs/known-parameters.md describes the form of a row.
 """
 
 import re
-import tomllib
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple
 
+from grader.ros.known.package_files import packages_with_files, tables_in_file
+from grader.ros.known.package_rows import usual_names
 from grader.ros.known.releases import RELEASES, Release
+from grader.ros.known.typed_rows import read_row
 
-_FOLDER = Path(__file__).with_name("parameters")
-_NAMES = "nodes"  # the file with the usual names of nodes
 _FIRST, _LAST = RELEASES.index("humble"), RELEASES.index("kilted")
 COVERED: tuple[Release, ...] = RELEASES[_FIRST : _LAST + 1]
 _PLACE = re.compile(r"<([^<>]+)>")
 _SEPARATOR = re.compile("/|::")
 _NUMBER, _REST = "#", "**"
+_FIELDS = {  # by the keys of the files, where they have another name
+    "required": "is_required",
+    "with": "only_with",
+    "min": "lower",
+    "max": "upper",
+    "subset_of": "entries",
+    "class": "is_class",
+}
 
 
 class ParameterRow(NamedTuple):
@@ -91,8 +98,9 @@ class NodeRows(NamedTuple):
     @property
     def own_rows(self) -> tuple[ParameterRow, ...]:
         """The rows that no other node has before it."""
-        table = _table_of(self.node) or {}
-        return tuple(row for row in self.rows if row.name in table.get("parameters", {}))
+        table = _table_of(self.node)
+        parameters = table.parameters if table is not None else {}
+        return tuple(row for row in self.rows if row.name in parameters)
 
     def is_in(self, release: Release) -> bool:
         """Return whether a release has the node."""
@@ -102,6 +110,18 @@ class NodeRows(NamedTuple):
     def in_release(self, release: Release) -> tuple[ParameterRow, ...]:
         """Return the rows of a release."""
         return tuple(row for row in self.rows if row.is_in(release))
+
+
+class NodeTable(NamedTuple):
+    """The table of a node in the file of its package."""
+
+    source: str = ""
+    also: tuple[str, ...] = ()  # the nodes whose rows it has too
+    open: Any = False  # whether it reads more than its rows, or the releases in which it does
+    any_type: bool = False
+    since: Release = COVERED[0]
+    until: Release = COVERED[-1]
+    parameters: Mapping[str, Any] = {}
 
 
 def rows_of(node: str, release: Release | None = None) -> tuple[ParameterRow, ...]:
@@ -131,10 +151,14 @@ def row_for(node: str, parameter: str, release: Release | None = None) -> Parame
 def known_nodes() -> tuple[str, ...]:
     """Return all nodes, controllers and plugins that have rows."""
     nodes: list[str] = []
-    for path in sorted(_FOLDER.glob("*.toml")):
-        if path.stem != _NAMES:
-            nodes += (node for node in _read(path.stem) if "/" in node or "::" in node)
+    for package in sorted(packages_with_files()):
+        nodes += (name for name in tables_in_file(package) if is_name_of_node(name))
     return tuple(nodes)
+
+
+def is_name_of_node(table: str) -> bool:
+    """Return whether a table of a package's file has the parameters of a node."""
+    return _SEPARATOR.search(table) is not None
 
 
 def node_called(name: str) -> str | None:
@@ -150,78 +174,44 @@ def node_called(name: str) -> str | None:
     return ends[0] if len(ends) == 1 else None
 
 
-def usual_names() -> Mapping[str, str]:
-    """Return the nodes by the names that they usually have."""
-    return _read(_NAMES)
-
-
 @cache
 def node_rows(node: str) -> NodeRows | None:
     """Return the rows of a node, with those of what it is made of; None for one without rows."""
     table = _table_of(node)
     if table is None:
         return None
-    rows = [*_read_rows(table.get("parameters", {}))]
-    open_in: bool | list[Release] = table.get("open", [])
+    rows = [*read_rows(table.parameters)]
+    open_in = table.open
     if isinstance(open_in, bool):
         open_in = [*COVERED] if open_in else []
-    for other in table.get("also", ()):
+    for other in table.also:
         known = node_rows(other)
         assert known is not None, other
         written = {row.name for row in rows}
         rows += (row for row in known.rows if row.name not in written)
     return NodeRows(
         node,
-        table.get("source", ""),
+        table.source,
         tuple(rows),
         tuple(open_in),
-        table.get("any_type", False),
-        table.get("since", COVERED[0]),
-        table.get("until", COVERED[-1]),
+        table.any_type,
+        table.since,
+        table.until,
     )
 
 
-def _table_of(node: str) -> Mapping[str, Any] | None:
-    package = _SEPARATOR.split(node)[0]
-    if package not in _files():
-        return None
-    table: Mapping[str, Any] | None = _read(package).get(node)
-    return table
-
-
 @cache
-def _files() -> Collection[str]:
-    return frozenset(path.stem for path in _FOLDER.glob("*.toml")) - {_NAMES}
+def _table_of(node: str) -> NodeTable | None:
+    table = tables_in_file(_SEPARATOR.split(node)[0]).get(node)
+    return read_row(NodeTable, table) if table is not None else None
 
 
-@cache
-def _read(name: str) -> Mapping[str, Any]:
-    return tomllib.loads((_FOLDER / f"{name}.toml").read_text("utf-8"))
-
-
-def _read_rows(parameters: Mapping[str, Any]) -> Iterator[ParameterRow]:
+def read_rows(parameters: Mapping[str, Any]) -> Iterator[ParameterRow]:
+    """Yield the rows of the parameters of a node. Raises ValueError for an unknown key."""
     for name, written in parameters.items():
         for keys in written if isinstance(written, list) else [written]:
-            yield ParameterRow(
-                name=name,
-                type=keys.get("type", ""),
-                default=keys.get("default"),
-                is_required=keys.get("required", False),
-                only_with=keys.get("with", ""),
-                unless=keys.get("unless", {}),
-                above=keys.get("above"),
-                below=keys.get("below"),
-                lower=keys.get("min"),
-                upper=keys.get("max"),
-                one_of=tuple(keys.get("one_of", ())),
-                entries=tuple(keys.get("subset_of", ())),
-                size=keys.get("size"),
-                libraries=tuple(keys.get("libraries", ())),
-                loads_libraries=keys.get("loads_libraries", False),
-                since=keys.get("since", COVERED[0]),
-                until=keys.get("until", COVERED[-1]),
-                is_class=keys.get("class", False),
-            )
+            fields = {_FIELDS.get(key, key): value for key, value in keys.items()}
+            yield read_row(ParameterRow, {"name": name, **fields})
 
 
 @cache

@@ -16,7 +16,7 @@ from typing import Any
 from grader.files.limits import SETUP_ASSISTANT
 from grader.ros.build.places import BY_MOVEIT, PREFIX, SHARE
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
-from grader.ros.known.known import moveit_launches
+from grader.ros.known.package_tables import StartRow, launch_functions
 from grader.ros.launch.launch_classes import DESCRIPTION
 from grader.ros.launch.launch_model import (
     Contents,
@@ -131,7 +131,7 @@ def moveit_exports() -> Mapping[str, Sequence[str]]:
             "DeclareBooleanLaunchArg",
         ),
         _LAUNCHES: (
-            *moveit_launches(),
+            *launch_functions(),
             *of_both,
             "add_debuggable_node",
             "DeclareBooleanLaunchArg",
@@ -183,7 +183,7 @@ class MoveItConfigurations:
             f"{_BUILDER}.to_dict": lambda evaluation, call: (
                 self._finish(evaluation, call).find("to_dict").run()
             ),
-            **{f"{_LAUNCHES}.{name}": partial(self._start, name) for name in moveit_launches()},
+            **{f"{_LAUNCHES}.{name}": partial(self._start, name) for name in launch_functions()},
         }
 
     def _build(self, evaluation: Evaluation, call: Call) -> Call:
@@ -437,17 +437,17 @@ class MoveItConfigurations:
         folder = given.get("launch_package_path")
         folders = {"package": package, "folder": str(known(folder)) if folder else package}
         make = _Actions(call.at, configs, folders)
-        launch = moveit_launches()[name]
-        rows = [
+        launch = launch_functions()[name]
+        rows: list[StartRow | Unknown] = [
             row
-            for row in launch["start"]
-            if not row.get("optional") or self._is_there(make.value(row["include"]))
+            for row in launch.start
+            if not row.optional or self._is_there(make.value(row.include))
         ]
         rows += self._found_in(configs, name, call.at)
         actions: list[Value] = []
-        for argument, default in launch.get("flags", {}).items():
+        for argument, default in launch.flags.items():
             actions.append(make.argument(argument, default, is_flag=True))
-        for argument, default in launch.get("arguments", {}).items():
+        for argument, default in launch.arguments.items():
             actions.append(make.argument(argument, default, is_flag=False))
         for row in rows:
             if isinstance(row, Unknown):
@@ -456,17 +456,18 @@ class MoveItConfigurations:
                 actions += make.started(row)
         return Call(DESCRIPTION, [], {"initial_entities": actions}, call.at)
 
-    def _found_in(self, configs: Namespace, name: str, at: Position) -> Iterator[Any]:
+    def _found_in(
+        self, configs: Namespace, name: str, at: Position
+    ) -> Iterator[StartRow | Unknown]:
         """Yield the rows of what a function starts for controllers or virtual joints; Unknown
         for unknown ones.
         """
         if name == "generate_spawn_controllers_launch":
             for it in _controllers_in(configs.find("trajectory_execution"), at):
-                yield (
-                    it
-                    if isinstance(it, Unknown)
-                    else {"node": "controller_manager/spawner", "arguments": [it]}
-                )
+                if isinstance(it, Unknown):
+                    yield it
+                else:
+                    yield StartRow("controller_manager/spawner", arguments=(it,))
         elif name == "generate_static_virtual_joint_tfs_launch":
             srdf = next(iter(configs.find("robot_description_semantic").values()))
             if isinstance(srdf, FileText):
@@ -477,7 +478,7 @@ class MoveItConfigurations:
                 yield Unknown("the virtual joints of the SRDF are not evaluated", at)
                 return
             for words in _virtual_joints(text):
-                yield {"node": "tf2_ros/static_transform_publisher", "arguments": words}
+                yield StartRow("tf2_ros/static_transform_publisher", arguments=tuple(words))
 
 
 def _named(call: Call, names: Sequence[str]) -> dict[str, Value]:
@@ -566,31 +567,31 @@ class _Actions:
             return value.format(**self.folders)
         return value
 
-    def started(self, row: Mapping[str, Any]) -> list[Value]:
+    def started(self, row: StartRow) -> list[Value]:
         """Return the node or include of a row; two nodes if one has a debugger."""
-        condition = self.when(row["if"]) if "if" in row else None
-        if "include" in row:
-            source = self.value(row["include"])
+        condition = self.when(row.only_if) if row.only_if else None
+        if row.include:
+            source = self.value(row.include)
             return [self.made(_INCLUDE, launch_description_source=source, condition=condition)]
-        package, _, executable = row["node"].partition("/")
+        package, _, executable = row.node.partition("/")
         parameters: list[Value] = []
-        for name in row.get("parts", ()):
+        for name in row.parts:
             part = self.configs.find(name)
             parameters.append(part.run() if isinstance(part, PlainFunction) else part)
-        table = {name: self.value(value) for name, value in row.get("parameters", {}).items()}
+        table = {name: self.value(value) for name, value in row.parameters.items()}
         if table:
             parameters.append(table)
-        parameters += map(self.value, row.get("files", ()))
+        parameters += map(self.value, row.files)
         node = partial(
             self.made,
             _NODE,
             package=package,
             executable=executable,
-            arguments=[*map(self.value, row.get("arguments", ()))],
+            arguments=[*map(self.value, row.arguments)],
             parameters=parameters,
-            remappings=[*map(tuple, row.get("remappings", ()))],
+            remappings=[*map(tuple, row.remappings)],
         )
-        if not row.get("debug"):
+        if not row.debug:
             return [node(condition=condition)]
         debugged = node(condition=self.when("debug"), prefix=["gdb --ex run --args"])
         return [node(condition=self.when("debug", _UNLESS)), debugged]

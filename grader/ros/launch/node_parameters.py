@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from grader.base.source import Location
 from grader.ros.build.places import PREFIX
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml, yaml_value
-from grader.ros.known.known import spawner_options
+from grader.ros.known.package_rows import program_row
 from grader.ros.launch.call_arguments import FILE, SCALARS, TYPED, items_in, kind_of, type_of
 from grader.ros.launch.launch_model import (
     NAMESPACE,
@@ -690,7 +690,7 @@ def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
     ]
     names: list[str] = []
     given: dict[str, list[str]] = {}
-    options = spawner_options()
+    options = program_row("controller_manager", "spawner").valued_options
     rest = iter(known)
     for word in rest:
         option, is_joined, value = word.partition("=")

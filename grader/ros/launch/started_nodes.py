@@ -1,7 +1,7 @@
 """The nodes that a launch file starts, as launch_ros does: their names, and the files that they are
 given.
 
-These files are the robot and the configuration of RViz. `ros/known/launch_files.toml` lists the
+These files are the robot and the configuration of RViz. The files in `ros/known/packages` list the
 nodes that launch files of well-known packages start, which workspaces include but do not contain.
 """
 
@@ -13,11 +13,8 @@ from contextlib import suppress
 from typing import Any
 
 from grader.ros.build.places import PREFIX, ROS, SHARE
-from grader.ros.known.known import (
-    ending_commands,
-    is_on_every_machine,
-    started_by_launch_files,
-)
+from grader.ros.known.lab_machine import lab_machine
+from grader.ros.known.package_rows import package_row, program_row
 from grader.ros.launch.call_arguments import OPENED, TYPED, items_in
 from grader.ros.launch.launch_model import (
     NAMESPACE,
@@ -236,11 +233,19 @@ def ends_by_itself(action: Value, context: Context) -> bool:
         words += _resolve_words(arguments, context, action.at)
     else:
         return False
-    for command, options in ending_commands().items():
+    if words[:2] == ["ros2", "run"] and len(words) > 3:
+        options = program_row(words[2], words[3]).ends_unless
+        return options is not None and _has_none_of(words, options)
+    for command, options in lab_machine().ending_commands.items():
         first = command.split()
         if words[: len(first)] == first:
-            return not options or {PART_UNKNOWN, *options}.isdisjoint(words)
+            return _has_none_of(words, options)
     return False
+
+
+def _has_none_of(words: Sequence[str], options: Sequence[str]) -> bool:
+    """Return whether a command certainly has none of some options."""
+    return not options or {PART_UNKNOWN, *options}.isdisjoint(words)
 
 
 def _node_of_command(words: list[str], call: Call) -> Call | None:
@@ -501,7 +506,8 @@ def _tables_in(parameters: Value) -> Iterator[dict[Any, Value]]:
 
 def is_of_ros(package: str) -> bool:
     """Return whether a package is on every machine that runs ROS 2."""
-    return is_on_every_machine(package) or package in started_by_launch_files()
+    row = package_row(package)
+    return row.is_installed or bool(row.launch)
 
 
 def start_known_file(findings: Findings, path: str, call: Call, context: Context) -> bool:
@@ -512,9 +518,10 @@ def start_known_file(findings: Findings, path: str, call: Call, context: Context
     package, _, file = name.partition("/launch/")
     if not prefix.startswith((PREFIX, ROS)):
         return False
-    nodes = started_by_launch_files().get(package, {}).get(file)
-    if nodes is None:
+    launch = package_row(package).launch.get(file)
+    if launch is None:
         return False
+    nodes = launch.starts
     above = context.arguments.get(NAMESPACE, "")
     namespace = above if isinstance(above, str) else None
     findings.nodes += [

@@ -12,7 +12,7 @@ from math import isclose
 from grader.base.text import enumerated
 from grader.ros.build.places import HOME, PREFIX, SHARE
 from grader.ros.config.yaml_nodes import yaml_value
-from grader.ros.known.known import is_on_every_machine, programs_of
+from grader.ros.known.package_rows import package_row, programs_of
 from grader.ros.launch.launch_model import Contents, Context, FileText, Resolved
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.builtins import BUILTINS, MATH
@@ -328,7 +328,7 @@ def check_program(package: str, name: str, context: Context, at: Position) -> No
         if manifest is not None and _OF_CMAKE in manifest[0]:
             listed = "install(PROGRAMS ...) and install(TARGETS ...) in CMakeLists.txt"
         where = f" in lib/{package}: see {listed}"
-        known = f"; it has {others}" if is_on_every_machine(package) else where
+        known = f"; it has {others}" if package_row(package).is_installed else where
         raise EvaluationFails(f"the package {package!r} has no program {name!r}{known}", at)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from grader.base.problems import Problem
 from grader.ros.build import package_problems as kinds
 from grader.ros.build.installation import CmakeTarget, Installation
-from grader.ros.known.known import cmake_table
+from grader.ros.known.cmake_words import cmake_words
 from grader.ros.package.package import Package
 
 _SOURCES = (".cpp", ".cc", ".cxx")
@@ -50,7 +50,7 @@ def _not_linked(package: Package, setup: Installation, target: CmakeTarget) -> I
     """Yield packages whose headers a target includes, and that neither ament_target_dependencies()
     names nor what it names exports.
     """
-    exports = cmake_table("exports")
+    exports = cmake_words().exports
     if any(word in setup.source.text for word in _OTHER_WAYS):
         return
     if not target.packages or not {*target.packages} <= exports.keys():
@@ -60,7 +60,7 @@ def _not_linked(package: Package, setup: Installation, target: CmakeTarget) -> I
         name = pending.pop()
         if name not in reached:
             reached.add(name)
-            pending += str(exports.get(name, "")).split()
+            pending += exports.get(name, "").split()
     included: dict[str, str] = {}
     for path in target.sources[:_MAX_FILES]:
         for name in _INCLUDE.findall(_text_of(package, path)):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from grader.base.names import closest, near
 from grader.base.source import Location
-from grader.ros.known.known import node_attributes
+from grader.ros.known.package_tables import python_table
 from grader.ros.package.message_uses import CodePart, certain_nodes, given_argument
 from grader.ros.package.node_facts import CodeFault
 from grader.ros.python.constants import binds_unseen, dotted, last_name
@@ -192,7 +192,7 @@ class _Search:
         """Yield the attributes of self that a class of nodes reads, and nothing sets or defines."""
         if attributes.may_be_more:
             return
-        known, asked = {*node_attributes(), *attributes.stored}, {*attributes.texts}
+        known, asked = {*python_table().node_attributes, *attributes.stored}, {*attributes.texts}
         for part in self._module.parts:
             owner = self._module.nodes.get(part.of) if part.of is not None else None
             if owner is not None and not owner.decorator_list and not owner.keywords:

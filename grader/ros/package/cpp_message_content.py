@@ -14,7 +14,7 @@ from grader.ros.cpp.declarations import CppFunction, declared_in, name_in, plain
 from grader.ros.cpp.objects import class_written, variable_of
 from grader.ros.cpp.syntax import CppNode
 from grader.ros.cpp.unit import CppUnit, arguments_of, called_name, is_conditional
-from grader.ros.known.known import known
+from grader.ros.known.package_tables import colour_encodings
 from grader.ros.package.node_facts import ImageEncoding, SynchronisedType
 from grader.ros.package.rclcpp_calls import message_type
 from grader.ros.python.budget import Budget
@@ -203,7 +203,7 @@ class CppContentReader:
             match = _CONSTANT.fullmatch(meaning)
             if match is not None and _DEPTH.fullmatch(match[1]):
                 return match[1]
-            if match is not None and match[1].lower() in known()["colour_encodings"]:
+            if match is not None and match[1].lower() in colour_encodings():
                 return match[1].lower()
         return None
 

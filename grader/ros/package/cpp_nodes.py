@@ -28,7 +28,7 @@ from grader.ros.cpp.unit import (
     called_name,
     is_conditional,
 )
-from grader.ros.known.known import rclcpp_words
+from grader.ros.known.package_tables import cpp_table
 from grader.ros.package.cpp_faults import cpp_faults
 from grader.ros.package.cpp_files import CompiledTarget, CppFiles
 from grader.ros.package.cpp_frames import frames_in
@@ -133,7 +133,7 @@ class _Target:
 
     def __init__(self, compiled: CompiledTarget, budget: Budget) -> None:
         self._compiled, self._unit, self._budget = compiled, compiled.unit, budget
-        interface = LibraryCalls(rclcpp_words("reading"), _SETTING)
+        interface = LibraryCalls(cpp_table().reading, _SETTING)
         self._evaluation = CppEvaluation(self._unit, interface, budget)
         self.content = CppContentReader(self._unit, self._evaluation, budget)
         self.has_loose_declarations = False
@@ -151,7 +151,7 @@ class _Target:
         self._created_at = {created.node: created for created in self._created}
         self._nodes: dict[str | CppNode, NodeFacts] = {}
         for created in self._created:
-            if created.class_name in rclcpp_words("nodes"):
+            if created.class_name in cpp_table().nodes:
                 self._facts[created.node] = []
         for function in self._unit.functions:
             self._read_function(function)
@@ -171,7 +171,7 @@ class _Target:
     @cached_property
     def _node_classes(self) -> Mapping[str, CppClass]:
         """The classes of nodes by their full names: those that are derived from one of rclcpp's."""
-        kinds = set(rclcpp_words("nodes"))
+        kinds = set(cpp_table().nodes)
         found: dict[str, CppClass] = {}
         is_growing = True
         while is_growing:
@@ -191,7 +191,7 @@ class _Target:
     def _doubts_of_class(self, each: CppClass) -> Iterator[Doubt]:
         """Yield why a class may declare or open more than its own methods do."""
         at, scopes = each.node.location, each.name.split("::")[:-1]
-        harmless = rclcpp_words("nodes") | rclcpp_words("other_bases")
+        harmless = cpp_table().nodes | cpp_table().other_bases
         for base in each.bases:
             if harmless.isdisjoint(self._unit.meanings(base, scopes)):
                 yield Doubt("what another base class does is not added", at)
@@ -201,7 +201,7 @@ class _Target:
     def _add_doubts(self) -> None:
         """Add what leaves open what each node does."""
         common = [*self.doubts]
-        for word in sorted(rclcpp_words("options")):
+        for word in sorted(cpp_table().options):
             for use in self._unit.uses.get(word, ())[:1]:
                 common.append(Doubt(f"{word} of its NodeOptions", use.location))
         for key, facts in self._facts.items():
@@ -239,7 +239,7 @@ class _Target:
         function = self._unit.function_around(node)
         scopes = self._unit.scopes_of(function) if function is not None else ()
         for meaning in self._unit.meanings(plain(written), scopes):
-            if meaning in self._node_classes or meaning in rclcpp_words("nodes"):
+            if meaning in self._node_classes or meaning in cpp_table().nodes:
                 return meaning
         return None
 
@@ -327,7 +327,7 @@ class _Target:
         elif short in METHODS:
             self._read_function_of_library(call, owner)
         elif owner in self._facts and short.isupper() and len(short) > 3:
-            if not short.startswith(tuple(rclcpp_words("macros"))):
+            if not short.startswith(tuple(cpp_table().macros)):
                 reason = f"the macro {short} is not evaluated"
                 self._facts[owner].append(Doubt(reason, call.location))
         elif owner in self._facts and short in _SELF:
@@ -523,8 +523,8 @@ class _Target:
             for each in initializers.of_kind("field_initializer"):
                 written = each.children[0].text if each.children else ""
                 meanings = {*self._unit.meanings(plain(written), scopes)}
-                is_base = bool(meanings & rclcpp_words("nodes"))
-                is_short = any(it.endswith(f"::{written}") for it in rclcpp_words("nodes"))
+                is_base = bool(meanings & cpp_table().nodes)
+                is_short = any(it.endswith(f"::{written}") for it in cpp_table().nodes)
                 if is_base or is_short:
                     given = arguments_of(each)
                     yield self._name_given(given[0], constructor) if given else None
@@ -613,4 +613,4 @@ class _Target:
 def _is_harmless(taker: str) -> bool:
     """Return whether what is given a node declares and opens nothing that is not listed."""
     short = taker.rpartition("::")[2]
-    return taker in ACTIONS or short in METHODS or short in rclcpp_words("harmless")
+    return taker in ACTIONS or short in METHODS or short in cpp_table().harmless

@@ -14,7 +14,7 @@ from typing import NamedTuple
 from grader.base.names import near
 from grader.base.slips import Slip
 from grader.base.source import Edit
-from grader.ros.known.known import messages, node_attributes
+from grader.ros.known.package_tables import python_table
 from grader.ros.python.constants import binds_unseen, dotted
 from grader.ros.python.parse import Code, Position, location_in, position_of
 
@@ -258,10 +258,11 @@ class _NodeSlips:
                     yield from self._wrong_field(node, types[name])
 
     def _wrong_field(self, node: ast.Attribute, kind: str) -> Iterator[Slip]:
-        fields = messages().get(kind)
+        messages = python_table().messages
+        fields = messages.get(kind)
         if fields is None or node.attr in fields or node.attr.startswith(("_", "get_", "SLOT")):
             return
-        inside = [name for name, of in fields.items() if node.attr in messages().get(of, {})]
+        inside = [name for name, of in fields.items() if node.attr in messages.get(of, {})]
         meant = near(node.attr, fields)
         if len(inside) == 1:
             meant = f"{inside[0]}.{node.attr}"
@@ -280,7 +281,7 @@ class _NodeSlips:
             match node:
                 case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Name(id=name, ctx=ast.Store()):
                     own.add(name)
-        own |= node_attributes()
+        own |= python_table().node_attributes
         seen = {*own}
         for statement in statements:
             for node in _certain_parts(statement):
@@ -511,7 +512,7 @@ def _callback(call: ast.Call) -> ast.expr | None:
 
 def _package_of_message(name: str) -> str | None:
     """Return the module of the only well-known message of a name."""
-    found = [full for full in messages() if full.rpartition(".")[2] == name]
+    found = [full for full in python_table().messages if full.rpartition(".")[2] == name]
     if len(found) == 1:
         return found[0].rpartition(".")[0]
     return None

@@ -279,11 +279,12 @@ class Package:
         """The name of a Python package that a build installs and that ros2 launch imports in place
         of its own.
         """
-        from grader.ros.known.known import is_imported_by_launch  # late: a URDF needs no table
+        from grader.ros.known.lab_machine import lab_machine  # late: a URDF needs no table
 
         if self.installation is None or self.installation.unknown:
             return ""
-        return next(filter(is_imported_by_launch, self.installation.packages), "")
+        imported = lab_machine().imported_by_launch
+        return next((name for name in self.installation.packages if name in imported), "")
 
     @cached_property
     def launch_files(self) -> tuple[str, ...]:
@@ -496,7 +497,7 @@ class Package:
         """Return the package of the workspace that the name of one that certainly is not on the
         machine stands for, if there is one.
         """
-        from grader.ros.known.known import is_known_package  # late: as above
+        from grader.ros.known.package_rows import is_known_package  # late: as above
 
         # Where a package does not have the wanted name, that of the package is wrong.
         if name == self.wanted_name or self.has_package(name) or is_known_package(name):
@@ -507,7 +508,7 @@ class Package:
         """Return whether a package has a program, as far as its setup.py tells; one that is not
         known has it.
         """
-        from grader.ros.known.known import lacks_program  # late: as the readers of launch files
+        from grader.ros.known.package_rows import lacks_program  # late: as above
 
         owner = self.find(package)
         if owner is None:

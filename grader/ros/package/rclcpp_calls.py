@@ -8,7 +8,7 @@ from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue, not_kn
 from grader.ros.cpp.declarations import plain
 from grader.ros.cpp.literals import SECONDS
 from grader.ros.cpp.unit import CppUnit
-from grader.ros.known.known import rclcpp_profiles
+from grader.ros.known.package_tables import cpp_table
 from grader.ros.package.node_facts import (
     Endpoint,
     EndpointKind,
@@ -285,7 +285,7 @@ def _constructed_qos(call: CppCall) -> Qos:
 
 
 def _preset(name: str) -> Qos:
-    words = rclcpp_profiles().get(name.rpartition("::")[2], "").split()
+    words = cpp_table().profiles.get(name.rpartition("::")[2], "").split()
     if not words:
         return Qos()
     depth = int(words[0]) if words[0].isdigit() else None

@@ -9,7 +9,7 @@ computed unless it is asked for.
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
-from grader.ros.known.known import known
+from grader.ros.known.shared_names import shared_names
 from grader.ros.workspace.names import Definition, Fact, Use
 from grader.ros.workspace.names_in_files import names_in_launch_files, names_in_yaml
 from grader.ros.workspace.names_in_robots import names_in_robots
@@ -118,7 +118,7 @@ def _is_of_no_place(fact: Definition | Use) -> bool:
     """Return whether a fact is a definition that no place has, or that is a use where it stands:
     what passes an argument declares it to the comparison of names.
     """
-    is_known_frame = fact.kind == "frame" and fact.name in known()["frames"]
+    is_known_frame = fact.kind == "frame" and fact.name in shared_names().frames
     is_argument = fact.kind in ("launch argument", "xacro argument")
     return isinstance(fact, Definition) and (is_known_frame or is_argument)
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from grader.base.source import Location
 from grader.ros.build.places import PREFIX
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import launch_arguments
 from grader.ros.launch.launch_model import Launch
 from grader.ros.workspace.names import Definition, Fact, Open, Use
 from grader.ros.workspace.workspace import Workspace
@@ -38,7 +38,7 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
             yield from _included_arguments(workspace, launch, owner)
             if launch.more:
                 yield Open("launch argument", owner)
-    for owner, names in known()["launch_arguments"].items():
+    for owner, names in launch_arguments().items():
         for name in names:
             yield Definition("launch argument", name, Location(owner, 1, 1), owner)
     yield from _passed_arguments(workspace)
@@ -50,7 +50,7 @@ def _included_arguments(workspace: Workspace, launch: Launch, owner: str) -> Ite
     including them.
     """
     for passed in launch.passed:
-        names = known()["launch_arguments"].get(passed.path)
+        names = launch_arguments().get(passed.path)
         if names is not None:
             for name in names:
                 yield Definition("launch argument", name, passed.location, owner)
@@ -63,7 +63,7 @@ def _passed_arguments(workspace: Workspace) -> Iterator[Use]:
     for _, _, launch in workspace.launches:
         for passed in launch.passed:
             path = passed.path
-            if workspace.has_file(path) or path in known()["launch_arguments"]:
+            if workspace.has_file(path) or path in launch_arguments():
                 said = f"the include of {path.rpartition('/')[2]}"
                 for name, _ in passed.values:
                     yield Use("launch argument", name, passed.location, said, path, optional=True)

@@ -11,7 +11,8 @@ from grader.base.names import closest
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode
-from grader.ros.known.known import known
+from grader.ros.known.gazebo_rows import NO_SENSOR, gazebo
+from grader.ros.known.package_tables import bridge_table
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.gazebo import (
     BRIDGE,
@@ -186,7 +187,7 @@ def _compared_rows(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Fac
     for row in rows:
         yield Compared("topics")
         same = by_name.get(row.gz, [])
-        if row.direction not in known()["bridge_directions"]:
+        if row.direction not in bridge_table().directions:
             yield _no_direction(row)
             continue
         yield from _no_type(workspace, row)
@@ -215,8 +216,8 @@ def _nameless_sensors(
     nameless: dict[str, _NamelessSensor] = {}
     for root, place in roots(workspace):
         for sensor in root.iter("sensor"):
-            types = known()["gazebo_sensors"].get(sensor.get("type", ""), {})
-            gz_type = f"gz.msgs.{types.get('topic')}"
+            types = gazebo().sensor.get(sensor.get("type", ""), NO_SENSOR)
+            gz_type = f"gz.msgs.{types.topic}"
             if gz_type not in named and next(sensor.iterchildren("topic"), None) is None:
                 found = _NamelessSensor(sensor.get("name", ""), gz_type, place(sensor))
                 nameless.setdefault(gz_type, found)
@@ -243,7 +244,7 @@ def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:
         tree = workspace.yaml_files.get(path)
         for row in tree.items if isinstance(tree, YamlNode) else ():
             names_topic = [key for key in _TOPIC_KEYS if row.get(key) is not None]
-            for key in known()["bridge_keys"] if names_topic else ():
+            for key in bridge_table().keys if names_topic else ():
                 if row.get(key) is None and row.get(key.replace("gz", "ign")) is None:
                     message = f"the bridge leaves out the row: it has no {key}"
                     yield Mismatch(BRIDGE_ROW, message, row.location)
@@ -265,7 +266,7 @@ def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:
 
 def _no_direction(row: _BridgeRow) -> Mismatch:
     """Return that a row has a direction that no bridge has."""
-    meant = closest(row.direction, known()["bridge_directions"])
+    meant = closest(row.direction, bridge_table().directions)
     guess = f"; did you mean {meant}?" if meant is not None else ""
     message = f"the bridge leaves out the row: it has no direction {quoted(row.direction)}{guess}"
     at = row.direction_location
@@ -275,7 +276,7 @@ def _no_direction(row: _BridgeRow) -> Mismatch:
 
 def _no_type(workspace: Workspace, row: _BridgeRow) -> Iterator[Mismatch]:
     """Yield that no bridge has a type like the one of a row in ROS, and which one it may mean."""
-    types = [kind.replace(".", "/") for kind in known()["bridge_types"]]
+    types = [kind.replace(".", "/") for kind in bridge_table().types]
     written = row.ros_type.replace(".", "/")
     if written in types:
         return
@@ -322,7 +323,7 @@ def _conversions(row: _BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
         plain = row.gz_type.removeprefix("gz.msgs.")
         meant = []
         if gazebo_types == {row.gz_type}:
-            for kind, converted in known()["bridge_types"].items():
+            for kind, converted in bridge_table().types.items():
                 if plain in converted:
                     meant.append(kind.replace(".", "/"))
         if meant:
@@ -344,7 +345,7 @@ def _conversions(row: _BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
 
 def _fitting_types(row: _BridgeRow) -> list[str]:
     """Return the types of Gazebo that a bridge converts into the type of a row in ROS."""
-    return [f"gz.msgs.{kind}" for kind in known()["bridge_types"].get(row.ros_type, ())]
+    return [f"gz.msgs.{kind}" for kind in bridge_table().types.get(row.ros_type, ())]
 
 
 def _wrong_direction(

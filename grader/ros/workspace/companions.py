@@ -8,7 +8,14 @@ from collections.abc import Iterator, Sequence
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.build.places import PREFIX, share_parts
-from grader.ros.known.known import ending_commands, known
+from grader.ros.known.lab_machine import lab_machine
+from grader.ros.known.package_rows import (
+    commands_that_end,
+    controller_row,
+    package_row,
+    program_row,
+)
+from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.bridges import bridge_rows
 from grader.ros.workspace.controllers import defined_controllers, spawned_controllers
@@ -69,15 +76,18 @@ def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
 
 def _broadcasters(workspace: Workspace) -> set[str]:
     """Return the names of the controllers that publish joint states."""
-    kind = known()["joint_state_controller"]
-    return {it.name for it in defined_controllers(workspace) if it.type.text == kind}
+    names = set()
+    for controller in defined_controllers(workspace):
+        if controller_row(controller.type.text).publishes_joint_states:
+            names.add(controller.name)
+    return names
 
 
 def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the programs that publish joint states beside a controller that does."""
     broadcasters = _broadcasters(workspace)
     for launch, node in workspace.launched:
-        is_source = f"{node.package}/{node.executable}" in known()["joint_state_programs"]
+        is_source = program_row(node.package, node.executable).publishes_joint_states
         if not is_source or node.when is not True or node.remaps or node.parameters:
             continue
         spawned = spawned_controllers(workspace, launch)
@@ -99,7 +109,7 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
     if not publishers or not moving or workspace.has_other_robots:
         return
     for _, node in workspace.nodes:
-        if f"{node.package}/{node.executable}" in known()["joint_state_programs"]:
+        if program_row(node.package, node.executable).publishes_joint_states:
             return
         if not _is_understood(workspace, node, _JOINT_STATE):
             return
@@ -125,7 +135,7 @@ def _is_understood(workspace: Workspace, node: StartedNode, kind: str) -> bool:
     if own is not None:
         types = [each.type for each in own.endpoints if each.kind == "publisher"]
         return not own.doubts and kind not in types and None not in types
-    return node.package in known()["without_frames"]
+    return "frames" in package_row(node.package).without
 
 
 def _is_mentioned(workspace: Workspace, words: Sequence[str]) -> bool:
@@ -146,7 +156,7 @@ def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
             if node.has_description:
                 return
             managers.append(node)
-        elif node.package not in known()["without_frames"]:
+        elif "frames" not in package_row(node.package).without:
             return
     if managers and not _is_mentioned(workspace, ("robot_description",)):
         message = (
@@ -181,17 +191,18 @@ def _may_have_clock(workspace: Workspace) -> bool:
     if any(row.is_published and row.ros_type == _CLOCK for row in bridge_rows(workspace)):
         return True
     for _, launch in workspace.roots:
-        if not all(command.startswith(tuple(ending_commands())) for command in launch.commands):
+        ending = (*lab_machine().ending_commands, *commands_that_end())
+        if not all(command.startswith(ending) for command in launch.commands):
             return True
         for passed in launch.passed:
             package = share_parts(f"{PREFIX}/{passed.path}")[0]
             is_own = workspace.source_of(passed.path) is not None
-            if not is_own and package not in known()["launches_without_clock"]:
+            if not is_own and not package_row(package).launches_no_clock:
                 return True
     for _, node in workspace.nodes:
         if workspace.package_of(node) is None:
             is_open = _says_clock(f"{node.package} {node.executable}")
-            is_open = is_open and node.package not in known()["without_frames"]
+            is_open = is_open and "frames" not in package_row(node.package).without
         else:
             is_open = not _is_understood(workspace, node, _CLOCK)
         if is_open or (node.package == BRIDGE and None in (node.arguments or (None,))):
@@ -201,7 +212,7 @@ def _may_have_clock(workspace: Workspace) -> bool:
 
 def _says_clock(text: str) -> bool:
     """Return whether a name or a page has a word of simulations or of players."""
-    return not set(_WORD.findall(text.lower())).isdisjoint(known()["clock_words"])
+    return not set(_WORD.findall(text.lower())).isdisjoint(shared_names().clock_words)
 
 
 def _is_told(workspace: Workspace) -> bool:
@@ -224,7 +235,7 @@ def _wall_time(workspace: Workspace) -> Iterator[Mismatch]:
     if not rows or _is_mentioned(workspace, (_TIME,)):
         return
     for _, node in workspace.nodes:
-        if node.package in known()["time_packages"] and node.when is True:
+        if package_row(node.package).compares_time and node.when is True:
             message = (
                 f"{node.executable} uses the time of the machine, but the simulation has its own "
                 f"clock ({rows[0].location.file_and_line}): give the nodes use_sim_time"

@@ -10,7 +10,12 @@ from grader.base.names import closest, near
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import PARAMETERS, is_misspelt_key, sections_in
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import (
+    controller_actions,
+    controller_row,
+    controller_types,
+    is_known_controller,
+)
 from grader.ros.known.releases import releases_with
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import controllers_of
@@ -132,11 +137,15 @@ def controller_endpoints(
         if name not in remaps:
             continue
         started = node._replace(node_name=name, remaps=(*remaps[name], *node.remaps))
-        for kind, topics in known()["controller_topics"].get(controller.type.text, {}).items():
-            for own_name, message in topics.items():
-                topic = started.topic(f"~/{own_name}")
-                if topic is not None:
-                    yield topic, Endpoint(kind, message, topic, controller.location)
+        row, at = controller_row(controller.type.text), controller.location
+        for own_name, message in row.subscriptions.items():
+            topic = started.topic(f"~/{own_name}")
+            if topic is not None:
+                yield topic, Endpoint("subscription", message, topic, at)
+        for own_name, message in row.publishers.items():
+            topic = started.topic(f"~/{own_name}")
+            if topic is not None:
+                yield topic, Endpoint("publisher", message, topic, at)
 
 
 def spawned_controllers(
@@ -157,12 +166,17 @@ def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
     """Yield that no package has a class of the controller's type, where all classes of its package
     are known.
     """
-    types, written = known()["controllers"], controller.type.text or ""
+    written = controller.type.text or ""
     package, _, class_name = written.partition("/")
-    if written in types or releases_with("controller", written) or workspace.has_plugin(written):
+    if (
+        is_known_controller(written)
+        or releases_with("controller", written)
+        or workspace.has_plugin(written)
+    ):
         return
     if any(own.name == package for own in workspace.packages):
         return
+    types = controller_types()
     is_known = any(kind.startswith(f"{package}/") for kind in types)
     is_declared = any(own.depends_on(package) for own in workspace.packages)
     if (
@@ -194,7 +208,7 @@ def _section_facts(
     """Yield that the parameters of a controller are missing, and the interfaces that its joints
     need.
     """
-    needed: Mapping[str, str] = known()["controllers"].get(controller.type.text, {})
+    needed = controller_row(controller.type.text).joints
     section = sections.get(controller.name)
     if section is None:
         if needed and "**" not in sections and not controller.has_file:
@@ -267,12 +281,12 @@ def _needed_in(
 def needed_interfaces(workspace: Workspace) -> frozenset[str]:
     """Return the command interfaces that controllers need, each as joint/interface."""
     sections = parameters_of_controllers(workspace)
-    types = known()["controllers"]
     needed: set[str] = set()
     for controller in defined_controllers(workspace):
         section = sections.get(controller.name)
         if section is not None:
-            for joint, names in _needed_in(section, types.get(controller.type.text, {})):
+            row = controller_row(controller.type.text)
+            for joint, names in _needed_in(section, row.joints):
                 needed |= {f"{joint.text}/{name}" for name in names}
     return frozenset(needed)
 
@@ -312,7 +326,7 @@ def _action_facts(workspace: Workspace) -> Iterator[Fact]:
             topic = node.topic(endpoint.name or "") if endpoint.kind == "action client" else None
             controller, _, action = (topic or "").rpartition("/")
             namespace, _, name = controller.strip("/").rpartition("/")
-            if action in known()["controller_actions"]:
+            if action in controller_actions():
                 written = name if namespace in namespaces else controller.strip("/")
                 yield Use("controller", written, endpoint.location, "ActionClient")
 

@@ -9,7 +9,7 @@ from grader.base.names import near
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import controller_row, is_known_controller, package_row
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections, cost_of_guess
@@ -66,7 +66,7 @@ def _declared(package: Package) -> set[str]:
     assert package.manifest is not None
     declared = {*package.manifest.dependencies, *package.names}
     for name in [*declared]:
-        declared |= {*known()["metapackages"].get(name, ())}
+        declared.update(package_row(name).members)
     return declared
 
 
@@ -124,6 +124,6 @@ def _controller_packages(section: YamlNode) -> Iterator[tuple[str, Location]]:
     """Yield the packages of the controllers that a section of the controller manager names."""
     for inner in section.value.values() if isinstance(section.value, dict) else ():
         kind = inner.get("type")
-        if kind is not None and kind.text in known()["controllers"]:
+        if kind is not None and is_known_controller(kind.text):
             own_package = str(kind.text).partition("/")[0]
-            yield known()["controller_packages"].get(kind.text, own_package), kind.location
+            yield controller_row(kind.text).package or own_package, kind.location

@@ -11,7 +11,7 @@ from grader.base.names import closest, near
 from grader.base.source import Location, Source
 from grader.ros.build.installation import Installation
 from grader.ros.build.places import PREFIX, SHARE, share_parts
-from grader.ros.known.known import known, started_by_launch_files
+from grader.ros.known.package_rows import names_of_read_files, package_row, written_files
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.installed_files import (
     are_installs_known,
@@ -154,7 +154,7 @@ def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
     for passed in launch.passed:
         is_own = any(passed.path.startswith(own.share) for own in workspace.packages)
         for name, value in passed.values:
-            is_needed = bool(passed.when) and not is_own and name in known()["read_by"]
+            is_needed = bool(passed.when) and not is_own and name in names_of_read_files()
             yield _Text(value, passed.location, is_needed=is_needed)
     for node in launch.nodes:
         # The launch file that includes it may never start it, whatever the arguments.
@@ -166,7 +166,7 @@ def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
             yield _Text(given.path, given.location, is_read, is_needed=is_read)
             for name, parameter in given.values.items():
                 if isinstance(parameter.value, str):
-                    is_needed = is_read and not is_own and name in known()["read_by"]
+                    is_needed = is_read and not is_own and name in names_of_read_files()
                     yield _Text(parameter.value, parameter.location, is_read, is_own, is_needed)
     for reference in launch.references:
         yield _Text(reference.path, reference.location, is_needed=True)
@@ -187,7 +187,7 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
             yield from _misspelt_launch_file(name, rest.removeprefix(_LAUNCH_FOLDER), at)
         return
     target = f"share/{name}/{rest}"
-    if not rest or rest in known()["written"] or target in owner.installed:
+    if not rest or target in owner.installed or rest in written_files():
         return
     workspace.charge(len(owner.installed) // 8)
     if any(path.startswith(f"{target}/") for path in owner.installed):
@@ -211,7 +211,7 @@ def _misspelt_launch_file(package: str, file: str, at: Location) -> Iterator[Mis
     """Yield that a well-known package has a launch file of nearly this name, and none of this."""
     ending = file.partition(".")[2]
     stems = []
-    for known_file in started_by_launch_files().get(package, ()):
+    for known_file in package_row(package).launch:
         if known_file == file:
             return
         if known_file.endswith(f".{ending}"):

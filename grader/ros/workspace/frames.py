@@ -4,14 +4,15 @@ them.
 
 import re
 from collections.abc import Iterator, Sequence
-from functools import cache
 from itertools import pairwise
 from typing import NamedTuple
 
 from grader.base.names import near
 from grader.base.source import LazyLocation, Location
 from grader.ros.config.yaml_values import YamlValue, is_parameters, values_in
-from grader.ros.known.known import known
+from grader.ros.known.gazebo_rows import gazebo
+from grader.ros.known.package_rows import frame_parameters, package_row
+from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.node_facts import NodeFrame
 from grader.ros.package.package import Package
@@ -63,7 +64,7 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
         for joint in robot.joints:
             yield Definition("joint", joint.name, _place(joint.location))
     start = _place(robots[0].links[0].location)
-    yield from (Definition("frame", name, start) for name in known()["frames"])
+    yield from (Definition("frame", name, start) for name in shared_names().frames)
     yield from openings(workspace)
     yield from _static_transforms(workspace, robots)
     yield from _frames_in_code(workspace, robots)
@@ -101,7 +102,7 @@ def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
             yield Open("frame")  # a recording has frames of its own
     packages = {package.name for package in workspace.packages}
     for _, node in workspace.nodes:
-        if node.package not in known()["without_frames"] and node.package not in packages:
+        if "frames" not in package_row(node.package).without and node.package not in packages:
             yield Open("frame")
     if _may_be_published(workspace):
         yield Open("frame")
@@ -166,13 +167,6 @@ def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[F
     yield from _frames_in_fields(workspace)
 
 
-@cache
-def _published_names() -> frozenset[str]:
-    """Return the parameters that name frames which well-known programs publish above the robot."""
-    rows = known()["broadcasts"]
-    return frozenset(row["parent"]["parameter"] for row in rows)
-
-
 def _frames_of_others(workspace: Workspace) -> Iterator[Definition | Open]:
     """Yield the frames that nodes of other packages publish under names from launch files, and the
     links of robots under the prefix that robot_state_publisher gives them.
@@ -185,12 +179,12 @@ def _frames_of_others(workspace: Workspace) -> Iterator[Definition | Open]:
                 for link in robot.robot.links:
                     name = f"{node.frame_prefix}{link.name}".removeprefix("/")
                     yield Definition("frame", name, node.location)
-        if node.package in known()["transform_publishers"]:
+        if package_row(node.package).publishes_transforms:
             given = workspace.parameters_given(package, node)
             if given.unknown:
                 yield Open("frame")
             for name, value in given.values.items():
-                if name in _published_names() and isinstance(value.value, str):
+                if name in frame_parameters() and isinstance(value.value, str):
                     yield Definition("frame", value.value.removeprefix("/"), value.location)
 
 
@@ -259,7 +253,7 @@ def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Iterato
             continue
         yield Definition("frame", child, node.location)
         # Above a robot, or a frame that others publish, it may be the root.
-        is_root = child not in children and (child in links or child in known()["frames"])
+        is_root = child not in children and (child in links or child in shared_names().frames)
         yield Use("frame", parent, node.location, STATIC_PUBLISHER[1], optional=is_root)
         own = children[child].parent if child in children else parent
         if own != parent:
@@ -284,14 +278,14 @@ def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
             name, at = text.removeprefix("/"), node.location
             if name and "$" not in name and is_used:
                 yield Use("frame", name, at, value.said)
-            elif name and "$" not in name and key in _published_names():
+            elif name and "$" not in name and key in frame_parameters():
                 yield Definition("frame", name, at)
 
 
 def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
     """Yield what the elements for Gazebo and ros2_control name."""
     joints = {joint.name for joint in robot.robot.joints}
-    joint_elements = known()["joint_elements"]
+    joint_elements = gazebo().joint_elements
     for element in robot.root.iterchildren("gazebo"):
         at = robot.place(element)
         for joint in element.iter("joint"):  # of Gazebo alone, for what URDF does not have
@@ -299,7 +293,7 @@ def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
         reference = element.get("reference")
         if reference and reference not in joints:
             yield Use("link", reference, at, "<gazebo reference>")
-        for inner in element.iter(*known()["frame_elements"], *joint_elements):
+        for inner in element.iter(*gazebo().frame_elements, *joint_elements):
             text, parent = (inner.text or "").strip(), inner.getparent()
             if text and inner.tag in joint_elements:
                 yield Use("joint", text, robot.place(inner), f"<{inner.tag}>")
@@ -320,14 +314,15 @@ def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[
         if node.executable == "create":
             options = pairwise(node.arguments or ())
             created |= {name for option, name in options if option == "-name" and name}
-    defaults = [*known()["odometry_frames"]]
+    defaults = [*gazebo().odometry_frames]
     defaults += [link.name for robot in robots for link in robot.links]
+    systems = gazebo().odometry_systems
     for root, place in roots(workspace):
         for plugin in root.iter("plugin"):
-            if system_of(plugin) not in known()["odometry_systems"]:
+            if system_of(plugin) not in systems:
                 continue
             at = place(plugin)
-            for element in plugin.iterchildren(*known()["odometry_elements"]):
+            for element in plugin.iterchildren(*gazebo().odometry_elements):
                 yield Definition("frame", (element.text or "").strip(), at)
             around = {model.get("name", "") for model in plugin.iterancestors("robot", "model")}
             for model in sorted(around | created):

@@ -1,11 +1,11 @@
 """Gains of controllers: one that computes commands with gains moves nothing if none is given."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Iterator
+from typing import NamedTuple
 
 from grader.base.source import Location
 from grader.base.text import quoted
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import GainsRow, controller_row
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.python.values import Unknown
 from grader.ros.workspace.controllers import defined_controllers
@@ -27,29 +27,29 @@ class _LackingGains(NamedTuple):
 def gain_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers that are given no gains for a joint, and need them."""
     for controller in defined_controllers(workspace):
-        row = known()["gains"].get(controller.type.text)
+        gains = controller_row(controller.type.text).gains
         gifts = workspace.parameter_owners.get(controller.name, [])
-        if row is None or not gifts or any(given.unknown for given in gifts):
+        if gains is None or not gifts or any(given.unknown for given in gifts):
             continue
         workspace.charge(len(gifts))
         yield Compared("effects")
-        lacks = [lack for given in gifts if (lack := _find_lack(row, given)) is not None]
+        lacks = [lack for given in gifts if (lack := _find_lack(gains, given)) is not None]
         if len(lacks) == len(gifts):
             yield _moves_nothing(controller.name, lacks[0])
 
 
-def _find_lack(row: Mapping[str, Any], given: NodeParameters) -> _LackingGains | None:
+def _find_lack(row: GainsRow, given: NodeParameters) -> _LackingGains | None:
     """Return the first joint without gains; None where there is none, or this is not known."""
-    interfaces = _texts(given, row["interfaces"])
-    if len(interfaces) != 1 or interfaces[0] not in row["of"]:
+    interfaces = _texts(given, row.interfaces)
+    if len(interfaces) != 1 or interfaces[0] not in row.of:
         return None
     [interface] = interfaces
-    if row["without"].get(interface) in given.values:
+    if row.without.get(interface) in given.values:
         return None
-    for joint in _texts(given, row["joints"]):
-        gains = [given.values.get(f"gains.{joint}.{name}") for name in row["names"]]
+    for joint in _texts(given, row.joints):
+        gains = [given.values.get(f"gains.{joint}.{name}") for name in row.names]
         if all(gain is None or gain.value in (0, 0.0) for gain in gains):
-            return _LackingGains(joint, interface, given.values[row["interfaces"]].location)
+            return _LackingGains(joint, interface, given.values[row.interfaces].location)
     return None
 
 

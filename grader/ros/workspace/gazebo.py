@@ -10,7 +10,8 @@ from typing import NamedTuple
 from grader.base.names import closest
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
-from grader.ros.known.known import known
+from grader.ros.known.gazebo_rows import NO_SENSOR, NO_SYSTEM, gazebo
+from grader.ros.known.package_tables import create_table
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.names import Fact, Mismatch, corrections
 from grader.ros.workspace.rule_table import (
@@ -50,13 +51,13 @@ def gazebo_topics(workspace: Workspace) -> Iterator[GazeboTopic]:
                 for name, kind in sensor_topics(sensor, child):
                     yield GazeboTopic(name, kind, is_input=False, location=place(child))
         for plugin in root.iter("plugin"):
-            system = known()["gazebo_systems"].get(system_of(plugin), {})
-            for direction in ("in", "out"):
-                for tag, kind in system.get(direction, {}).items():
+            system = gazebo().system.get(system_of(plugin), NO_SYSTEM)
+            for is_input, topics in ((True, system.subscriptions), (False, system.publishers)):
+                for tag, kind in topics.items():
                     for child in plugin.iterchildren(tag):
                         name = _plain_topic(child)
                         if name:
-                            yield GazeboTopic(name, kind, direction == "in", place(child))
+                            yield GazeboTopic(name, kind, is_input, place(child))
 
 
 def _plain_topic(element: Element) -> str:
@@ -67,16 +68,16 @@ def sensor_topics(sensor: Element, element: Element) -> Iterator[tuple[str, str]
     """Yield the topics that a sensor of a known type makes of the one in its <topic>, with the
     types of their messages.
     """
-    types, name = known()["gazebo_sensors"].get(sensor.get("type", "")), _plain_topic(element)
+    types, name = gazebo().sensor.get(sensor.get("type", "")), _plain_topic(element)
     if types is None or not name:
         return
-    if "topic" in types:
-        yield name, types["topic"]
-    for last, kind in types.get("below", {}).items():
+    if types.topic:
+        yield name, types.topic
+    for last, kind in types.below.items():
         yield f"{name}/{last}", kind
     if next(sensor.iter("camera_info_topic"), None) is None:
         above = name.rpartition("/")[0]
-        for last, kind in types.get("beside", {}).items():
+        for last, kind in types.beside.items():
             yield f"{above}/{last}".removeprefix("/"), kind
 
 
@@ -131,8 +132,8 @@ def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Ite
         if not any(root is it for it in seen):
             continue
         for sensor in root.iter("sensor"):
-            system = known()["sensor_systems"].get(sensor.get("type", ""))
-            if system is None or system in systems:
+            system = gazebo().sensor.get(sensor.get("type", ""), NO_SENSOR).system
+            if not system or system in systems:
                 continue
             systems.add(system)
             at = place(sensor)
@@ -181,17 +182,17 @@ def _options_of_creator(node: StartedNode) -> Iterator[Mismatch]:
             continue
         name, equals, _ = word.lstrip("-").replace("-", "_").partition("=")  # as gflags does
         given.append(name)
-        is_value = not equals and name in known()["create_options"] and name != _WITHOUT_VALUE
+        is_value = not equals and name in create_table().options and name != _WITHOUT_VALUE
     for name in given:
-        if name in known()["create_options"]:
+        if name in create_table().options:
             continue
-        similar = closest(name, known()["create_options"], is_clear=True)
-        meant = known()["older_create_options"].get(name) or similar
+        similar = closest(name, create_table().options, is_clear=True)
+        meant = create_table().older.get(name) or similar
         guess = f"; did you mean -{meant}?" if meant else ""
         message = f"create has no option -{name}, and ignores it{guess}"
         yield Mismatch(CREATE_OPTION, message, node.location, is_certain=False)
-    if node.parameters == () and not set(given).intersection(known()["create_sources"]):
-        sources = enumerated([f"-{name}" for name in known()["create_sources"]], word="or")
+    if node.parameters == () and not set(given).intersection(create_table().sources):
+        sources = enumerated([f"-{name}" for name in create_table().sources], word="or")
         message = f"create ends with an error: it needs {sources}"
         yield Mismatch(CREATED_FROM, message, node.location, is_certain=node.when is True)
 

@@ -18,7 +18,7 @@ from grader.ros.interfaces.interface_types import (
     InterfaceSection,
 )
 from grader.ros.interfaces.known_interfaces import known_interfaces
-from grader.ros.known.known import cmake_table
+from grader.ros.known.cmake_words import cmake_words
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.package.message_uses import ITEM
 from grader.ros.package.node_facts import FieldUse
@@ -112,7 +112,7 @@ def _unknown_field_type(
 
 def _reached(workspace: Workspace, own: PackageInterfaces) -> set[str] | None:
     """Return the packages whose messages an interface may use; None if not all are known."""
-    exports = cmake_table("exports")
+    exports = cmake_words().exports
     pending, reached = [*own.dependencies, *_IMPLICIT], set[str]()
     while pending:
         name = pending.pop()
@@ -126,7 +126,7 @@ def _reached(workspace: Workspace, own: PackageInterfaces) -> set[str] | None:
             pending += _packages_used(name)
         elif name not in exports:
             return None
-        pending += str(exports.get(name, "")).split() if other is None else ()
+        pending += exports.get(name, "").split() if other is None else ()
     return reached
 
 

@@ -4,12 +4,13 @@ whether their inputs are published at all, and whether remappings replace names 
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from grader.base.names import near
 from grader.base.source import Location
 from grader.base.text import quoted
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import ProgramRow, program_row
+from grader.ros.known.package_tables import display_types
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
 from grader.ros.workspace.bridges import rows_of_bridge
@@ -27,6 +28,7 @@ from grader.ros.workspace.rule_table import (
 from grader.ros.workspace.workspace import Workspace
 
 _INPUT = re.compile(r"([a-z]+)\d+")
+_DEFAULT_DISPLAYS = "rviz_default_plugins"
 _CLASSIC = "libgazebo_ros_"  # how the names of plugins of Gazebo Classic begin, which publish
 
 
@@ -62,19 +64,12 @@ def known_end_facts(workspace: Workspace) -> Iterator[Fact]:
             everything.setdefault(each.topic, []).append(each)
         for node in launch.nodes:
             if node.when is True:
-                for row in _rows_of_program(node):
-                    yield from _other_types(node, row, published)
-                    inputs = _inputs(workspace, package, node, row)
-                    yield from _other_inputs(workspace, node, inputs, published)
-                    yield from _remappings(node, row)
+                row = program_row(node.package, node.executable)
+                yield from _other_types(node, row, published)
+                inputs = _inputs(workspace, package, node, row)
+                yield from _other_inputs(workspace, node, inputs, published)
+                yield from _remappings(node, row)
     yield from _displays(workspace, everything)
-
-
-def _rows_of_program(node: StartedNode) -> Iterator[Mapping[str, Any]]:
-    """Yield what is known of the topics of a program."""
-    for row in known()["program_ends"]:
-        if f"{node.package}/{node.executable}" in row["by"]:
-            yield row
 
 
 def _published(workspace: Workspace, number: int, launch: Launch) -> Iterator[_Published]:
@@ -89,11 +84,10 @@ def _published(workspace: Workspace, number: int, launch: Launch) -> Iterator[_P
             topic = node.topic(f"/{row.ros}") if row.is_published else None
             if topic is not None:
                 yield _Published(topic, row.ros_type, row.location)
-        for known_row in _rows_of_program(node):
-            for name, kind in known_row.get("publisher", {}).items():
-                topic = node.topic(name)
-                if topic is not None:
-                    yield _Published(topic, kind, node.location)
+        for name, kind in program_row(node.package, node.executable).publishers.items():
+            topic = node.topic(name)
+            if topic is not None:
+                yield _Published(topic, kind, node.location)
 
 
 def _published_by_code(
@@ -116,9 +110,9 @@ def _other_type(published: Sequence[_Published], wanted: str) -> _Published | No
     return next(iter(published), None)
 
 
-def _other_types(node: StartedNode, row: Mapping[str, Any], published: _ByTopic) -> Iterator[Fact]:
+def _other_types(node: StartedNode, row: ProgramRow, published: _ByTopic) -> Iterator[Fact]:
     """Yield the topics that a program reads, and that are published with another type."""
-    for name, wanted in row.get("subscription", {}).items():
+    for name, wanted in row.subscriptions.items():
         topic = node.topic(name)
         found = published.get(topic or "", ())
         if found:
@@ -133,20 +127,19 @@ def _other_types(node: StartedNode, row: Mapping[str, Any], published: _ByTopic)
 
 
 def _inputs(
-    workspace: Workspace, package: Package, node: StartedNode, row: Mapping[str, Any]
+    workspace: Workspace, package: Package, node: StartedNode, row: ProgramRow
 ) -> list[_Input]:
     """Return the topics that parameters of a program name, such as `odom0` of an ekf_node."""
-    types = row.get("inputs")
-    if types is None:
+    if not row.inputs:
         return []
     inputs = []
     for name, given in workspace.parameters_given(package, node).values.items():
         numbered = _INPUT.fullmatch(name)
-        if numbered is None or numbered[1] not in types or not isinstance(given.value, str):
+        if numbered is None or numbered[1] not in row.inputs or not isinstance(given.value, str):
             continue
         topic = node.topic(given.value)
         if topic is not None:
-            inputs.append(_Input(name, topic, types[numbered[1]], given.location))
+            inputs.append(_Input(name, topic, row.inputs[numbered[1]], given.location))
     return inputs
 
 
@@ -200,9 +193,9 @@ def _may_be_published(workspace: Workspace, topic: str) -> bool:
     return any(may_be_published_by(workspace, node, topic) for _, node in workspace.nodes)
 
 
-def _remappings(node: StartedNode, row: Mapping[str, Any]) -> Iterator[Mismatch]:
+def _remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:
     """Yield the remappings of names that surely stand for one that a program has."""
-    names = [*row.get("subscription", ()), *row.get("publisher", ()), *row.get("names", ())]
+    names = [*row.subscriptions, *row.publishers, *row.names]
     replaced = [rule[0].removeprefix("~/").strip("/") for rule in node.remaps or ()]
     left = [name for name in names if name not in replaced]
     plain = {name.replace("_", ""): name for name in left}
@@ -223,7 +216,8 @@ def _displays(workspace: Workspace, published: _ByTopic) -> Iterator[Mismatch]:
     for package in workspace.packages:
         for path in package.rviz_files:
             for display in package.rviz(path).displays:
-                wanted = known()["display_types"].get(f"{display.package}/{display.kind}")
+                is_default = display.package == _DEFAULT_DISPLAYS
+                wanted = display_types().get(display.kind) if is_default else None
                 topic = display.node.get("Topic", "Value")
                 if wanted is None or topic is None or not display.enabled:
                     continue

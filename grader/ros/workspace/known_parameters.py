@@ -13,8 +13,8 @@ from grader.base.errors import InputError
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import sections_in, values_in
-from grader.ros.known.known import known
-from grader.ros.known.parameter_rows import node_rows, usual_names
+from grader.ros.known.package_rows import controller_row, usual_names
+from grader.ros.known.parameter_rows import node_rows
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import value_in_file
@@ -72,7 +72,7 @@ def _releases_of(workspace: Workspace, given: GivenNode) -> tuple[Release, ...] 
 def _negative_lengths(given: GivenNode) -> set[Location]:
     """Return the places of numbers of wheels that are negative, which is a mistake of values."""
     places: set[Location] = set()
-    for name in known()["wheel_values"].get(given.node, ()):
+    for name in controller_row(given.node).wheels:
         value = given.values.get(name)
         if value is not None and isinstance(value.value, float) and value.value < 0.0:
             places.add(value.location)
@@ -182,7 +182,7 @@ def _without_wrong_lists(
     """Return values without a string in place of a list of joints, which is a mistake of
     controllers.
     """
-    joints = known()["controllers"].get(kind, {})
+    joints = controller_row(kind).joints
     kept: dict[str, ParameterValue] = {}
     for name, value in values.items():
         is_wrong = name in joints and name.endswith("s") and isinstance(value.value, str)
@@ -223,7 +223,7 @@ def _sections_by_name(workspace: Workspace) -> Iterator[GivenNode]:
     """Yield the sections of parameter files that have the name of a controller of the same file, or
     the usual one of a well-known node.
     """
-    usual = dict(usual_names())
+    usual = dict(usual_names()) if workspace.yaml_files else {}
     for _, node in workspace.nodes:
         if workspace.package_of(node) is not None:
             usual.pop(workspace.name_of(node) or "", None)

@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 from grader.base.source import Location
 from grader.base.text import quoted
-from grader.ros.known.known import known
+from grader.ros.known.gazebo_rows import gazebo
+from grader.ros.known.package_rows import package_row
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.workspace.endpoints import frames_of
 from grader.ros.workspace.frames import openings
@@ -92,8 +93,8 @@ def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
 
 def _published(workspace: Workspace) -> _Trees | None:
     """Return what launch files publish, whatever conditions say; None where that is not known."""
-    odometry = known()["odometry_systems"]
-    if any(system_of(it) in odometry for root, _ in roots(workspace) for it in root.iter("plugin")):
+    systems = gazebo().odometry_systems
+    if any(system_of(it) in systems for root, _ in roots(workspace) for it in root.iter("plugin")):
         return None
     trees = _Trees()
     if any(node.executable == _ROBOT_PUBLISHER for _, node in workspace.nodes):
@@ -102,7 +103,7 @@ def _published(workspace: Workspace) -> _Trees | None:
                 trees.connect(joint.parent, joint.child)
     for _, node in workspace.nodes:
         frames: Sequence[str | None] = []
-        if node.package in known()["transform_publishers"] or node.frame_prefix != "":
+        if package_row(node.package).publishes_transforms or node.frame_prefix != "":
             return None
         if (node.package, node.executable) == STATIC_PUBLISHER:
             frames = [name or None for name in frames_named(node)]

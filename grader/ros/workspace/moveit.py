@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
-from grader.ros.known.known import known
+from grader.ros.known.package_tables import moveit_actions
 from grader.ros.workspace.controllers import defined_controllers
 from grader.ros.workspace.names import Fact, Mismatch, Use, corrections
 from grader.ros.workspace.rule_table import (
@@ -85,7 +85,7 @@ def _other_action(name: str, section: YamlNode) -> Iterator[Mismatch]:
     kind, action = section.get("type"), section.get("action_ns")
     if kind is None or action is None:
         return
-    wanted = known()["moveit_actions"].get(kind.text or "")
+    wanted = moveit_actions().get(kind.text or "")
     if wanted is not None and action.text not in ("", wanted):
         message = f"{name}.action_ns is {action.text!r}; the action of its controller is {wanted!r}"
         either = corrections(action.text or "", action.location, wanted)

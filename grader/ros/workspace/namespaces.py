@@ -6,7 +6,7 @@ from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import keys_of_sections
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import is_key_of
 from grader.ros.workspace.names import Compared, Fact, Mismatch
@@ -38,7 +38,7 @@ def _other_namespace(
     workspace: Workspace, tree: YamlNode, node: StartedNode, keys: Mapping[str, tuple[str, ...]]
 ) -> Iterator[Compared | Mismatch]:
     name = workspace.name_of(node)
-    if not name or node.namespace is None or node.package in known()["containers"]:
+    if not name or node.namespace is None or package_row(node.package).holds_nodes:
         return
     full = node.full_name(name)
     same = [key for key in keys if key.rpartition("/")[2] == full.rpartition("/")[2]]

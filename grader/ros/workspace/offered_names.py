@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable, Mapping
 
 from grader.ros.interfaces.known_interfaces import known_interfaces
-from grader.ros.known.known import known_packages, programs_of
+from grader.ros.known.package_rows import known_packages, programs_of
 from grader.ros.package.package import Package
 from grader.ros.workspace.names import Definition
 from grader.ros.workspace.reading import facts_once

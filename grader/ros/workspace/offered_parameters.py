@@ -4,7 +4,8 @@ well-known nodes.
 
 from collections.abc import Iterator
 
-from grader.ros.known.parameter_rows import row_for, rows_of, usual_names
+from grader.ros.known.package_rows import usual_names
+from grader.ros.known.parameter_rows import row_for, rows_of
 from grader.ros.known.parameter_texts import row_text
 from grader.ros.known.releases import Release
 from grader.ros.package.node_facts import NodeParameter

@@ -18,7 +18,7 @@ from grader.ros.config.yaml_values import (
     sections_in,
     values_in,
 )
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import package_row, plugin_classes
 from grader.ros.known.parameter_rows import row_for
 from grader.ros.known.releases import RELEASES, Release, releases_with
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
@@ -140,7 +140,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
     if not isinstance(tree, YamlNode):
         return
     # A container gives the file to the components that are loaded into it.
-    if any(node.package in known()["containers"] for node in nodes):
+    if any(package_row(node.package).holds_nodes for node in nodes):
         return
     yield from _misplaced(tree)
     sections = {keys[-1].rpartition("/")[2]: keys for keys, _ in sections_in(tree) if keys}
@@ -166,7 +166,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
         workspace.charge(cost_of_guess(len(unread)))
         meant = near(name, unread)
         is_known = (
-            workspace.package_of(node) is not None or node.package in known()["without_frames"]
+            workspace.package_of(node) is not None or "frames" in package_row(node.package).without
         )
         # Without a similar name, the sections may be those of nodes that are not in the workspace.
         if name not in lacking or (meant is None and (is_passed or not is_known)):
@@ -446,8 +446,10 @@ def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Iterator[Fac
     """Yield plugins that are written with other separators than pluginlib knows them by, in every
     release that the file may be for.
     """
-    names = {_SEPARATORS.sub("::", name): name for name in known()["plugins"]}
     values = [value for value in values_in(tree) if value.keys[-1:] == ("plugin",)]
+    if not values:
+        return
+    names = {_SEPARATORS.sub("::", name): name for name in plugin_classes()}
     first = 0  # of the releases that the file may be for: it has a name that none before has
     for value in values:
         having = releases_with("plugin", value.node.text or "")

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from grader.base.errors import InputError
 from grader.base.names import closest, near
 from grader.base.source import Location
-from grader.ros.known.known import compared_programs, known
+from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import parameters_of
 from grader.ros.package.entry_points import entry_fault, entry_points, module_path
@@ -49,7 +49,8 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
         if owner is not None:
             yield from _own_program(workspace, owner, node)
             continue
-        programs = compared_programs(node.package)
+        row = package_row(node.package)
+        programs = row.programs if row.is_compared else None
         if programs is None:
             continue
         yield Compared("programs")
@@ -181,5 +182,5 @@ def _started(workspace: Workspace) -> Iterator[Fact]:
         name = workspace.name_of(node)
         if name is not None:
             yield Definition("node", name, node.location)
-        elif node.package not in known()["without_lifecycle"]:
+        elif "lifecycle" not in package_row(node.package).without:
             yield Open("node")

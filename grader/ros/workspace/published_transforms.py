@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.base.transforms import Transform, minus, turn_between
-from grader.ros.known.known import known
+from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
+from grader.ros.known.package_rows import DecidingParameter, transforms_of
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.package.package import Package
@@ -152,12 +153,12 @@ def _broadcast_by_gazebo(workspace: Workspace, bridge: StartedNode) -> Iterator[
         plugins = [*root.iter("plugin")]
         workspace.charge(_OF_ROBOT + len(plugins))
         for plugin in plugins:
-            frames = known()["gazebo_transforms"].get(system_of(plugin))
+            frames = gazebo().system.get(system_of(plugin), NO_SYSTEM).transform
             topic = (plugin.findtext("tf_topic") or "").strip().strip("/")
             if frames is None or topic not in topics:
                 continue
-            parent = (plugin.findtext(frames["parent"]) or "").strip()
-            child = (plugin.findtext(frames["child"]) or "").strip()
+            parent = (plugin.findtext(frames.parent) or "").strip()
+            child = (plugin.findtext(frames.child) or "").strip()
             if parent and child:
                 by = f"the system {system_of(plugin)} of Gazebo"
                 yield _Edge(parent, child, by, place(plugin))
@@ -165,22 +166,20 @@ def _broadcast_by_gazebo(workspace: Workspace, bridge: StartedNode) -> Iterator[
 
 def _broadcast(kind: str, by: str, given: NodeParameters, at: Location) -> Iterator[_Edge]:
     """Yield the transforms that a program or a controller publishes with its parameters."""
-    for row in known()["broadcasts"]:
-        if kind not in row["by"]:
-            continue
-        parts = [row["on"], row["parent"], row["child"], *row.get("if_equal", ())]
+    for row in transforms_of(kind):
+        parts = [row.on, row.parent, row.child, *row.if_equal]
         values = [_value(given, part) for part in parts]
         if given.unknown or None in values:
             continue
         on, parent, child, *equal = values
-        if on != row["on"]["off"] and len({*equal}) < 2:
+        if on != row.on.off and len({*equal}) < 2:
             yield _Edge(str(parent).strip("/"), str(child).strip("/"), by, at)
 
 
-def _value(given: NodeParameters, part: Mapping[str, Any]) -> Any:
+def _value(given: NodeParameters, part: DecidingParameter) -> Any:
     """Return the value of a parameter, or its default; None where it is not known."""
-    row = given.values.get(part["parameter"])
-    value = row.value if row is not None else part["default"]
+    row = given.values.get(part.parameter)
+    value = row.value if row is not None else part.default
     return None if isinstance(value, Unknown) else value
 
 

@@ -4,7 +4,8 @@ in vain.
 
 from fnmatch import fnmatchcase
 
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import package_row
+from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.endpoints import ANY, opened_by
 from grader.ros.workspace.gazebo import BRIDGE
@@ -17,7 +18,7 @@ def is_own_type(workspace: Workspace, kind: str | None) -> bool:
     """Return whether a package of the workspace defines a type, and only its own programs know it:
     none relays what others send.
     """
-    if any(node.package in known()["relaying"] for _, node in workspace.nodes):
+    if any(package_row(node.package).relays for _, node in workspace.nodes):
         return False
     return (kind or "").partition(".")[0] in workspace.interfaces
 
@@ -31,7 +32,7 @@ def may_be_published(workspace: Workspace, topic: str, kind: str | None) -> bool
         return any(may_be_published_by(workspace, node, topic) for node in own)
     name = topic.strip("/")
     first, last = name.partition("/")[0], topic.rpartition("/")[2]
-    if last in known()["topics_of_others"] or first in workspace.controllers:
+    if last in shared_names().topics or first in workspace.controllers:
         return True
     # A parameter, or a remapping of a plugin, may name what something publishes.
     if any(name in tree.source.text for _, tree in workspace.trees):
@@ -48,7 +49,8 @@ def may_be_published_by(workspace: Workspace, node: StartedNode, topic: str) -> 
     if package is None:
         if node.package == BRIDGE:
             return not _is_plain_bridge(workspace, node)
-        return node.package not in known()["without_frames"] or _is_remapped_to(node, topic)
+        row = package_row(node.package)
+        return "frames" not in row.without or _is_remapped_to(node, topic)
     own_node = workspace.own_node(node)
     if own_node is not None:
         opened = opened_by(workspace, node)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from grader.base.text import quoted
 from grader.ros.interfaces.known_interfaces import known_interfaces
-from grader.ros.known.known import known
+from grader.ros.known.package_tables import colour_encodings
 from grader.ros.package.node_facts import Endpoint, ImageEncoding
 from grader.ros.workspace.endpoints import certainly_opened
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
@@ -122,7 +122,7 @@ def _is_lost(made: str, asked: str) -> bool:
     """Return whether cv_bridge certainly raises an error for a conversion: of depths to colours,
     or to another number of channels.
     """
-    colours: Mapping[str, int] = known()["colour_encodings"]
+    colours = colour_encodings()
     before, after = _channels(made, colours), _channels(asked, colours)
     if made == asked or before is None or after is None:
         return False

@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import keys_of_sections
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import is_key_of
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections
@@ -36,7 +36,7 @@ def renamed_node_facts(workspace: Workspace) -> Iterator[Fact]:
     for (path, launch), nodes in given.items():
         tree, others = workspace.yaml_files.get(path), workspace.parameter_files[path]
         workspace.charge(len(others))
-        has_container = any(node.package in known()["containers"] for node in others)
+        has_container = any(package_row(node.package).holds_nodes for node in others)
         if not isinstance(tree, YamlNode) or launch in with_components or has_container:
             continue
         if path in workspace.passed_files:

@@ -7,7 +7,7 @@ from fnmatch import fnmatchcase
 from typing import NamedTuple
 
 from grader.base.names import closest
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.node_facts import Endpoint, EndpointKind
 from grader.ros.workspace.endpoints import ANY, OpenedName, opened_by
@@ -136,7 +136,7 @@ def _may_be_served(workspace: Workspace, client: _Opened) -> bool:
     for _, node in workspace.nodes:
         if workspace.package_of(node) is None:
             # A program of another package does not know an own type.
-            if not is_own and node.package not in known()["without_frames"]:
+            if not is_own and "frames" not in package_row(node.package).without:
                 return True
             continue
         own_node = workspace.own_node(node)

@@ -2,11 +2,11 @@
 another transport, displays of RViz that ask for more, and programs that send another type.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 from grader.base.text import quoted
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import CommandRow, program_row
+from grader.ros.known.package_tables import transport_types
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.package.node_facts import Endpoint
@@ -66,7 +66,7 @@ def _other_transport(
     published = {it.name for it in publishers}
     for each in subscriptions:
         topic, _, transport = each.name.rpartition("/")
-        kind = known()["transport_types"].get(transport)
+        kind = transport_types().get(transport)
         if kind is None or each.endpoint.type != _IMAGE or each.name in published:
             continue
         message = (
@@ -107,28 +107,28 @@ def _programs(workspace: Workspace) -> Iterator[Mismatch]:
                 if endpoint.kind == _SUBSCRIPTION:
                     readers[full] = endpoint
         for node in launch.nodes:
-            for row in known()["program_topics"].get(f"{node.package}/{node.executable}", ()):
-                reader = readers.get(node.topic(row["topic"]) or "")
-                if reader is not None and node.when is True:
-                    given = workspace.parameters_given(package, node)
-                    yield from _other_command(node, given, row, reader)
+            command = program_row(node.package, node.executable).command
+            topic = node.topic(command.topic) if command is not None else None
+            reader = readers.get(topic or "")
+            if command is not None and reader is not None and node.when is True:
+                given = workspace.parameters_given(package, node)
+                yield from _other_command(node, given, command, reader)
 
 
 def _other_command(
-    node: StartedNode, given: NodeParameters, row: Mapping[str, Any], reader: Endpoint
+    node: StartedNode, given: NodeParameters, row: CommandRow, reader: Endpoint
 ) -> Iterator[Mismatch]:
     """Yield that a well-known program sends a controller another type than it reads, with the
     parameters that it is given.
     """
-    parameter, value, other = row["if"]  # `other` is the type if the parameter has this value
-    found = given.values.get(parameter)
+    found = given.values.get(row.parameter)
     if given.unknown or (found is not None and isinstance(found.value, Unknown)):
         return
-    is_other = found is not None and found.value == value
-    kind = other if is_other else row["type"]
+    is_other = found is not None and found.value == row.value
+    kind = row.other_type if is_other else row.type
     if kind != reader.type:
         message = (
-            f"{node.executable} publishes {node.topic(row['topic'])} with {kind}, but the "
-            f"controller subscribes to it with {reader.type}: set its parameter {parameter}"
+            f"{node.executable} publishes {node.topic(row.topic)} with {kind}, but the "
+            f"controller subscribes to it with {reader.type}: set its parameter {row.parameter}"
         )
         yield warning(COMMAND_TYPE, message, node.location, reader.location)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from grader.base.names import closest
 from grader.base.source import Location
 from grader.base.text import enumerated
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.node_facts import Endpoint
 from grader.ros.workspace.bridges import bridge_rows
@@ -322,7 +322,7 @@ def _is_known(workspace: Workspace, launch: int) -> bool:
     if workspace.roots[launch][1].unknown:
         return False
     for number, node in workspace.launched:
-        if number == launch and node.package not in known()["without_commands"]:
+        if number == launch and "commands" not in package_row(node.package).without:
             own_node = workspace.own_node(node)
             if own_node is None or own_node.doubts:
                 return False

@@ -1,14 +1,15 @@
 """Numbers of wheels: what controllers and plugins of Gazebo are told of radii, tracks and
 wheelbases, against the robot's wheels.
 
-The rows of known/wheels.toml say which parameter is which number.
+The rows of controllers, in the files of their packages, and of gazebo.toml say which parameter is
+which number.
 """
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import chain
 from math import hypot
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.names import closest
@@ -16,7 +17,8 @@ from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.base.transforms import Y_AXIS, Vector, dot, minus, unit
 from grader.ros.config.yaml_nodes import YamlNode
-from grader.ros.known.known import known
+from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
+from grader.ros.known.package_rows import WheelRow, controller_row
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint, Robot
 from grader.ros.urdf.numbers import finite_number
@@ -61,7 +63,7 @@ class _Source(NamedTuple):
     """What tells a robot of its wheels: the rows of its parameters, and what they are given."""
 
     name: str
-    rows: Mapping[str, Any]
+    rows: Mapping[str, WheelRow]
     parameters: _Parameters
     robots: Sequence[KnownRobot]
 
@@ -135,12 +137,12 @@ def _faults_under_all(source: _Source) -> Sequence[Mismatch]:
 def _controllers(workspace: Workspace) -> Iterator[_Source]:
     sections = parameters_of_controllers(workspace)
     for controller in defined_controllers(workspace):
-        rows = known()["wheel_values"].get(controller.type.text)
+        rows = controller_row(controller.type.text).wheels
         section = sections.get(controller.name)
-        if rows is None or section is None:
+        if not rows or section is None:
             continue
         source = _Source(controller.name, rows, _reader_of_yaml(section), ())
-        keys = {key for row in rows.values() for key in chain(*row["of"])}
+        keys = {key for row in rows.values() for key in chain(*row.of)}
         named = [joint.text for joint in source.joints(sorted(keys))]
         robots = [it for it in workspace.robots if all(map(it.robot.has_joint, named))]
         if not robots and len(workspace.robots) == 1:
@@ -172,11 +174,12 @@ def _plugins(workspace: Workspace) -> Iterator[_Source]:
     for robot in workspace.robots:
         for plugin in robot.root.iter("plugin"):
             name = system_of(plugin)
-            rows = known()["wheel_values"].get(name)
-            if rows is None:
+            rows = gazebo().system.get(name, NO_SYSTEM).wheels
+            if not rows:
                 name = plugin.get("filename", "").rpartition("/")[2]
-                rows = known()["wheel_values"].get(name)
-            if rows is not None:
+                library = gazebo().library.get(name)
+                rows = library.wheels if library is not None else {}
+            if rows:
                 yield _Source(name, rows, _reader_of_plugin(robot, plugin), [robot])
 
 
@@ -193,9 +196,9 @@ def _reader_of_plugin(robot: KnownRobot, plugin: Element) -> _Parameters:
 def _faults_of(source: _Source, robot: Configuration) -> Iterator[Mismatch]:
     """Yield the numbers, sides and directions that are not those of a robot."""
     compared: set[str] = set()  # the joints whose sides and directions were compared
-    rows = sorted(source.rows.items(), key=lambda row: row[1]["is"] not in _SIDED)
+    rows = sorted(source.rows.items(), key=lambda row: row[1].number not in _SIDED)
     for key, row in rows:
-        kind, groups = row["is"], [source.joints(keys) for keys in row["of"]]
+        kind, groups = row.number, [source.joints(keys) for keys in row.of]
         wheels = _measured(source, robot, groups)
         if wheels is None:
             continue
@@ -214,9 +217,9 @@ def _faults_of(source: _Source, robot: Configuration) -> Iterator[Mismatch]:
                 yield from _faults_of_number(key, value, number.location, kind, wheels)
 
 
-def _is_corrected(source: _Source, row: Mapping[str, Any]) -> bool:
+def _is_corrected(source: _Source, row: WheelRow) -> bool:
     """Return whether a factor corrects the number of a row."""
-    for name in row.get("unless", ()):
+    for name in row.unless:
         for word in source.parameters(name):
             if finite_number(word.text) != 1.0:
                 return True

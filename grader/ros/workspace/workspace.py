@@ -25,7 +25,7 @@ from grader.ros.build.places import (
 )
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import sections_in, values_in
-from grader.ros.known.known import known
+from grader.ros.known.package_rows import children_by_node, program_row
 from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import GivenParameters, Launch, ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import (
@@ -419,14 +419,13 @@ class Workspace:
         own = self.own_node(node)
         if own is not None:
             return own.name
-        names: Mapping[str, str] = known()["node_names"]
-        return names.get(f"{node.package}/{node.executable}")
+        return program_row(node.package, node.executable).name
 
     def children_of(self, name: str) -> frozenset[str]:
         """Return the nodes that a node of another package makes in its process, and that read
         its parameters.
         """
-        children = frozenset(known()["children"].get(name, ()))
+        children = frozenset(children_by_node().get(name, ()))
         return children | self.typed_sections if name == MANAGER else children
 
     @cached_property

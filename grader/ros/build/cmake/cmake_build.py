@@ -22,7 +22,7 @@ from grader.ros.build.installation import (
     InstallError,
 )
 from grader.ros.build.places import PREFIX
-from grader.ros.known.known import cmake_words
+from grader.ros.known.cmake_words import cmake_words
 from grader.ros.python.parse import START, Position
 from grader.ros.python.values import Undetermined, Unknown
 
@@ -191,7 +191,7 @@ class Build:
     def _require_sources(self, sources: Sequence[str], command: Command) -> None:
         for source in sources:
             path = self.inside(source) or ""
-            is_file = source not in cmake_words("target_keywords") and posixpath.splitext(path)[1]
+            is_file = source not in cmake_words().target_keywords and posixpath.splitext(path)[1]
             if is_file and self._has(path) is False:
                 self._stop_missing(command, path)
 
@@ -269,7 +269,7 @@ class Build:
     def generate_interfaces(self, command: Command) -> None:
         """Install the message, service and action files of a package."""
         texts = self.values.texts(command.arguments)
-        keywords = cmake_words("interface_keywords")
+        keywords = cmake_words().interface_keywords
         words = [*takewhile(lambda text: text not in keywords, texts)]
         known = [text for text in words if isinstance(text, str)]
         if not words or len(known) < len(words):
@@ -335,7 +335,7 @@ class Build:
             return
         executables = (name for name in self._automatic if self.targets[name] == "executable")
         self.programs.update(f"lib/{self._project()}/{name}" for name in executables)
-        groups = _groups(texts, cmake_words("auto_keywords"))
+        groups = _groups(texts, cmake_words().auto_keywords)
         for keyword, folders in groups[1:]:
             target = self._share() if keyword == "INSTALL_TO_SHARE" else "bin"
             for folder in folders:
@@ -350,7 +350,7 @@ class Build:
                 "the arguments of ament_python_install_package() are not known", command.at
             )
             return
-        options = dict(_groups(texts, cmake_words("python_keywords")))
+        options = dict(_groups(texts, cmake_words().python_keywords))
         folder = self.inside((options.get("PACKAGE_DIR") or texts)[0])
         self.modules.append(texts[0])
         if "SCRIPTS_DESTINATION" in options or "setup.cfg" in self.listing.files:
@@ -385,7 +385,7 @@ class Build:
                 unknown or Unknown(f"install({kind} ...) is not evaluated", command.at)
             )
             return
-        groups = _groups(words, cmake_words("install_keywords"))
+        groups = _groups(words, cmake_words().install_keywords)
         if kind == "TARGETS":
             self._install_targets(groups, command)
             return
@@ -425,7 +425,7 @@ class Build:
         """Install executables; where libraries go is not needed."""
         kind, places = "", dict[str, str]()
         for keyword, values in groups[1:]:
-            if keyword in cmake_words("artifacts"):
+            if keyword in cmake_words().artifacts:
                 kind = keyword
             elif keyword == "DESTINATION" and values:
                 places.setdefault(kind, posixpath.normpath(values[0].removeprefix(f"{PREFIX}/")))

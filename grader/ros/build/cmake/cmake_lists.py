@@ -21,7 +21,7 @@ from grader.ros.build.cmake.conditions import Condition
 from grader.ros.build.cmake.language import BLOCK_WORDS, CMakeFault, Command, parse_cmake
 from grader.ros.build.file_search import PackageListing
 from grader.ros.build.installation import Installation
-from grader.ros.known.known import cmake_table, cmake_words
+from grader.ros.known.cmake_words import cmake_words
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.parse import START, Position, SyntaxFault, location_in
 from grader.ros.python.values import Unknown
@@ -89,7 +89,7 @@ class _Evaluation:
                 BUILD_COMMANDS[command.name](self.build, command)
             elif command.name in self.own:
                 self._call(command)
-            elif command.name in cmake_words("harmless"):
+            elif command.name in cmake_words().harmless:
                 self._forget_outputs(command)
             else:
                 self.build.give_up(f"{command.name}() is not evaluated", command.at)
@@ -98,13 +98,13 @@ class _Evaluation:
         """Stop the build at a command that no package defines which was found."""
         if self.values.is_opaque or self.build.doubts or command.name in self.own:
             return
-        default = "ament_cmake" if command.name.startswith("ament_") else None
-        provider = str(cmake_table("providers").get(command.name, default) or "")
+        default = "ament_cmake" if command.name.startswith("ament_") else ""
+        provider = cmake_words().providers.get(command.name, default)
         reached = self.values.reached_packages() if provider else None
         if reached is None or provider in reached:
             return
         needed = provider
-        if provider in str(cmake_table("exports")["ament_cmake"]).split():
+        if provider in cmake_words().exports["ament_cmake"].split():
             needed = "ament_cmake"
         if provider == "rosidl_cmake":
             needed = "rosidl_default_generators"
@@ -121,8 +121,8 @@ class _Evaluation:
         if command.name == "message" and texts[:1] in (["FATAL_ERROR"], ["SEND_ERROR"]):
             words = " ".join(text for text in texts[1:] if isinstance(text, str))
             self.build.stop(f"CMakeLists.txt stops with the message {words!r}", command.at)
-        self.values.is_opaque |= command.name in cmake_words("opaque")
-        index = int(cmake_table("outputs").get(command.name, len(texts)))
+        self.values.is_opaque |= command.name in cmake_words().opaque
+        index = cmake_words().outputs.get(command.name, len(texts))
         names = texts if index < 0 else texts[index : index + 1]
         self.values.forget(names, f"the result of {command.name}() is not evaluated", command.at)
 
@@ -269,9 +269,8 @@ class _Evaluation:
         """Set what a well-known module does; another one may do anything."""
         name = self.values.first(command)
         if name == "GNUInstallDirs":
-            folders = cmake_table("install_dirs")
-            self.values.assign_all({key: str(value) for key, value in folders.items()})
-        elif name not in cmake_words("modules"):
+            self.values.assign_all(cmake_words().install_dirs)
+        elif name not in cmake_words().modules:
             self.build.give_up("include() is not evaluated", command.at)
 
     def find_package(self, command: Command) -> None:
@@ -282,7 +281,7 @@ class _Evaluation:
         if isinstance(name, Unknown):
             self.values.is_opaque = True
             return
-        known = cmake_table("exports")
+        known = cmake_words().exports
         meant = near(name, known) if name.lower() not in known else None
         if meant is not None:
             if "REQUIRED" not in words:
@@ -328,4 +327,4 @@ _COMMANDS: dict[str, Callable[[_Evaluation, Command], None]] = {
 
 def known_commands() -> frozenset[str]:
     """Return the names of the commands that are known of CMake and ament_cmake."""
-    return frozenset({*_COMMANDS, *BUILD_COMMANDS, *cmake_words("harmless"), *BLOCK_WORDS})
+    return frozenset({*_COMMANDS, *BUILD_COMMANDS, *cmake_words().harmless, *BLOCK_WORDS})

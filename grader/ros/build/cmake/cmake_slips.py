@@ -13,7 +13,7 @@ from grader.base.text import quoted
 from grader.files.tree import Tree
 from grader.ros.build.cmake.cmake_lists import known_commands
 from grader.ros.build.cmake.language import Argument, CMakeFault, Command, parse_cmake
-from grader.ros.known.known import cmake_words
+from grader.ros.known.cmake_words import cmake_words
 from grader.ros.python.parse import Position, location_in
 
 _KINDS = frozenset({"DIRECTORY", "FILES", "PROGRAMS", "TARGETS"})
@@ -122,7 +122,7 @@ class _CMakeSlips:
             if meant is not None:
                 yield self._of_argument(first, meant, f"install() knows no word {first.text}")
             return
-        keywords = cmake_words("install_keywords")
+        keywords = cmake_words().install_keywords
         is_listed = first.text != "TARGETS"  # whether the arguments are what is installed
         for argument in others:
             text = argument.text

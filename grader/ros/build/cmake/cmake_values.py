@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from grader.ros.build.cmake.language import Argument, Command
 from grader.ros.build.places import PREFIX
-from grader.ros.known.known import cmake_table, cmake_words
+from grader.ros.known.cmake_words import cmake_words
 from grader.ros.python.budget import Budget
 from grader.ros.python.library import PACKAGE_FOLDER
 from grader.ros.python.parse import Position
@@ -30,10 +30,7 @@ class Values:
 
     def __init__(self, budget: Budget) -> None:
         self.budget = budget
-        self.variables: dict[str, Text] = {
-            name: str(value) for name, value in cmake_table("variables").items()
-        }
-        self.variables |= _FOLDERS
+        self.variables: dict[str, Text] = {**cmake_words().variables, **_FOLDERS}
         self.packages: set[str] = set()  # that were found, in lower case
         # why it is not known whether the current command is run
         self.uncertain: Unknown | None = None
@@ -54,7 +51,7 @@ class Values:
         return self._reached[1]
 
     def _reach(self, found: set[str]) -> set[str] | None:
-        exports = cmake_table("exports")
+        exports = cmake_words().exports
         self.budget.charge(len(found))
         if not found.issubset(exports):
             return None
@@ -63,7 +60,7 @@ class Values:
             package = pending.pop()
             if package not in reached:
                 reached.add(package)
-                pending += str(exports.get(package, "")).split()
+                pending += exports.get(package, "").split()
         return reached
 
     def texts(self, arguments: Sequence[Argument]) -> list[Text]:
@@ -121,7 +118,7 @@ class Values:
         ends = [index for index, letter in enumerate(lower) if letter == "_"]
         self.budget.charge(1, len(ends) * len(name))
         is_of_package = any(lower[:end] in self.packages for end in ends)
-        is_foreign = lower.startswith((*cmake_words("foreign"),))
+        is_foreign = lower.startswith((*cmake_words().foreign,))
         if self.is_opaque or is_of_package or is_foreign:
             return Unknown(f"the value of {name} is not known", at)
         return ""

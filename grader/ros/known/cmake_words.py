@@ -1,0 +1,33 @@
+"""What is known of CMake and ament: the file cmake.toml."""
+
+from collections.abc import Mapping
+from functools import cache
+from typing import NamedTuple
+
+from grader.ros.known.typed_rows import read_file
+
+
+class CMakeWords(NamedTuple):
+    """Commands, keywords and variables of CMake and ament; the file says what each is."""
+
+    harmless: frozenset[str]  # commands
+    opaque: frozenset[str]  # harmless commands that set unknown variables
+    install_keywords: frozenset[str]
+    artifacts: frozenset[str]  # the keywords that name a kind of target
+    interface_keywords: frozenset[str]
+    python_keywords: frozenset[str]
+    auto_keywords: frozenset[str]
+    target_keywords: frozenset[str]
+    foreign: frozenset[str]  # how variables of CMake begin
+    modules: frozenset[str]  # that only define commands
+    providers: Mapping[str, str]  # packages by their commands
+    exports: Mapping[str, str]  # what find_package() of a package finds as well, in words
+    outputs: Mapping[str, int]  # where harmless commands name their result
+    variables: Mapping[str, str]
+    install_dirs: Mapping[str, str]
+
+
+@cache
+def cmake_words() -> CMakeWords:
+    """Return what is known of CMake and ament."""
+    return read_file(CMakeWords, "cmake")

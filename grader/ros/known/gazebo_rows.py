@@ -1,0 +1,66 @@
+"""What is known of Gazebo: the file gazebo.toml."""
+
+from collections.abc import Mapping
+from functools import cache
+from typing import NamedTuple
+
+from grader.ros.known.package_rows import WheelRow
+from grader.ros.known.typed_rows import read_file
+
+
+class _SystemTransform(NamedTuple):
+    """The elements of a system that name the frames of its transform."""
+
+    parent: str
+    child: str
+
+
+class _SystemRow(NamedTuple):
+    """A system of Gazebo: topics by the elements that name them, with the types of messages."""
+
+    has_odometry: bool = False
+    subscriptions: Mapping[str, str] = {}
+    publishers: Mapping[str, str] = {}
+    transform: _SystemTransform | None = None  # that it publishes on the topic in <tf_topic>
+    wheels: Mapping[str, WheelRow] = {}
+
+
+class _LibraryRow(NamedTuple):
+    """The library of a plugin of Gazebo Classic."""
+
+    wheels: Mapping[str, WheelRow]
+
+
+class _SensorRow(NamedTuple):
+    """A type of sensors: the types of the messages on its topics."""
+
+    topic: str = ""
+    below: Mapping[str, str] = {}  # the topic
+    beside: Mapping[str, str] = {}
+    system: str = ""  # without which it publishes nothing
+
+
+class Gazebo(NamedTuple):
+    """The words of Gazebo in robots, models and worlds."""
+
+    frame_elements: tuple[str, ...]
+    joint_elements: tuple[str, ...]
+    odometry_elements: tuple[str, ...]  # with frames of odometry
+    odometry_frames: tuple[str, ...]  # by default
+    system: Mapping[str, _SystemRow]
+    library: Mapping[str, _LibraryRow]
+    sensor: Mapping[str, _SensorRow]
+
+    @property
+    def odometry_systems(self) -> list[str]:
+        """The systems that publish odometry."""
+        return [name for name, row in self.system.items() if row.has_odometry]
+
+
+NO_SYSTEM, NO_SENSOR = _SystemRow(), _SensorRow()
+
+
+@cache
+def gazebo() -> Gazebo:
+    """Return the words of Gazebo."""
+    return read_file(Gazebo, "gazebo")

@@ -1,0 +1,21 @@
+"""What every machine of a lab with ROS 2 has: the file machine.toml."""
+
+from collections.abc import Mapping
+from functools import cache
+from typing import NamedTuple
+
+from grader.ros.known.typed_rows import read_file
+
+
+class LabMachine(NamedTuple):
+    """What every machine of a lab has, besides packages."""
+
+    imported_by_launch: tuple[str, ...]  # Python packages
+    environment: tuple[str, ...]  # variables that are set
+    ending_commands: Mapping[str, tuple[str, ...]]  # with the options with which they do not end
+
+
+@cache
+def lab_machine() -> LabMachine:
+    """Return what every machine of a lab has."""
+    return read_file(LabMachine, "machine")

@@ -1,0 +1,99 @@
+"""Tables of TOML as typed rows: each key is a field of the row, and each value has its type."""
+
+import tomllib
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
+from pathlib import Path
+from types import NoneType, UnionType
+from typing import Any, TypeVar, get_args, get_origin
+
+_Row = TypeVar("_Row")
+_Reading = Callable[[Any], Any]
+
+
+def read_row(kind: Callable[..., _Row], table: Mapping[str, Any]) -> _Row:
+    """Return a table as a row of a named tuple. Raises ValueError for a key that is no field of it
+    and a value of another type.
+
+    Arrays become tuples. A frozenset of strings is written as words in one string.
+
+    Examples:
+        >>> from typing import NamedTuple
+        >>> class Wheel(NamedTuple):
+        ...     radius: float
+        ...     joints: tuple[str, ...] = ()
+        >>> read_row(Wheel, {"radius": 0.1, "joints": ["left"]})
+        Wheel(radius=0.1, joints=('left',))
+        >>> read_row(Wheel, {"raduis": 0.1})
+        Traceback (most recent call last):
+        ValueError: a Wheel has no 'raduis'
+    """
+    readings = _readings_of(kind)
+    values: dict[str, Any] = {}
+    for key, value in table.items():
+        if key not in readings:
+            raise ValueError(f"a {getattr(kind, '__name__', kind)} has no {key!r}")
+        values[key] = readings[key](value)
+    return kind(**values)
+
+
+def read_file(kind: Callable[..., _Row], name: str) -> _Row:
+    """Return a file of this folder as a row. Raises ValueError."""
+    text = Path(__file__).with_name(f"{name}.toml").read_text("utf-8")
+    return read_row(kind, tomllib.loads(text))
+
+
+def read_typed(hint: Any, value: Any) -> Any:
+    """Return a value of TOML as the type of an annotation has it. Raises ValueError."""
+    return _reading_of(hint)(value)
+
+
+@cache
+def _readings_of(kind: Callable[..., Any]) -> Mapping[str, _Reading]:
+    return {name: _reading_of(hint) for name, hint in kind.__annotations__.items()}
+
+
+@cache
+def _reading_of(hint: Any) -> _Reading:
+    """Return the function that reads values of a type."""
+    origin, arguments = get_origin(hint), get_args(hint)
+    if origin is UnionType:
+        [hint] = [argument for argument in arguments if argument is not NoneType]
+        return _reading_of(hint)
+    if origin in _COLLECTIONS:
+        return _COLLECTIONS[origin](arguments)
+    if hasattr(hint, "_fields"):
+        return partial(read_row, hint)
+    return partial(_read_plain, hint, arguments)
+
+
+def _items_of(arguments: Sequence[Any]) -> _Reading:
+    read_item = _reading_of(arguments[0])
+    return lambda items: tuple(map(read_item, items))
+
+
+def _words_of(_: Sequence[Any]) -> _Reading:
+    return lambda words: frozenset(words.split())
+
+
+def _table_of(arguments: Sequence[Any]) -> _Reading:
+    read_value = _reading_of(arguments[1])
+    return lambda table: {key: read_value(value) for key, value in table.items()}
+
+
+_COLLECTIONS: Mapping[Any, Callable[[Sequence[Any]], _Reading]] = {
+    tuple: _items_of,
+    frozenset: _words_of,
+    Mapping: _table_of,
+}
+
+
+def _read_plain(hint: Any, words: tuple[Any, ...], value: Any) -> Any:
+    """Return a value that is one of some words, or of a type, as it is."""
+    if words:
+        is_of_it = value in words
+    else:
+        is_of_it = hint is Any or type(value) in (hint, int if hint is float else hint)
+    if not is_of_it:
+        raise ValueError(f"{value!r} is no {hint}")
+    return value

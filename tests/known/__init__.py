@@ -1,0 +1,1 @@
+"""Tests of the files of what is known of ROS 2."""
