@@ -53,20 +53,22 @@ def packages_with(key: IndexedKey) -> list[str]:
 
 
 def facts_in_file(package: str) -> dict[str, Any]:
-    """Return the facts at the start of the file of a package; none without a file."""
-    return tomllib.loads(_parts(package)[0])
+    """Return the facts at the start of the file of a package that has one."""
+    return tomllib.loads(split_facts(_text_of(package))[0])
+
+
+def tables_in_file(package: str) -> Mapping[str, Any]:
+    """Return the tables after the facts in the file of a package; none without a file."""
+    return _read_tables(package) if package in packages_with_files() else {}
 
 
 @cache
-def tables_in_file(package: str) -> Mapping[str, Any]:
-    """Return the tables after the facts in the file of a package; none without a file."""
-    return tomllib.loads(_parts(package)[1])
+def _read_tables(package: str) -> Mapping[str, Any]:
+    return tomllib.loads(split_facts(_text_of(package))[1])
 
 
-def _parts(package: str) -> tuple[str, str]:
-    if package not in packages_with_files():
-        return "", ""
-    return split_facts((FOLDER / f"{package}{_ENDING}").read_text("utf-8"))
+def _text_of(package: str) -> str:
+    return (FOLDER / f"{package}{_ENDING}").read_text("utf-8")
 
 
 def split_facts(text: str) -> tuple[str, str]:

@@ -161,12 +161,17 @@ class PackageRow(NamedTuple):
         )
 
 
-_NO_PROGRAM, _NO_CONTROLLER = ProgramRow(), _ControllerRow()
+_NO_PROGRAM, _NO_CONTROLLER, _NO_PACKAGE = ProgramRow(), _ControllerRow(), PackageRow()
+
+
+def package_row(package: str) -> PackageRow:
+    """Return what is known of a package; an empty row for one without a file."""
+    # Submissions have any names: only the rows of known packages are remembered.
+    return _read_row(package) if package in packages_with_files() else _NO_PACKAGE
 
 
 @cache
-def package_row(package: str) -> PackageRow:
-    """Return what is known of a package; an empty row for one without a file."""
+def _read_row(package: str) -> PackageRow:
     return read_row(PackageRow, facts_in_file(package))
 
 
@@ -176,7 +181,6 @@ def _rows_with(key: IndexedKey) -> Iterator[tuple[str, PackageRow]]:
         yield package, package_row(package)
 
 
-@cache
 def program_row(package: str, program: str) -> ProgramRow:
     """Return what is known of a program; an empty row for an unknown one."""
     rows = package_row(package).program

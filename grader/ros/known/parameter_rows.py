@@ -200,7 +200,6 @@ def node_rows(node: str) -> NodeRows | None:
     )
 
 
-@cache
 def _table_of(node: str) -> NodeTable | None:
     table = tables_in_file(_SEPARATOR.split(node)[0]).get(node)
     return read_row(NodeTable, table) if table is not None else None
