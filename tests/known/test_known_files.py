@@ -9,12 +9,12 @@ import pytest
 
 from grader.ros.known.cmake_words import CMakeWords, cmake_words
 from grader.ros.known.gazebo_rows import Gazebo, gazebo
-from grader.ros.known.lab_machine import LabMachine, lab_machine
 from grader.ros.known.package_files import FOLDER, packages_with_files, split_facts
 from grader.ros.known.package_rows import PackageRow, package_row
 from grader.ros.known.package_tables import INTERFACE_KINDS, TABLES
 from grader.ros.known.parameter_rows import NodeTable, is_name_of_node, read_rows
 from grader.ros.known.releases import RELEASES
+from grader.ros.known.ros_machine import RosMachine, ros_machine
 from grader.ros.known.shared_names import SharedNames, shared_names
 from grader.ros.known.typed_rows import read_row, read_typed
 
@@ -23,7 +23,7 @@ from grader.ros.known.typed_rows import read_row, read_typed
 _OTHERS: Mapping[str, tuple[Callable[..., Any], Callable[[], Any]]] = {
     "cmake": (CMakeWords, cmake_words),
     "gazebo": (Gazebo, gazebo),
-    "machine": (LabMachine, lab_machine),
+    "machine": (RosMachine, ros_machine),
     "shared_names": (SharedNames, shared_names),
 }
 

@@ -13,8 +13,8 @@ from contextlib import suppress
 from typing import Any
 
 from grader.ros.build.places import PREFIX, ROS, SHARE
-from grader.ros.known.lab_machine import lab_machine
 from grader.ros.known.package_rows import package_row, program_row
+from grader.ros.known.ros_machine import ros_machine
 from grader.ros.launch.call_arguments import OPENED, TYPED, items_in
 from grader.ros.launch.launch_model import (
     NAMESPACE,
@@ -236,7 +236,7 @@ def ends_by_itself(action: Value, context: Context) -> bool:
     if words[:2] == ["ros2", "run"] and len(words) > 3:
         options = program_row(words[2], words[3]).ends_unless
         return options is not None and _has_none_of(words, options)
-    for command, options in lab_machine().ending_commands.items():
+    for command, options in ros_machine().ending_commands.items():
         first = command.split()
         if words[: len(first)] == first:
             return _has_none_of(words, options)

@@ -279,11 +279,11 @@ class Package:
         """The name of a Python package that a build installs and that ros2 launch imports in place
         of its own.
         """
-        from grader.ros.known.lab_machine import lab_machine  # late: a URDF needs no table
+        from grader.ros.known.ros_machine import ros_machine  # late: a URDF needs no table
 
         if self.installation is None or self.installation.unknown:
             return ""
-        imported = lab_machine().imported_by_launch
+        imported = ros_machine().imported_by_launch
         return next((name for name in self.installation.packages if name in imported), "")
 
     @cached_property

@@ -8,13 +8,13 @@ from collections.abc import Iterator, Sequence
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.build.places import PREFIX, share_parts
-from grader.ros.known.lab_machine import lab_machine
 from grader.ros.known.package_rows import (
     commands_that_end,
     controller_row,
     package_row,
     program_row,
 )
+from grader.ros.known.ros_machine import ros_machine
 from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.bridges import bridge_rows
@@ -191,7 +191,7 @@ def _may_have_clock(workspace: Workspace) -> bool:
     if any(row.is_published and row.ros_type == _CLOCK for row in bridge_rows(workspace)):
         return True
     for _, launch in workspace.roots:
-        ending = (*lab_machine().ending_commands, *commands_that_end())
+        ending = (*ros_machine().ending_commands, *commands_that_end())
         if not all(command.startswith(ending) for command in launch.commands):
             return True
         for passed in launch.passed:

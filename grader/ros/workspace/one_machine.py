@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from grader.base.source import Source
 from grader.base.text import cut, quoted
-from grader.ros.known.lab_machine import lab_machine
+from grader.ros.known.ros_machine import ros_machine
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rule_table import (
     ENVIRONMENT_VARIABLE,
@@ -53,7 +53,7 @@ def _variables(source: Source) -> Iterator[Mismatch]:
     seen: set[str] = set()
     for match in _ENVIRONMENT.finditer(source.text):
         name = match["python"] or match["launch"] or match["xml"]
-        if name in lab_machine().environment or name in seen:
+        if name in ros_machine().environment or name in seen:
             continue
         seen.add(name)
         if _is_handled(source.text, name):

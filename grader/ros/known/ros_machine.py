@@ -7,8 +7,8 @@ from typing import NamedTuple
 from grader.ros.known.typed_rows import read_file
 
 
-class LabMachine(NamedTuple):
-    """What every machine of a lab has, besides packages."""
+class RosMachine(NamedTuple):
+    """What every machine with ROS 2 has, besides packages."""
 
     imported_by_launch: tuple[str, ...]  # Python packages
     environment: tuple[str, ...]  # variables that are set
@@ -16,6 +16,6 @@ class LabMachine(NamedTuple):
 
 
 @cache
-def lab_machine() -> LabMachine:
-    """Return what every machine of a lab has."""
-    return read_file(LabMachine, "machine")
+def ros_machine() -> RosMachine:
+    """Return what every machine with ROS 2 has."""
+    return read_file(RosMachine, "machine")
