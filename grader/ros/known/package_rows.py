@@ -166,7 +166,7 @@ _NO_PROGRAM, _NO_CONTROLLER, _NO_PACKAGE = ProgramRow(), _ControllerRow(), Packa
 
 def package_row(package: str) -> PackageRow:
     """Return what is known of a package; an empty row for one without a file."""
-    # Submissions have any names: only the rows of known packages are remembered.
+    # A workspace has any names: only the rows of known packages are remembered.
     return _read_row(package) if package in packages_with_files() else _NO_PACKAGE
 
 

@@ -1,4 +1,4 @@
-"""What every machine of a lab with ROS 2 has: the file machine.toml."""
+"""What every machine with ROS 2 has: the file machine.toml."""
 
 from collections.abc import Mapping
 from functools import cache
