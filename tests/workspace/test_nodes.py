@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 
-from grader.ros.workspace.endpoints import opened_by
+from grader.ros.workspace.graph.endpoints import opened_by
 from grader.ros.workspace.names import Mismatch
 from tests.labs.variants import FOLDER
 from tests.workspace.carts import Edit, agreement_of, cart

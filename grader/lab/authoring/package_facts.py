@@ -27,7 +27,7 @@ from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
-from grader.ros.workspace.endpoints import opened_by
+from grader.ros.workspace.graph.endpoints import opened_by
 from grader.ros.workspace.names import FAMILIES, Family
 from grader.ros.workspace.reading import read_agreement, wrong_names
 

@@ -17,7 +17,7 @@ from grader.ros.xml.urdf_format import numbers_in
 if TYPE_CHECKING:
     from grader.lab.submission.submission import Submission
     from grader.ros.launch.launch_model import Launch, StartedNode
-    from grader.ros.workspace.workspace import Workspace
+    from grader.ros.workspace.model.workspace import Workspace
 
 _VERBS: Mapping[str, str] = {
     "publisher": "publishes",
@@ -208,7 +208,7 @@ class _NodeTopics:
     """The topics, services and actions of the nodes of a workspace that a launch file starts."""
 
     def __init__(self, launch: "Launch", workspace: "Workspace") -> None:
-        from grader.ros.workspace.endpoints import opened_by  # late: few rubrics ask for it
+        from grader.ros.workspace.graph.endpoints import opened_by  # late: few rubrics ask for it
         from grader.ros.workspace.reading import read_agreement
 
         self._topics: list[_NodeTopic] = []

@@ -10,11 +10,11 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
 from grader.ros.known.known import known
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Definition, Fact, Use
 from grader.ros.workspace.names_in_files import names_in_launch_files, names_in_yaml
 from grader.ros.workspace.names_in_robots import names_in_robots
 from grader.ros.workspace.names_in_xacro import names_in_xacro
-from grader.ros.workspace.workspace import Workspace
 from grader.ros.workspace.written_names import (
     Role,
     WrittenName,

@@ -7,8 +7,8 @@ from grader.base.source import Location
 from grader.ros.build.places import PREFIX
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import Launch
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Definition, Fact, Open, Use
-from grader.ros.workspace.workspace import Workspace
 
 _CONFIGURATION = re.compile(r"LaunchConfiguration\(\s*[\"'](\w+)[\"']|\$\(var (\w+)")
 _MAX_LAUNCH = 128 * 1024  # bytes, as launch files are read

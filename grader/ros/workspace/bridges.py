@@ -12,135 +12,29 @@ from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode
 from grader.ros.known.known import known
-from grader.ros.launch.launch_model import StartedNode
-from grader.ros.workspace.gazebo import (
+from grader.ros.workspace.graph.bridge_rows import (
     BRIDGE,
+    TO_GAZEBO,
+    TO_ROS,
+    BridgeRow,
+    bridge_rows,
+)
+from grader.ros.workspace.graph.gazebo_topics import (
     GazeboTopic,
     gazebo_topics,
     roots,
     sensor_topics,
 )
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections, cost_of_guess
-from grader.ros.workspace.workspace import Workspace
 
-_TO_ROS, _TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
 _TOPIC_KEYS = ("topic_name", "ros_topic_name", "gz_topic_name", "ign_topic_name")
-_DIRECTIONS = {"[": _TO_ROS, "]": _TO_GAZEBO, "@": _BOTH}
-_ARGUMENT = re.compile(r"(?P<topic>[^@\s]+)@(?P<ros>[\w/]+)(?P<direction>[@\[\]])(?P<gz>[\w.]+)")
-_OLDER_FORM = re.compile("^ignition[.]msgs(?=[.])")
 _COMPUTED = re.compile("^(world|model)/|[${<%]")  # names that Gazebo or a program makes
 _EXPANDED = "expand_gz_topic_names"  # the parameter that puts the namespace before the names
 # Below the topic, or beside it: also of cameras that segment (gz-sensors).
 _DERIVED = ("points", "image", "depth_image", "camera_info", "labels_map", "colored_map")
 # Models in worlds that have no sensors.
 _WITHOUT_SENSORS = ("sun", "ground_plane", "ground plane")
-
-
-class _BridgeRow(NamedTuple):
-    """What a bridge takes from a topic on one side to one on the other, without the first slash of
-    the names.
-    """
-
-    ros: str
-    gz: str
-    ros_type: str  # in the form of Python: sensor_msgs.msg.Image
-    gz_type: str  # in its newer form: gz.msgs.Image
-    direction: str
-    location: Location
-    ros_type_location: Location
-    gz_type_location: Location
-    direction_location: Location
-    is_used: bool  # whether a launch file names the file of the row
-
-    @property
-    def is_published(self) -> bool:
-        """Return whether the bridge publishes in ROS."""
-        return self.direction != _TO_GAZEBO
-
-    @property
-    def is_read(self) -> bool:
-        """Return whether the bridge subscribes in ROS."""
-        return self.direction != _TO_ROS
-
-
-def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
-    """Yield the rows of bridges in YAML files, and those in the arguments of bridges."""
-    for path, tree in workspace.trees:
-        is_used = any(
-            posixpath.basename(path) in text for text in workspace.searched_launch_texts()
-        )
-        for item in tree.items:
-            row = _row_in_yaml(item, is_used=is_used)
-            if row is not None:
-                yield row
-    for _, node in workspace.nodes:
-        if node.package == BRIDGE:
-            yield from _rows_in_arguments(node)
-
-
-def rows_of_bridge(workspace: Workspace, node: StartedNode) -> Iterator[_BridgeRow]:
-    """Yield the rows that a bridge is given."""
-    yield from _rows_in_arguments(node)
-    for given in node.parameters or ():
-        file = given.values.get("config_file")
-        path = workspace.source_of(file.value) if file and isinstance(file.value, str) else None
-        tree = workspace.yaml_files.get(path or "")
-        items = tree.items if isinstance(tree, YamlNode) else ()
-        workspace.charge(1 + len(items))
-        for item in items:
-            row = _row_in_yaml(item, is_used=True)
-            if row is not None:
-                yield row
-
-
-def _rows_in_arguments(node: StartedNode) -> Iterator[_BridgeRow]:
-    for word in node.arguments or ():
-        match = _ARGUMENT.fullmatch(word or "")
-        if match is not None:
-            topic, at = match["topic"].strip("/"), node.location
-            yield _BridgeRow(
-                ros=topic,
-                gz=topic,
-                ros_type=_newer_ros_type(match["ros"]),
-                gz_type=_newer_gz_type(match["gz"]),
-                direction=_DIRECTIONS[match["direction"]],
-                location=at,
-                ros_type_location=at,
-                gz_type_location=at,
-                direction_location=at,
-                is_used=True,
-            )
-
-
-def _newer_ros_type(written: str) -> str:
-    return written.replace("/", ".")
-
-
-def _newer_gz_type(written: str) -> str:
-    return _OLDER_FORM.sub("gz.msgs", written)
-
-
-def _row_in_yaml(row: YamlNode, *, is_used: bool) -> _BridgeRow | None:
-    both = row.get("topic_name")
-    ros, gz = row.get("ros_topic_name") or both, row.get("gz_topic_name") or both
-    ros_type, gz_type = row.get("ros_type_name"), row.get("gz_type_name")
-    if ros is None or gz is None or not ros.text or not gz.text:
-        return None
-    if ros_type is None or gz_type is None:
-        return None
-    direction = row.get("direction")
-    return _BridgeRow(
-        ros=ros.text.strip("/"),
-        gz=gz.text.strip("/"),
-        ros_type=_newer_ros_type(ros_type.text or ""),
-        gz_type=_newer_gz_type(gz_type.text or ""),
-        direction=(direction.text if direction is not None else None) or _BOTH,
-        location=gz.location,
-        ros_type_location=ros_type.location,
-        gz_type_location=gz_type.location,
-        direction_location=(direction or gz).location,
-        is_used=is_used,
-    )
 
 
 def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -159,7 +53,7 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _clocks(workspace, rows)
 
 
-def _compared_rows(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Fact]:
+def _compared_rows(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Fact]:
     """Yield what is wrong with rows, by the topics that Gazebo has."""
     topics = list(gazebo_topics(workspace))
     named, bridged = _named_topics(workspace), {row.gz for row in rows}
@@ -213,7 +107,7 @@ def _nameless_sensors(
     return nameless
 
 
-def _without_topic(row: _BridgeRow, nameless: dict[str, _NamelessSensor]) -> Iterator[Mismatch]:
+def _without_topic(row: BridgeRow, nameless: dict[str, _NamelessSensor]) -> Iterator[Mismatch]:
     """Yield that the only sensor with the messages of a row has no <topic>."""
     sensor = nameless.get(row.gz_type)
     if sensor is None or not row.is_published:
@@ -251,7 +145,7 @@ def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:
                 break
 
 
-def _no_direction(row: _BridgeRow) -> Mismatch:
+def _no_direction(row: BridgeRow) -> Mismatch:
     """Return that a row has a direction that no bridge has."""
     meant = closest(row.direction, known()["bridge_directions"])
     guess = f"; did you mean {meant}?" if meant is not None else ""
@@ -261,7 +155,7 @@ def _no_direction(row: _BridgeRow) -> Mismatch:
     return Mismatch("topics", message, at, None, row.is_used, either)
 
 
-def _no_type(workspace: Workspace, row: _BridgeRow) -> Iterator[Mismatch]:
+def _no_type(workspace: Workspace, row: BridgeRow) -> Iterator[Mismatch]:
     """Yield that no bridge has a type like the one of a row in ROS, and which one it may mean."""
     types = [kind.replace(".", "/") for kind in known()["bridge_types"]]
     written = row.ros_type.replace(".", "/")
@@ -298,7 +192,7 @@ def bridge_files(workspace: Workspace) -> set[str]:
     return {file for file in files if file is not None}
 
 
-def _conversions(row: _BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
+def _conversions(row: BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
     """Yield that no bridge converts a type into the other one, and that the time of ROS is sent to
     Gazebo.
 
@@ -323,20 +217,20 @@ def _conversions(row: _BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
             f"write {enumerated(meant, word='or')}"
         )
         yield Mismatch("topics", message, at, None, row.is_used, either)
-    if row.gz_type == "gz.msgs.Clock" and row.direction == _TO_GAZEBO:
+    if row.gz_type == "gz.msgs.Clock" and row.direction == TO_GAZEBO:
         message = (
-            f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {_TO_ROS}"
+            f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {TO_ROS}"
         )
-        yield _wrong_direction(row, message, _TO_ROS)
+        yield _wrong_direction(row, message, TO_ROS)
 
 
-def _fitting_types(row: _BridgeRow) -> list[str]:
+def _fitting_types(row: BridgeRow) -> list[str]:
     """Return the types of Gazebo that a bridge converts into the type of a row in ROS."""
     return [f"gz.msgs.{kind}" for kind in known()["bridge_types"].get(row.ros_type, ())]
 
 
 def _wrong_direction(
-    row: _BridgeRow, message: str, right: str, related: Location | None = None
+    row: BridgeRow, message: str, right: str, related: Location | None = None
 ) -> Mismatch:
     """Return that a row has the wrong direction, with the right one; in an argument it is a
     character.
@@ -346,16 +240,16 @@ def _wrong_direction(
     return Mismatch("topics", message, at, related, row.is_used, either)
 
 
-def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
+def _contradictions(row: BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
     """Yield that a topic of Gazebo is bridged in the other direction, or has messages of another
     type.
     """
     if not topics:
         return
     at = topics[0].location
-    wrong, right, done = _TO_GAZEBO, _TO_ROS, "publishes it"
+    wrong, right, done = TO_GAZEBO, TO_ROS, "publishes it"
     if topics[0].is_input:
-        wrong, right, done = _TO_ROS, _TO_GAZEBO, "reads it"
+        wrong, right, done = TO_ROS, TO_GAZEBO, "reads it"
     are_alike = len({topic.is_input for topic in topics}) == 1
     if are_alike and row.direction == wrong:
         message = (
@@ -372,7 +266,7 @@ def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mism
         yield Mismatch("topics", message, row.gz_type_location, at, row.is_used)
 
 
-def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) -> Iterator[Mismatch]:
+def _not_there(row: BridgeRow, unused: list[GazeboTopic], *, is_known: bool) -> Iterator[Mismatch]:
     """Yield that Gazebo does not have the topic of a row, while no row has one of the same type
     that it has.
     """
@@ -395,7 +289,7 @@ def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) ->
         yield Mismatch("topics", message, row.location, at, is_certain, either)
 
 
-def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:
+def _clocks(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]:
     """Yield that nodes wait for the time of the simulation, and no bridge takes it from Gazebo."""
     used = [row for row in rows if row.is_used]
     has_bridge = any(node.package == BRIDGE for _, node in workspace.nodes)

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, Undecided
-from grader.ros.workspace.workspace import Workspace
 
 
 def code_facts(workspace: Workspace) -> Iterator[Fact]:

@@ -10,11 +10,10 @@ from grader.base.text import quoted
 from grader.ros.build.places import PREFIX, share_parts
 from grader.ros.known.known import ending_commands, known
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.workspace.bridges import bridge_rows
-from grader.ros.workspace.controllers import defined_controllers, spawned_controllers
-from grader.ros.workspace.gazebo import BRIDGE
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
+from grader.ros.workspace.graph.started_controllers import defined_controllers, spawned_controllers
+from grader.ros.workspace.model.workspace import MANAGER, Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
-from grader.ros.workspace.workspace import MANAGER, Workspace
 
 _ROBOT_PUBLISHER, _CONTROL_NODE = "robot_state_publisher", "ros2_control_node"
 _JOINT_STATE, _CLOCK = "sensor_msgs.msg.JointState", "rosgraph_msgs.msg.Clock"

@@ -10,6 +10,7 @@ from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.launch.launch_model import Launch, LoadedComponent
 from grader.ros.package.package import Package
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Compared,
     Fact,
@@ -18,7 +19,6 @@ from grader.ros.workspace.names import (
     corrections,
     cost_of_guess,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _CONTAINERS = "rclcpp_components"
 _CMAKE = ("CMakeLists.txt", ".cmake")

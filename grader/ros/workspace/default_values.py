@@ -9,10 +9,10 @@ from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.python.parse import START
 from grader.ros.python.values import SCALARS, Unknown, Value
-from grader.ros.workspace.controllers import defined_controllers
+from grader.ros.workspace.graph.started_controllers import defined_controllers
 from grader.ros.workspace.known_parameters import is_as_released
+from grader.ros.workspace.model.workspace import SPAWNERS, Workspace
 from grader.ros.workspace.parameter_rules import GivenNode, default_in
-from grader.ros.workspace.workspace import SPAWNERS, Workspace
 
 _EVERY_NODE = "rclcpp/node"
 _NOT_KNOWN = Unknown("its default is not known", START)

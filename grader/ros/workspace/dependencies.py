@@ -12,8 +12,8 @@ from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections, cost_of_guess
-from grader.ros.workspace.workspace import Workspace
 
 _FIND = re.compile(r"\$\(find ([\w-]+)\)|package://([\w-]+)/")
 _OF_ROS = ("rclpy", "tf2_ros")

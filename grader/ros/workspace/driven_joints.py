@@ -9,7 +9,7 @@ from grader.ros.config.yaml_nodes import Visits, YamlNode
 from grader.ros.package.robot_file import Read
 
 if TYPE_CHECKING:
-    from grader.ros.workspace.workspace import Workspace
+    from grader.ros.workspace.model.workspace import Workspace
 
 _PLUGIN_TAGS = (("left_joint", "right_joint"), ("leftJoint", "rightJoint"))
 

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from grader.base.text import counted
 from grader.ros.known.releases import StatedReleases
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 
 _CPP = (".cpp", ".cc", ".cxx")
 

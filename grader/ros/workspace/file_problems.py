@@ -14,8 +14,8 @@ from grader.ros.launch.launch_model import Launch
 from grader.ros.package.found_problems import build_problems, launch_problems, sorted_problems
 from grader.ros.package.installed_files import are_installs_known
 from grader.ros.package.package import MANIFEST, Package
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.reading import read_agreement
-from grader.ros.workspace.workspace import Workspace
 
 _OF_MISSING_FILES = (kinds.SETUP_STOPS, kinds.EMPTY_GLOB)
 _LAUNCH_FOLDER = "launch/"

@@ -20,6 +20,7 @@ from grader.ros.package.installed_files import (
     similar_file,
 )
 from grader.ros.package.package import Package
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Compared,
     Correction,
@@ -29,7 +30,6 @@ from grader.ros.workspace.names import (
     corrections,
     cost_of_guess,
 )
-from grader.ros.workspace.workspace import Workspace
 
 # A path ends at a quote, a tag or a space, in YAML's flow style and in a substitution also at a
 # comma or a bracket.

@@ -17,9 +17,9 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Collision, Mesh, Visual
 from grader.ros.urdf.numbers import finite_number
 from grader.ros.urdf.shapes import PlacedShape
+from grader.ros.workspace.model.workspace import KnownRobot, Workspace
 from grader.ros.workspace.names import Compared, Fact, warning
 from grader.ros.workspace.under_arguments import may_vary
-from grader.ros.workspace.workspace import KnownRobot, Workspace
 
 _DIRECTIONS = 36  # horizontal directions in which the robot is measured
 _TOLERANCE, _ROUNDING = 0.05, 0.005  # of a length; metres

@@ -17,8 +17,9 @@ from grader.ros.package.node_facts import NodeFrame
 from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
-from grader.ros.workspace.endpoints import frames_of
-from grader.ros.workspace.gazebo import roots, system_of
+from grader.ros.workspace.graph.endpoints import frames_of
+from grader.ros.workspace.graph.gazebo_topics import roots, system_of
+from grader.ros.workspace.model.workspace import KnownRobot, Workspace
 from grader.ros.workspace.names import (
     Definition,
     Fact,
@@ -29,7 +30,6 @@ from grader.ros.workspace.names import (
     corrections,
 )
 from grader.ros.workspace.under_arguments import names_under_arguments
-from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
 
 _JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")

@@ -8,9 +8,9 @@ from grader.base.text import quoted
 from grader.ros.known.known import known
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.python.values import Unknown
-from grader.ros.workspace.controllers import defined_controllers
+from grader.ros.workspace.graph.started_controllers import defined_controllers
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch
-from grader.ros.workspace.workspace import Workspace
 
 
 class _LackingGains(NamedTuple):

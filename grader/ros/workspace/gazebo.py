@@ -3,86 +3,23 @@ ask of the simulation.
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
-from typing import NamedTuple
 
 from grader.base.names import closest
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
+from grader.ros.workspace.graph.bridge_rows import BRIDGE
+from grader.ros.workspace.graph.gazebo_topics import roots, system_of
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Fact, Mismatch, corrections
-from grader.ros.workspace.workspace import Workspace
 from grader.ros.xml.parsing import Element, XmlFile
 
-BRIDGE, _SIMULATION = "ros_gz_bridge", "ros_gz_sim"
+_SIMULATION = "ros_gz_sim"
 _OPTION = re.compile(r"--?[A-Za-z]")
 _WITHOUT_VALUE = "allow_renaming"  # an option of create
-
-
-class GazeboTopic(NamedTuple):
-    """A topic of a sensor or a system, without the first slash, and the last word of the type of
-    its messages.
-    """
-
-    name: str
-    type: str
-    is_input: bool  # of commands, to which Gazebo subscribes
-    location: Location
-
-
-def gazebo_topics(workspace: Workspace) -> Iterator[GazeboTopic]:
-    """Yield the topics that are named in the robot, in models and in worlds, and whose types are
-    known.
-    """
-    for root, place in roots(workspace):
-        for sensor in root.iter("sensor"):
-            for child in sensor.iterchildren("topic"):
-                for name, kind in sensor_topics(sensor, child):
-                    yield GazeboTopic(name, kind, is_input=False, location=place(child))
-        for plugin in root.iter("plugin"):
-            system = known()["gazebo_systems"].get(system_of(plugin), {})
-            for direction in ("in", "out"):
-                for tag, kind in system.get(direction, {}).items():
-                    for child in plugin.iterchildren(tag):
-                        name = _plain_topic(child)
-                        if name:
-                            yield GazeboTopic(name, kind, direction == "in", place(child))
-
-
-def _plain_topic(element: Element) -> str:
-    return (element.text or "").strip().strip("/")
-
-
-def sensor_topics(sensor: Element, element: Element) -> Iterator[tuple[str, str]]:
-    """Yield the topics that a sensor of a known type makes of the one in its <topic>, with the
-    types of their messages.
-    """
-    types, name = known()["gazebo_sensors"].get(sensor.get("type", "")), _plain_topic(element)
-    if types is None or not name:
-        return
-    if "topic" in types:
-        yield name, types["topic"]
-    for last, kind in types.get("below", {}).items():
-        yield f"{name}/{last}", kind
-    if next(sensor.iter("camera_info_topic"), None) is None:
-        above = name.rpartition("/")[0]
-        for last, kind in types.get("beside", {}).items():
-            yield f"{above}/{last}".removeprefix("/"), kind
-
-
-def system_of(plugin: Element) -> str:
-    """Return the name of the class of a system, such as DiffDrive."""
-    return plugin.get("name", "").rpartition("::")[2]
-
-
-def roots(workspace: Workspace) -> Iterator[tuple[Element, Callable[[Element], Location]]]:
-    """Yield the roots of the robots and of the models and worlds, each with where its elements
-    are written.
-    """
-    yield from ((robot.root, robot.place) for robot in workspace.robots)
-    yield from ((file.root, file.location) for file in workspace.sdf_files)
 
 
 def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:

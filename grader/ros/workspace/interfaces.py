@@ -25,8 +25,8 @@ from grader.ros.package.node_facts import FieldUse
 from grader.ros.package.package import Package
 from grader.ros.package.package_interfaces import PackageInterfaces
 from grader.ros.python.values import Value
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, Undecided, corrections
-from grader.ros.workspace.workspace import Workspace
 
 _GROUP = "rosidl_interface_packages"
 # What rosidl brings for services and actions without naming them.

@@ -12,13 +12,12 @@ from grader.base.text import quoted
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
-from grader.ros.workspace.bridges import rows_of_bridge
-from grader.ros.workspace.controllers import controller_endpoints
-from grader.ros.workspace.endpoints import ANY, opened_by
-from grader.ros.workspace.gazebo import BRIDGE
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
+from grader.ros.workspace.graph.endpoints import ANY, opened_by
+from grader.ros.workspace.graph.publishers import may_be_published_by
+from grader.ros.workspace.graph.started_controllers import controller_endpoints
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
-from grader.ros.workspace.publishers import may_be_published_by
-from grader.ros.workspace.workspace import Workspace
 
 _INPUT = re.compile(r"([a-z]+)\d+")
 _CLASSIC = "libgazebo_ros_"  # how the names of plugins of Gazebo Classic begin, which publish

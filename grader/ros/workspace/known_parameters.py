@@ -21,11 +21,11 @@ from grader.ros.launch.node_parameters import value_in_file
 from grader.ros.package.package import Package
 from grader.ros.python.parse import START
 from grader.ros.python.values import Unknown
-from grader.ros.workspace.controllers import defined_controllers
+from grader.ros.workspace.graph.started_controllers import defined_controllers
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact
 from grader.ros.workspace.parameter_rules import GivenNode, wrong_values
 from grader.ros.workspace.stated_releases import deciding_launch_files, releases_in_path
-from grader.ros.workspace.workspace import Workspace
 
 # The node that MoveIt's joint_limits.yaml is for, and where its table is among the parameters.
 _MOVE_GROUP = "moveit_ros_move_group/move_group"

@@ -11,9 +11,9 @@ from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.urdf.model import Joint, Limit
 from grader.ros.urdf.numbers import finite_number
+from grader.ros.workspace.model.workspace import KnownRobot, Workspace
 from grader.ros.workspace.names import Compared, Fact, warning
 from grader.ros.workspace.under_arguments import may_vary
-from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
 
 _TOLERANCE = 1e-3  # of a limit: files round differently

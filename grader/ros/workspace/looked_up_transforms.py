@@ -7,11 +7,11 @@ from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.known.known import known
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
-from grader.ros.workspace.endpoints import frames_of
 from grader.ros.workspace.frames import openings
-from grader.ros.workspace.gazebo import roots, system_of
+from grader.ros.workspace.graph.endpoints import frames_of
+from grader.ros.workspace.graph.gazebo_topics import roots, system_of
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import UNCONNECTED, Compared, Mismatch
-from grader.ros.workspace.workspace import Workspace
 
 _ROBOT_PUBLISHER = "robot_state_publisher"
 _PUBLISHED = ("publishes", "is above")

@@ -8,10 +8,10 @@ from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.known import known
-from grader.ros.workspace.controllers import defined_controllers
+from grader.ros.workspace.graph.started_controllers import defined_controllers
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Fact, Mismatch, Use, corrections
 from grader.ros.workspace.spawners import started_controllers
-from grader.ros.workspace.workspace import Workspace
 
 _MANAGER = "moveit_simple_controller_manager"
 _TABLES_OF_JOINTS = ("joint_limits", "initial_positions")

@@ -6,7 +6,7 @@ from contextlib import suppress
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import PARAMETERS, values_in
 from grader.ros.launch.argument_names import argument_names
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.written_names import Role, WrittenName, written_name
 
 _FRAMES_OF_RVIZ = ("Fixed Frame", "Reference Frame", "Target Frame")

@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable, Mapping
 from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.known import known_packages, programs_of
 from grader.ros.package.package import Package
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Definition
 from grader.ros.workspace.reading import facts_once
-from grader.ros.workspace.workspace import Workspace
 
 
 def offered_names(workspace: Workspace, kind: str, owner: str = "") -> list[str]:

@@ -9,8 +9,8 @@ from grader.ros.known.parameter_texts import row_text
 from grader.ros.known.releases import Release
 from grader.ros.package.node_facts import NodeParameter
 from grader.ros.python.values import Unknown
-from grader.ros.workspace.controllers import defined_controllers
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.graph.started_controllers import defined_controllers
+from grader.ros.workspace.model.workspace import Workspace
 
 
 def parameters_below(workspace: Workspace, section: str, prefix: str) -> list[str]:

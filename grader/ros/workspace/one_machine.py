@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from grader.base.source import Source
 from grader.base.text import cut, quoted
 from grader.ros.known.known import known
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
-from grader.ros.workspace.workspace import Workspace
 
 _HOME = re.compile(r"(?<![\w$}/.:])(?:file://)?(/(?:home|Users)/[\w.-]+/[^\s\"'<>,;:)}\]]*)")
 _PLACEHOLDERS = re.compile(r"^/(?:home|Users)/(?:user|username|you|your[\w-]*|<.*)/")

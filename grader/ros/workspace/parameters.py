@@ -26,6 +26,7 @@ from grader.ros.package.mesh_content import LFS_POINTER
 from grader.ros.package.node_facts import NodeFacts
 from grader.ros.package.package import Package
 from grader.ros.workspace.bridges import bridge_files
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Compared,
     Definition,
@@ -39,7 +40,6 @@ from grader.ros.workspace.names import (
 )
 from grader.ros.workspace.parameter_rules import type_in_words
 from grader.ros.workspace.renamed_nodes import key_of_program_name
-from grader.ros.workspace.workspace import Workspace
 
 _OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")

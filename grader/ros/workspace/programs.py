@@ -14,6 +14,7 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import parameters_of
 from grader.ros.package.entry_points import entry_fault, entry_points, module_path
 from grader.ros.package.package import CMAKE, SETUP, Package
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Compared,
     Definition,
@@ -24,7 +25,6 @@ from grader.ros.workspace.names import (
     Use,
     corrections,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _MAX_FIRST_LINE = 100  # bytes
 _OF_MISSING = 5_000  # parts: similar names are searched among all programs

@@ -21,11 +21,11 @@ from grader.ros.package.static_transforms import (
     static_pose,
 )
 from grader.ros.python.values import Unknown
-from grader.ros.workspace.bridges import rows_of_bridge
-from grader.ros.workspace.controllers import defined_controllers, spawned_controllers
-from grader.ros.workspace.gazebo import BRIDGE, roots, system_of
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
+from grader.ros.workspace.graph.gazebo_topics import roots, system_of
+from grader.ros.workspace.graph.started_controllers import defined_controllers, spawned_controllers
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch
-from grader.ros.workspace.workspace import Workspace
 
 _SAME_PLACE, _SAME_ANGLE = 1e-3, 0.1  # metres, degrees
 _ROBOT_PUBLISHER = "robot_state_publisher"

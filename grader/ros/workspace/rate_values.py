@@ -10,10 +10,13 @@ from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.urdf.numbers import finite_number
-from grader.ros.workspace.controllers import defined_controllers, parameters_of_controllers
-from grader.ros.workspace.gazebo import roots
+from grader.ros.workspace.graph.gazebo_topics import roots
+from grader.ros.workspace.graph.started_controllers import (
+    defined_controllers,
+    parameters_of_controllers,
+)
+from grader.ros.workspace.model.workspace import MANAGER, Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
-from grader.ros.workspace.workspace import MANAGER, Workspace
 from grader.ros.xml.parsing import Element
 
 _LIDARS = ("lidar", "gpu_lidar", "ray", "gpu_ray")

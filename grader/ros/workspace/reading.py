@@ -25,6 +25,7 @@ from grader.ros.workspace.known_ends import known_end_facts
 from grader.ros.workspace.known_parameters import known_parameter_facts
 from grader.ros.workspace.limit_values import limit_facts
 from grader.ros.workspace.looked_up_transforms import lookup_facts
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.moveit import moveit_facts
 from grader.ros.workspace.names import (
     FAMILY_OF,
@@ -52,7 +53,6 @@ from grader.ros.workspace.topic_wiring import topic_wiring_facts
 from grader.ros.workspace.topics import topic_facts
 from grader.ros.workspace.unused import unused_files
 from grader.ros.workspace.wheel_values import wheel_value_facts
-from grader.ros.workspace.workspace import Workspace
 
 _READERS = (
     file_facts,

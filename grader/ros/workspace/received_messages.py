@@ -9,9 +9,9 @@ from grader.base.text import quoted
 from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.known import known
 from grader.ros.package.node_facts import Endpoint, ImageEncoding
-from grader.ros.workspace.endpoints import certainly_opened
+from grader.ros.workspace.graph.endpoints import certainly_opened
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
-from grader.ros.workspace.workspace import Workspace
 
 _HEADER = "header"
 # An encoding without colours: the type of a channel, and how many there are.

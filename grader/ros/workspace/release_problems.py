@@ -8,12 +8,12 @@ from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.releases import NameKind, other_name
-from grader.ros.workspace.controllers import defined_controllers
+from grader.ros.workspace.graph.started_controllers import defined_controllers
+from grader.ros.workspace.model.workspace import TOO_MUCH, Workspace
 from grader.ros.workspace.name_problems import OTHER_RELEASE, UNCOMPARED, name_problems
 from grader.ros.workspace.names import Agreement
 from grader.ros.workspace.reading import read_agreement
 from grader.ros.workspace.stated_releases import deciding_launch_files, releases_in_path
-from grader.ros.workspace.workspace import TOO_MUCH, Workspace
 
 _DEPENDENCY = re.compile(r"<\w*depend>\s*([\w-]+)\s*</")
 _PLUGIN_KEYS = ("plugin", "robot_model_type")

@@ -10,8 +10,8 @@ from grader.ros.config.yaml_values import keys_of_sections
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import is_key_of
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections
-from grader.ros.workspace.workspace import Workspace
 
 _ANY_NAMES = ("*", "**")
 _Keys = Mapping[str, tuple[str, ...]]  # of the sections of a file, by the full names that they are

@@ -10,16 +10,16 @@ from grader.base.names import closest
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.node_facts import Endpoint, EndpointKind
-from grader.ros.workspace.endpoints import ANY, OpenedName, opened_by
+from grader.ros.workspace.graph.endpoints import ANY, OpenedName, opened_by
+from grader.ros.workspace.graph.publishers import is_own_type
 from grader.ros.workspace.interfaces import is_absent
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Compared,
     Fact,
     Mismatch,
     corrections,
 )
-from grader.ros.workspace.publishers import is_own_type
-from grader.ros.workspace.workspace import Workspace
 
 _SERVERS: dict[EndpointKind, EndpointKind] = {
     "client": "service",

@@ -13,9 +13,9 @@ from grader.ros.config.yaml_values import sections_in
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.package.package import Package
-from grader.ros.workspace.controllers import Controller, defined_controllers
+from grader.ros.workspace.graph.started_controllers import Controller, defined_controllers
+from grader.ros.workspace.model.workspace import MANAGER, SPAWNERS, Workspace
 from grader.ros.workspace.names import Fact, Mismatch, Open, Use, corrections
-from grader.ros.workspace.workspace import MANAGER, SPAWNERS, Workspace
 
 _OTHER_STARTS = re.compile(r"(load|switch|set)_controller|(Load|Switch)Controller")
 _MAX_CONTROLLERS = 3  # in a message

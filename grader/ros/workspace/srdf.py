@@ -7,8 +7,8 @@ from contextlib import suppress
 
 from grader.base.text import quoted
 from grader.ros.urdf.model import Robot
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Definition, Fact, Mismatch, Open, Use
-from grader.ros.workspace.workspace import Workspace
 from grader.ros.xml.parsing import XmlFile
 
 _LINKS = ("link1", "link2", "parent_link", "child_link", "base_link", "tip_link")

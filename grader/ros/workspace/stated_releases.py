@@ -7,7 +7,7 @@ from functools import lru_cache
 from grader.base.errors import InputError
 from grader.files.tree import File, Tree
 from grader.ros.known.releases import RELEASES, Release, StatedReleases
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 
 _NAME = rf"({'|'.join(RELEASES)})(?![a-z0-9])"
 _RELEASE = re.compile(_NAME, re.IGNORECASE)

@@ -11,10 +11,10 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.package.node_facts import Endpoint
 from grader.ros.python.values import Unknown
-from grader.ros.workspace.controllers import controller_endpoints
-from grader.ros.workspace.endpoints import CertainEnd, certainly_opened
+from grader.ros.workspace.graph.endpoints import CertainEnd, certainly_opened
+from grader.ros.workspace.graph.started_controllers import controller_endpoints
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Fact, Mismatch, warning
-from grader.ros.workspace.workspace import Workspace
 
 _COMMANDS = ("geometry_msgs.msg.Twist", "geometry_msgs.msg.TwistStamped")
 _IMAGE = "sensor_msgs.msg.Image"

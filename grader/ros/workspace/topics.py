@@ -11,11 +11,12 @@ from grader.base.text import enumerated
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.node_facts import Endpoint
-from grader.ros.workspace.bridges import bridge_rows
-from grader.ros.workspace.controllers import controller_endpoints
-from grader.ros.workspace.endpoints import opened_by
-from grader.ros.workspace.gazebo import BRIDGE
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
+from grader.ros.workspace.graph.endpoints import opened_by
+from grader.ros.workspace.graph.publishers import is_own_type, may_be_published
+from grader.ros.workspace.graph.started_controllers import controller_endpoints
 from grader.ros.workspace.interfaces import is_absent
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Compared,
     Counted,
@@ -26,8 +27,6 @@ from grader.ros.workspace.names import (
     Use,
     corrections,
 )
-from grader.ros.workspace.publishers import is_own_type, may_be_published
-from grader.ros.workspace.workspace import Workspace
 
 _ENDS = ("publisher", "subscription")
 _MAX_NAMED = 3  # programs

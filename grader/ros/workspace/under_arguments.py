@@ -7,7 +7,7 @@ from functools import lru_cache
 
 from grader.base.source import Source
 from grader.ros.package.made_paths import made_paths
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 
 _TAG = re.compile(
     r"<(?P<end>/?)xacro:(?:if|unless)\b|<(?P<tag>command_interface|joint|link)\b[^>]*?"

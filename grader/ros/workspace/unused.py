@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from grader.base.source import Location, Source
 from grader.files.tree import Tree
 from grader.ros.package.made_paths import made_paths
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 
 _KINDS = (".yaml", ".yml", ".xacro", ".urdf", ".rviz", ".srdf")
 _TEXTS = (

@@ -22,11 +22,14 @@ from grader.ros.urdf.model import Joint, Robot
 from grader.ros.urdf.numbers import finite_number
 from grader.ros.urdf.rolling import middle_of
 from grader.ros.urdf.wheel_sizes import WheelSize, measure_wheel
-from grader.ros.workspace.controllers import defined_controllers, parameters_of_controllers
-from grader.ros.workspace.gazebo import system_of
+from grader.ros.workspace.graph.gazebo_topics import system_of
+from grader.ros.workspace.graph.started_controllers import (
+    defined_controllers,
+    parameters_of_controllers,
+)
+from grader.ros.workspace.model.workspace import KnownRobot, Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.under_arguments import may_vary
-from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
 
 _ENTRY = re.compile(r"(.*)\.(\d+)$")  # a parameter with a list, and the number of an entry

@@ -6,9 +6,9 @@ from fnmatch import fnmatchcase
 
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.workspace.endpoints import ANY, opened_by
-from grader.ros.workspace.gazebo import BRIDGE
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.graph.bridge_rows import BRIDGE
+from grader.ros.workspace.graph.endpoints import ANY, opened_by
+from grader.ros.workspace.model.workspace import Workspace
 
 _SOURCES = (".cpp", ".cc", ".cxx", ".c", ".hpp", ".hh", ".h")
 

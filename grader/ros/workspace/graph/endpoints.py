@@ -6,7 +6,7 @@ from typing import NamedTuple
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.node_facts import Endpoint, NamePart, NodeFacts, NodeFrame
 from grader.ros.python.values import Value
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 
 ANY = "*"  # in a name, in place of a part that is not known
 _MAX_NAMES = 20  # of one endpoint
