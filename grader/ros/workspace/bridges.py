@@ -338,9 +338,7 @@ def _named_topics(workspace: Workspace) -> set[str]:
 
 def _is_open(workspace: Workspace) -> bool:
     """Return whether there may be other sensors and bridges than those that were read."""
-    if not workspace.robots or workspace.has_other_robots:
-        return True
-    if any(launch.more for _, _, launch in workspace.launches):
+    if not workspace.robots or workspace.has_other_robots or workspace.has_more_nodes:
         return True
     for _, node in workspace.nodes:
         is_known = node.arguments is not None and None not in node.arguments

@@ -8,8 +8,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from grader.base.text import quoted
 from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.known import known
-from grader.ros.package.node_facts import Endpoint, ImageEncoding
-from grader.ros.workspace.graph.endpoints import certainly_opened
+from grader.ros.package.node_facts import EndpointKind, ImageEncoding
+from grader.ros.workspace.graph.endpoints import End
+from grader.ros.workspace.graph.graph import graph_of, grouped
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 
@@ -75,22 +76,24 @@ def _without_queue(workspace: Workspace, package: str) -> Iterator[Mismatch]:
 
 def _other_encodings(workspace: Workspace) -> Iterator[Fact]:
     """Yield the callbacks that convert images to an encoding to which they cannot be converted."""
-    sent: dict[tuple[int, str], list[Endpoint]] = {}
-    received: dict[tuple[int, str], list[Endpoint]] = {}
-    for end in certainly_opened(workspace):
-        key = end.launch, end.name
-        if end.endpoint.kind == "publisher":
-            sent.setdefault(key, []).append(end.endpoint)
-        elif end.endpoint.kind == "subscription":
-            received.setdefault(key, []).append(end.endpoint)
-    for key, subscriptions in received.items():
-        publishers = sent.get(key, [])
-        if not publishers or not all(publisher.encodings for publisher in publishers):
+    sent = _by_launch_and_topic(workspace, "publisher")
+    for key, subscriptions in _by_launch_and_topic(workspace, "subscription").items():
+        publishers = sent.get(key, ())
+        if not publishers or not all(end.endpoint.encodings for end in publishers):
             continue
-        made = [encoding for publisher in publishers for encoding in publisher.encodings]
+        made = [encoding for end in publishers for encoding in end.endpoint.encodings]
         for subscription in subscriptions:
-            workspace.charge(len(made) * len(subscription.encodings))
-            yield from _not_converted(key[1], made, subscription.encodings)
+            asked = subscription.endpoint.encodings
+            workspace.charge(len(made) * len(asked))
+            yield from _not_converted(subscription.name, made, asked)
+
+
+def _by_launch_and_topic(
+    workspace: Workspace, kind: EndpointKind
+) -> Mapping[tuple[int, str], Sequence[End]]:
+    """Return the ends of own code that certainly are opened, by launch and topic."""
+    ends = graph_of(workspace).certain(kind, "code")
+    return grouped(ends, lambda end: (end.launch, end.name))
 
 
 def _not_converted(

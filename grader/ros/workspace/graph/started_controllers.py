@@ -73,7 +73,7 @@ def controller_endpoints(
     workspace: Workspace, launch: int, node: StartedNode
 ) -> Iterator[tuple[str, Endpoint]]:
     """Yield the topics of the controllers in the process of a node, those that its launch file
-    spawns.
+    spawns, each with the name of its controller.
     """
     if node.executable != "ros2_control_node" or node.namespace is None or node.remaps is None:
         return
@@ -91,7 +91,7 @@ def controller_endpoints(
             for own_name, message in topics.items():
                 topic = started.topic(f"~/{own_name}")
                 if topic is not None:
-                    yield topic, Endpoint(kind, message, topic, controller.location)
+                    yield name, Endpoint(kind, message, topic, controller.location)
 
 
 def spawned_controllers(

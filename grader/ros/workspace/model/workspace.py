@@ -402,6 +402,16 @@ class Workspace:
                 nodes[key] = of_programs[0][0]
         return nodes
 
+    @cached_property
+    def has_more_nodes(self) -> bool:
+        """Whether launch files may start more than is known."""
+        return any(launch.more for _, _, launch in self.launches)
+
+    def is_read(self, node: StartedNode) -> bool:
+        """Return whether all is known that the code of a node opens."""
+        facts = self.own_node(node)
+        return facts is not None and not facts.doubts
+
     def package_of(self, node: StartedNode) -> Package | None:
         """Return the package of the workspace whose program a node is."""
         if self.packages:

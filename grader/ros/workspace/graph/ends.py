@@ -1,0 +1,115 @@
+"""The ends of topics, services and actions that nodes open as launch files start them: those of own
+code, of controllers, of bridges and of well-known programs.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+from grader.ros.known.known import known
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.package.node_facts import Endpoint, EndpointKind
+from grader.ros.package.package import Package
+from grader.ros.python.values import Unknown
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
+from grader.ros.workspace.graph.endpoints import End, opened_by
+from grader.ros.workspace.graph.started_controllers import controller_endpoints
+from grader.ros.workspace.model.workspace import Workspace
+
+_TOPIC_ENDS: tuple[EndpointKind, ...] = ("subscription", "publisher")
+
+
+class KnownProgram(NamedTuple):
+    """A well-known program in a launch file of a package, and what is known of its topics."""
+
+    launch: int
+    package: Package
+    node: StartedNode
+    row: Mapping[str, Any]
+
+
+def programs_in(workspace: Workspace) -> Iterator[KnownProgram]:
+    """Yield the well-known programs that launch files certainly start. Raises NotDecided."""
+    for launch, (package, file) in enumerate(workspace.roots):
+        workspace.charge(1 + len(file.nodes))
+        for node in file.nodes:
+            if node.when is True:
+                for row in _rows_of_program(node):
+                    yield KnownProgram(launch, package, node, row)
+
+
+def deciding_parameter(end: End) -> str | None:
+    """Return the parameter of a well-known program that decides the type of an end."""
+    node = end.node
+    for row in known()["program_topics"].get(f"{node.package}/{node.executable}", ()):
+        if node.topic(row["topic"]) == end.name:
+            return str(row["if"][0])
+    return None
+
+
+def ends_of(
+    workspace: Workspace, launch: int, package: Package, node: StartedNode
+) -> Iterator[End]:
+    """Yield the ends of a node that a launch file of a package starts. Raises NotDecided."""
+    program = node.executable
+    yield from opened_by(workspace, node, launch)
+    for controller, endpoint in controller_endpoints(workspace, launch, node):
+        yield End(endpoint.name or "", endpoint, launch, node, "controller", controller)
+    for endpoint in _bridged(workspace, node):
+        yield End(endpoint.name or "", endpoint, launch, node, "bridge", program)
+    for kind, name, message in _topics_of_program(workspace, package, node):
+        topic = node.topic(name)
+        if topic is not None:
+            endpoint = Endpoint(kind, message, topic, node.location)
+            yield End(topic, endpoint, launch, node, "program", program)
+
+
+def _bridged(workspace: Workspace, node: StartedNode) -> Iterator[Endpoint]:
+    """Yield the topics of ROS that a bridge opens."""
+    if node.package != BRIDGE or node.namespace not in ("", "/"):
+        return
+    for row in rows_of_bridge(workspace, node):
+        topic = node.topic(f"/{row.ros}")
+        if topic is not None and row.is_published:
+            yield Endpoint("publisher", row.ros_type, topic, row.location)
+        if topic is not None and row.is_read:
+            yield Endpoint("subscription", row.ros_type, topic, row.location)
+
+
+def _rows_of_program(node: StartedNode) -> Iterator[Mapping[str, Any]]:
+    """Yield what is known of the topics of a well-known program."""
+    program = f"{node.package}/{node.executable}"
+    for row in known()["program_ends"]:
+        if program in row["by"]:
+            yield row
+
+
+def _topics_of_program(
+    workspace: Workspace, package: Package, node: StartedNode
+) -> Iterator[tuple[EndpointKind, str, str]]:
+    """Yield kind, name and type of the topics that a well-known program opens."""
+    for row in _rows_of_program(node):
+        for kind in _TOPIC_ENDS:
+            for name, message in row.get(kind, {}).items():
+                yield kind, name, message
+    for row in known()["program_topics"].get(f"{node.package}/{node.executable}", ()):
+        message = _type_by_parameter(workspace, package, node, row)
+        if message is not None:
+            yield "publisher", row["topic"], message
+
+
+def _type_by_parameter(
+    workspace: Workspace, package: Package, node: StartedNode, row: Mapping[str, Any]
+) -> str | None:
+    """Return the type with which a program publishes a topic, which a parameter of it decides; None
+    where that is not known.
+    """
+    parameter, value, type_if_equal = row["if"]
+    parameters = workspace.parameters_given(package, node)
+    if parameters.unknown:
+        return None
+    given = parameters.values.get(parameter)
+    if given is None:
+        return str(row["type"])
+    if isinstance(given.value, Unknown):
+        return None
+    return str(type_if_equal if given.value == value else row["type"])
