@@ -1,20 +1,17 @@
 """Transforms that own nodes look up between frames that are there, and that nothing connects."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.known.known import known
-from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.workspace.frames import openings
 from grader.ros.workspace.graph.endpoints import frames_of
 from grader.ros.workspace.graph.gazebo_topics import roots, system_of
+from grader.ros.workspace.graph.graph import graph_of
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import UNCONNECTED, Compared, Mismatch
-
-_ROBOT_PUBLISHER = "robot_state_publisher"
-_PUBLISHED = ("publishes", "is above")
 
 
 class _Lookup(NamedTuple):
@@ -93,20 +90,8 @@ def _published(workspace: Workspace) -> _Trees | None:
     if any(system_of(it) in odometry for root, _ in roots(workspace) for it in root.iter("plugin")):
         return None
     trees = _Trees()
-    if any(node.executable == _ROBOT_PUBLISHER for _, node in workspace.nodes):
-        for found in workspace.robots:
-            for joint in found.robot.joints:
-                trees.connect(joint.parent, joint.child)
-    for _, node in workspace.nodes:
-        frames: Sequence[str | None] = []
-        if node.package in known()["transform_publishers"] or node.frame_prefix != "":
+    for edge in graph_of(workspace).edges:
+        if not edge.is_known:
             return None
-        if (node.package, node.executable) == STATIC_PUBLISHER:
-            frames = [name or None for name in frames_named(node)]
-        elif node.executable != _ROBOT_PUBLISHER:
-            named = frames_of(workspace, node)
-            frames = [name for name, frame in named if frame.use in _PUBLISHED]
-        if None in frames:
-            return None
-        trees.connect(*(frame.removeprefix("/") for frame in frames if frame))
+        trees.connect(edge.parent.removeprefix("/"), edge.child.removeprefix("/"))
     return trees

@@ -1,5 +1,5 @@
-"""What runs after launch files are launched: the nodes, and the ends that they open. What
-`ros2 node list` and `ros2 topic info --verbose` would show.
+"""What runs after launch files are launched: the ends and the transforms of its nodes. What
+`ros2 topic info --verbose` and `view_frames` would show.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
@@ -10,6 +10,7 @@ from typing import TypeVar
 from grader.ros.package.node_facts import EndpointKind
 from grader.ros.workspace.graph.endpoints import End, EndSource
 from grader.ros.workspace.graph.ends import ends_of
+from grader.ros.workspace.graph.transform_edges import Edge, edges_in
 from grader.ros.workspace.model.workspace import Workspace
 
 _Row = TypeVar("_Row")
@@ -39,6 +40,14 @@ class Graph:
                 if node.when is not False:
                     ends += ends_of(self.workspace, launch, package, node)
         return ends
+
+    @cached_property
+    def edges(self) -> Sequence[Edge]:
+        """The transforms of all nodes, whatever conditions say."""
+        edges: list[Edge] = []
+        for launch in range(len(self.workspace.roots)):
+            edges += edges_in(self.workspace, launch)
+        return edges
 
     def of_kind(self, *kinds: EndpointKind, sources: Sequence[EndSource] = _READ) -> list[End]:
         """Return the ends of some kinds whose names are known."""
