@@ -7,11 +7,16 @@ from typing import NamedTuple
 
 from grader.ros.package.node_facts import EndpointKind
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
-from grader.ros.workspace.graph.endpoints import End
+from grader.ros.workspace.graph.endpoints import End, EndSource
+from grader.ros.workspace.graph.ends import deciding_parameter
 from grader.ros.workspace.graph.graph import Graph, distinct, graph_of, grouped
 from grader.ros.workspace.interfaces import is_absent
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import AnyFamily, Compared, Fact, Mismatch
+
+# What well-known programs subscribe to is compared by a rule of their topics.
+_ASKING: tuple[EndSource, ...] = ("code", "controller", "bridge")
+_OFFERING: tuple[EndSource, ...] = (*_ASKING, "program")
 
 
 class Meeting(NamedTuple):
@@ -55,7 +60,11 @@ def meeting_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the ends that do not agree with another end of their name."""
     graph = graph_of(workspace)
     for meeting in (TOPICS, *SERVICES):
-        for asking, offering in graph.pairs(*meeting.ends(graph)):
+        every_asking = distinct(graph.of_kind(meeting.asking, sources=_ASKING))
+        every_offering = distinct(graph.of_kind(meeting.offering, sources=_OFFERING))
+        for asking, offering in graph.pairs(every_asking, every_offering):
+            if _is_of_other_rule(asking, offering):
+                continue
             yield Compared(meeting.family)
             if asking.source == "controller":
                 yield from _other_type_of_controller(asking, offering)
@@ -63,6 +72,16 @@ def meeting_facts(workspace: Workspace) -> Iterator[Fact]:
                 yield from _other_type(workspace, meeting, asking, offering)
                 yield from _other_quality(asking, offering)
     yield from _other_type_of_bridge(graph)
+
+
+def _is_of_other_rule(asking: End, offering: End) -> bool:
+    """Return whether another rule compares two ends: that of rows of bridges, also of those that
+    nothing starts, or that of the parameters of programs.
+    """
+    sources = {asking.source, offering.source}
+    if sources in ({"bridge"}, {"bridge", "code"}):
+        return True
+    return sources == {"controller", "program"} and deciding_parameter(offering) is not None
 
 
 def _differ(asking: End, offering: End) -> bool:
@@ -74,16 +93,17 @@ def _differ(asking: End, offering: End) -> bool:
 def _other_type(
     workspace: Workspace, meeting: Meeting, asking: End, offering: End
 ) -> Iterator[Mismatch]:
-    """Yield that an end of own code asks for another type than is offered; of a type that is
-    nowhere, that is said instead.
+    """Yield that an end of own code or a bridge asks for another type than is offered; of a type
+    that is nowhere, that is said instead.
     """
     if not _differ(asking, offering):
         return
     if any(is_absent(workspace, end.type or "") for end in (asking, offering)):
         return
+    by = f" by {offering.owner}" if offering.source == "program" else ""
     message = (
         f"the {meeting.noun} {asking.name} is {meeting.is_asked} with {asking.type}, but "
-        f"{meeting.is_offered} with {offering.type} ({offering.location.file_and_line})"
+        f"{meeting.is_offered} with {offering.type}{by} ({offering.location.file_and_line})"
     )
     yield Mismatch(
         meeting.family,

@@ -35,20 +35,22 @@ def missing_end_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the ends that nothing answers, where what they surely mean waits under another name."""
     graph = graph_of(workspace)
     subscriptions, publishers = TOPICS.ends(graph)
-    yield from _without_publisher(workspace, subscriptions, publishers)
+    yield from _without_publisher(graph, subscriptions, publishers)
     yield from _without_subscription(workspace, subscriptions, publishers)
     for meeting in SERVICES:
         yield from _without_server(graph, meeting)
 
 
 def _without_publisher(
-    workspace: Workspace, subscriptions: Sequence[End], publishers: Sequence[End]
+    graph: Graph, subscriptions: Sequence[End], publishers: Sequence[End]
 ) -> Iterator[Fact]:
     """Yield subscriptions to topics that nothing publishes, where a similar one is published and
     not subscribed to.
     """
+    workspace = graph.workspace
     offers = [*_offers(workspace, publishers)]
     offered = {offer.topic for offer in offers}
+    offered |= {end.name for end in graph.of_kind("publisher", sources=("program",))}
     subscribed = {end.name for end in subscriptions}
     unused = [offer for offer in offers if offer.topic not in subscribed]
     yield Open("topic")

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from grader.base.text import enumerated
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.graph.bridge_rows import bridge_rows
-from grader.ros.workspace.graph.endpoints import opened_by
+from grader.ros.workspace.graph.endpoints import END_SOURCES, opened_by
 from grader.ros.workspace.graph.graph import Graph, graph_of
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Counted, Definition, Fact, Open, Use
@@ -65,11 +65,11 @@ def _bare(name: str) -> str:
 
 
 def _count(graph: Graph) -> Counted:
-    """Return how many topics of own code have another end, which a node, a controller or a bridge
-    of the workspace opens; and why not all are known.
+    """Return how many topics of own code have another end, which a node, a controller, a
+    bridge or a well-known program opens; and why not all are known.
     """
-    published = {end.name for end in graph.of_kind("publisher")}
-    subscribed = {end.name for end in graph.of_kind("subscription")}
+    published = {end.name for end in graph.of_kind("publisher", sources=END_SOURCES)}
+    subscribed = {end.name for end in graph.of_kind("subscription", sources=END_SOURCES)}
     for row in bridge_rows(graph.workspace):
         if row.is_published:
             published.add(f"/{row.ros}")

@@ -1,7 +1,7 @@
 """What nodes open, with the full names that it has for each node as it is started."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 from grader.base.source import Location
 from grader.ros.launch.launch_model import StartedNode
@@ -11,6 +11,7 @@ from grader.ros.workspace.model.workspace import Workspace
 
 _ANY = "*"  # in a name, in place of a part that is not known
 EndSource = Literal["code", "controller", "bridge", "program"]
+END_SOURCES: tuple[EndSource, ...] = get_args(EndSource)
 _MAX_NAMES = 20  # of one endpoint
 
 

@@ -12,8 +12,11 @@ from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import controllers_of
-from grader.ros.package.node_facts import Endpoint
+from grader.ros.package.node_facts import Endpoint, EndpointKind
 from grader.ros.workspace.model.workspace import MANAGER, SPAWNERS, Workspace
+
+_JOINT_STATE = "sensor_msgs.msg.JointState"
+_LOCAL_TOPICS = "use_local_topics"  # the parameter that puts the broadcaster's name before its own
 
 
 class Controller(NamedTuple):
@@ -87,11 +90,23 @@ def controller_endpoints(
         if name not in remaps:
             continue
         started = node._replace(node_name=name, remaps=(*remaps[name], *node.remaps))
-        for kind, topics in known()["controller_topics"].get(controller.type.text, {}).items():
-            for own_name, message in topics.items():
-                topic = started.topic(f"~/{own_name}")
-                if topic is not None:
-                    yield name, Endpoint(kind, message, topic, controller.location)
+        for kind, written, message in _topics_of(workspace, controller):
+            topic = started.topic(written)
+            if topic is not None:
+                yield name, Endpoint(kind, message, topic, controller.location)
+
+
+def _topics_of(
+    workspace: Workspace, controller: Controller
+) -> Iterator[tuple[EndpointKind, str, str]]:
+    """Yield kind, name and type of the topics that a controller opens."""
+    for kind, topics in known()["controller_topics"].get(controller.type.text, {}).items():
+        for name, message in topics.items():
+            yield kind, f"~/{name}", message
+    if controller.type.text == known()["joint_state_controller"]:
+        section = parameters_of_controllers(workspace).get(controller.name)
+        if section is None or section.get(_LOCAL_TOPICS) is None:
+            yield "publisher", "joint_states", _JOINT_STATE
 
 
 def spawned_controllers(
