@@ -225,7 +225,7 @@ def _given(submission: Submission) -> Iterator[tuple[str, str, Any]]:
     """Yield the parameters that nodes get, by the names of the nodes and their own, and their
     values.
     """
-    for node, given in submission.workspace.parameter_owners.items():
+    for node, given in submission.workspace.parameters.owners.items():
         for name, found in {name: it for one in given for name, it in one.values.items()}.items():
             yield node, name, found.value
 

@@ -72,7 +72,7 @@ def find_faults(
     """
     workspace = submission.workspace
     started = [node for node in launch.nodes if node.when is not False]
-    named = [node._replace(node_name=workspace.name_of(node)) for node in started]
+    named = [node._replace(node_name=workspace.code.name_of(node)) for node in started]
     launch = launch._replace(nodes=tuple(named))
     faults: list[Fault | None] = [*_started_although(launch, wanted.absent or ())]
     if wanted.remap or wanted.arguments:
@@ -220,10 +220,10 @@ class _NodeTopics:
             if it.family in ("code", "interfaces") and it.is_certain and it.rule not in _HARMLESS
         }
         for node in launch.nodes:
-            package, own_node = workspace.package_of(node), workspace.own_node(node)
+            package, own_node = workspace.package_of(node), workspace.code.own_node(node)
             if package is None:
                 continue
-            own = workspace.nodes_by_package.get(package.name)
+            own = workspace.code.by_package.get(package.name)
             programs = own.programs if own is not None else ()
             started = [it.syntax for it in programs if it.name == node.executable]
             syntax = next(filter(None, started), None)

@@ -72,7 +72,7 @@ def read_names(workspace: Workspace, facts: Iterable[Fact]) -> WorkspaceNames:
         facts: What `read_facts` yields of the workspace, as far as it is known.
     """
     names = [*names_in_robots(workspace.urdfs)]
-    names += names_in_xacro(workspace.urdfs, workspace.xacro_sources)
+    names += names_in_xacro(workspace.urdfs, workspace.robots.xacro_sources)
     names += names_in_launch_files(workspace)
     names += names_in_yaml(workspace)
     written = {(_key(it), it.role, it.location) for it in names}

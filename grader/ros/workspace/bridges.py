@@ -42,7 +42,7 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
     have, and clocks.
     """
     for path in bridge_files(workspace):
-        fault = workspace.yaml_files.get(path)
+        fault = workspace.installed.yaml.get(path)
         if isinstance(fault, YamlFault):
             yield Mismatch("topics", f"this is not YAML: {fault}", fault.location)
     yield from _unread_rows(workspace)
@@ -57,7 +57,7 @@ def _compared_rows(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Fact
     """Yield what is wrong with rows, by the topics that Gazebo has."""
     topics = list(gazebo_topics(workspace))
     named, bridged = _named_topics(workspace), {row.gz for row in rows}
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if node.package == "ros_gz_image":
             bridged |= {(word or "").strip("/") for word in node.arguments or ()}
     unused = [topic for topic in topics if topic.name not in bridged]
@@ -66,7 +66,7 @@ def _compared_rows(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Fact
         by_name.setdefault(topic.name, []).append(topic)
     is_known = not _is_open(workspace)
     nameless = _nameless_sensors(workspace, topics) if is_known else {}
-    are_expanded = any(_EXPANDED in text for text in workspace.searched_launch_texts())
+    are_expanded = any(_EXPANDED in text for text in workspace.texts.searched_launch_texts())
     for row in rows:
         yield Compared("topics")
         same = by_name.get(row.gz, [])
@@ -124,14 +124,14 @@ def _without_topic(row: BridgeRow, nameless: dict[str, _NamelessSensor]) -> Iter
 def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the rows that a bridge leaves out, and the arguments with which it ends."""
     for path in sorted(bridge_files(workspace)):
-        tree = workspace.yaml_files.get(path)
+        tree = workspace.installed.yaml.get(path)
         for row in tree.items if isinstance(tree, YamlNode) else ():
             names_topic = [key for key in _TOPIC_KEYS if row.get(key) is not None]
             for key in known()["bridge_keys"] if names_topic else ():
                 if row.get(key) is None and row.get(key.replace("gz", "ign")) is None:
                     message = f"the bridge leaves out the row: it has no {key}"
                     yield Mismatch("topics", message, row.location)
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"
         for word in node.arguments or () if is_bridge else ():
             if word is None or word == "--ros-args":
@@ -179,16 +179,16 @@ def bridge_files(workspace: Workspace) -> set[str]:
     submission.
     """
     paths: list[Any] = []
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         for given in node.parameters or () if node.package == BRIDGE else ():
             value = given.values.get("config_file")
             if value is not None:
                 paths.append(value.value)
-    for _, launch in workspace.roots:
+    for _, launch in workspace.launches.roots:
         for passed in launch.passed:
             if f"/{BRIDGE}/" in passed.path:
                 paths += [value for name, value in passed.values if name == "config_file"]
-    files = {workspace.source_of(path) for path in paths if isinstance(path, str)}
+    files = {workspace.installed.source_of(path) for path in paths if isinstance(path, str)}
     return {file for file in files if file is not None}
 
 
@@ -292,16 +292,16 @@ def _not_there(row: BridgeRow, unused: list[GazeboTopic], *, is_known: bool) -> 
 def _clocks(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]:
     """Yield that nodes wait for the time of the simulation, and no bridge takes it from Gazebo."""
     used = [row for row in rows if row.is_used]
-    has_bridge = any(node.package == BRIDGE for _, node in workspace.nodes)
+    has_bridge = any(node.package == BRIDGE for _, node in workspace.launches.nodes)
     has_clock = any(row.ros == "clock" for row in rows)
     if not has_bridge or not used or has_clock or _is_open(workspace):
         return
-    for _, launch in workspace.roots:
+    for _, launch in workspace.launches.roots:
         for passed in launch.passed:
-            if not workspace.source_of(passed.path) and "/ros_gz_sim/" not in passed.path:
+            if not workspace.installed.source_of(passed.path) and "/ros_gz_sim/" not in passed.path:
                 return  # what it includes may have a bridge
-    for package, node in workspace.nodes:
-        given = workspace.parameters_given(package, node)
+    for package, node in workspace.launches.nodes:
+        given = workspace.parameters.given_to(package, node)
         sim_time = given.values.get("use_sim_time")
         if sim_time is not None and str(sim_time.value).lower() == "true" and node.when:
             message = (
@@ -338,13 +338,17 @@ def _named_topics(workspace: Workspace) -> set[str]:
 
 def _is_open(workspace: Workspace) -> bool:
     """Return whether there may be other sensors and bridges than those that were read."""
-    if not workspace.robots or workspace.has_other_robots or workspace.has_more_nodes:
+    if (
+        not workspace.robots.known
+        or workspace.robots.may_be_others
+        or workspace.launches.has_more_nodes
+    ):
         return True
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         is_known = node.arguments is not None and None not in node.arguments
         if node.package in (BRIDGE, "ros_gz_image") and not is_known:
             return True
-    for file in workspace.sdf_files:
+    for file in workspace.texts.sdf_files:
         for include in file.root.iter("include"):
             model = (include.findtext("uri") or "").strip().rpartition("/")[2]
             if model.lower() not in _WITHOUT_SENSORS:

@@ -8,7 +8,7 @@ from grader.ros.workspace.names import Compared, Fact, Mismatch, Undecided
 
 def code_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what is wrong in the code of nodes."""
-    for package, nodes in workspace.nodes_by_package.items():
+    for package, nodes in workspace.code.by_package.items():
         if nodes.has_more_faults:
             yield Undecided("code", f"the code of {package!r} is too long to search")
         if nodes.nodes or nodes.programs:  # a script may use rclpy without a node of its own

@@ -16,7 +16,8 @@ from grader.ros.workspace.graph.started_controllers import (
     named_sections,
     parameters_of_controllers,
 )
-from grader.ros.workspace.model.workspace import MANAGER, Workspace
+from grader.ros.workspace.model.launches import MANAGER
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Correction,
     Definition,
@@ -48,8 +49,14 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _type_facts(workspace, controller)
         yield from _section_facts(workspace, controller, sections)
     yield from _action_facts(workspace)
-    managers = [node for _, node in workspace.nodes if node.executable == "ros2_control_node"]
-    if managers and workspace.command_interfaces is None and workspace.has_all_interfaces:
+    managers = [
+        node for _, node in workspace.launches.nodes if node.executable == "ros2_control_node"
+    ]
+    if (
+        managers
+        and workspace.robots.command_interfaces is None
+        and workspace.robots.has_all_interfaces
+    ):
         message = "the controller manager is started, but the robot has no <ros2_control>"
         yield Mismatch("controllers", message, managers[0].location)
 
@@ -60,7 +67,11 @@ def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
     """
     types, written = known()["controllers"], controller.type.text or ""
     package, _, class_name = written.partition("/")
-    if written in types or releases_with("controller", written) or workspace.has_plugin(written):
+    if (
+        written in types
+        or releases_with("controller", written)
+        or workspace.texts.has_plugin(written)
+    ):
         return
     if any(own.name == package for own in workspace.packages):
         return
@@ -139,7 +150,7 @@ def _section_corrections(
     meant = closest(controller.name, sections)
     if meant is not None:
         return corrections(meant, sections[meant].location, controller.name, controller.location)
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         section = tree.get(controller.name)
         if section is None or not isinstance(section.value, dict):
             continue
@@ -184,7 +195,7 @@ def _interface_facts(
     """Yield the command interfaces that a controller needs of a joint, and <ros2_control> does not
     have.
     """
-    interfaces, name = workspace.command_interfaces or {}, joint.text or ""
+    interfaces, name = workspace.robots.command_interfaces or {}, joint.text or ""
     message = f"{controller.name} needs the command interface {name}"
     if name in interfaces:
         offered, at = interfaces[name]
@@ -195,10 +206,10 @@ def _interface_facts(
                 text = f"{message}/{missing}; {there}"
                 yield Mismatch("controllers", text, joint.location, at, corrections=either)
         return
-    if not interfaces or not workspace.has_all_interfaces:
+    if not interfaces or not workspace.robots.has_all_interfaces:
         return
     # Names that are no joints of a robot are mistakes of frames.
-    joints = {each.name for found in workspace.robots for each in found.robot.joints}
+    joints = {each.name for found in workspace.robots.known for each in found.robot.joints}
     if needed and joints.issuperset([name, *interfaces]):
         text = f"{message}/{needed[0]}; <ros2_control> has no joint {name!r}"
         yield Mismatch("controllers", text, joint.location)
@@ -207,8 +218,8 @@ def _interface_facts(
 def _action_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers whose actions own nodes ask for."""
     namespaces = _namespaces(workspace)
-    for _, node in workspace.nodes:
-        own_node = workspace.own_node(node)
+    for _, node in workspace.launches.nodes:
+        own_node = workspace.code.own_node(node)
         for endpoint in own_node.endpoints if own_node is not None else ():
             topic = node.topic(endpoint.name or "") if endpoint.kind == "action client" else None
             controller, _, action = (topic or "").rpartition("/")
@@ -221,7 +232,9 @@ def _action_facts(workspace: Workspace) -> Iterator[Fact]:
 def _namespaces(workspace: Workspace) -> set[str]:
     """Return the namespaces of controllers: those of keys, of controller managers and of Gazebo."""
     names = {"/".join(keys).rpartition("/")[0] for keys, _ in named_sections(workspace)}
-    names |= {node.namespace or "" for _, node in workspace.nodes if node.package == MANAGER}
-    for robot in workspace.robots:
+    names |= {
+        node.namespace or "" for _, node in workspace.launches.nodes if node.package == MANAGER
+    }
+    for robot in workspace.robots.known:
         names |= {element.text or "" for element in robot.root.iter("namespace")}
     return {name.strip("/ ") for name in names}

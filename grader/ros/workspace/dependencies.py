@@ -69,14 +69,14 @@ def _declared(package: Package) -> set[str]:
 
 def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Location]]:
     """Yield the packages that are used, and where."""
-    for owner, _, launch in workspace.launches:
+    for owner, _, launch in workspace.launches.files:
         if owner is package:
             yield from _launched(launch)
-    generated_at = workspace.interfaces[package.name].location
+    generated_at = workspace.code.interfaces[package.name].location
     if generated_at is not None:
         yield _RUNTIME, generated_at
     names = {other.name for other in workspace.packages}
-    for source in workspace.sources_of(package, (".xacro", ".urdf")):
+    for source in workspace.texts.sources_of(package, (".xacro", ".urdf")):
         for match in _FIND.finditer(source.text):
             name = match[1] or match[2]
             workspace.charge(cost_of_guess(len(names)))
@@ -84,7 +84,7 @@ def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Locatio
             if name in names or package.depends_on(name) or near(name, names) is None:
                 yield name, source.at(match.start())
     yield from _imported(workspace, package, names)
-    for path, tree in workspace.trees:
+    for path, tree in workspace.installed.trees:
         if package.holds(path):
             for _, section in sections_in(tree):
                 yield from _controller_packages(section)
@@ -109,7 +109,7 @@ def _imported(
     modules = set()  # of the package, as far as their names say
     for path in package.tree.files:
         modules |= {part.removesuffix(".py") for part in path.split("/")}
-    for source in workspace.sources_of(package, (".py",)):
+    for source in workspace.texts.sources_of(package, (".py",)):
         for match in _IMPORT.finditer(source.text):
             name = match[1]
             is_ros = name in names or name.endswith("_msgs") or name in _OF_ROS

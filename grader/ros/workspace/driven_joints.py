@@ -32,7 +32,7 @@ def joints_of_controllers(workspace: "Workspace") -> list[str]:
     reading the workspace takes too much work.
     """
     with suppress(NotDecided):
-        for _, tree in workspace.trees:
+        for _, tree in workspace.installed.trees:
             for section in _tables_in(tree):
                 left, right = section.get("left_wheel_names"), section.get("right_wheel_names")
                 if left is not None and right is not None:

@@ -25,7 +25,7 @@ def gain_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers that are given no gains for a joint, and need them."""
     for controller in defined_controllers(workspace):
         row = known()["gains"].get(controller.type.text)
-        gifts = workspace.parameter_owners.get(controller.name, [])
+        gifts = workspace.parameters.owners.get(controller.name, [])
         if row is None or not gifts or any(given.unknown for given in gifts):
             continue
         workspace.charge(len(gifts))

@@ -25,13 +25,13 @@ _WITHOUT_VALUE = "allow_renaming"  # an option of create
 def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield systems that worlds lack, and what is spawned, or bridged, from what is not there."""
     worlds: dict[str, XmlFile] = {}  # those that launch files name
-    for file in workspace.sdf_files:
+    for file in workspace.texts.sdf_files:
         name = file.source.path.rpartition("/")[2]
-        if any(name in text for text in workspace.searched_launch_texts()):
+        if any(name in text for text in workspace.texts.searched_launch_texts()):
             for world in file.root.iterchildren("world"):
                 worlds[world.get("name", "")] = file
                 yield from _missing_systems(workspace, file, world)
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if _is_creator(node):
             yield from _created(workspace, node, worlds)
             yield from _options_of_creator(node)
@@ -47,15 +47,17 @@ def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Ite
     """Yield the systems that a world of its own systems lacks for sensors in it and in the
     robot.
     """
-    if next(world.iterchildren("plugin"), None) is None or not workspace.robots:
+    if next(world.iterchildren("plugin"), None) is None or not workspace.robots.known:
         return  # Gazebo loads its default systems
     systems = set()
     for root, _ in roots(workspace):
         systems |= {system_of(plugin) for plugin in root.iter("plugin")}
     seen = [file.root]
     # Which one of several robots is created in it is not evaluated.
-    if len(workspace.robots) == 1 and any(_is_creator(node) for _, node in workspace.nodes):
-        seen.append(workspace.robots[0].root)
+    if len(workspace.robots.known) == 1 and any(
+        _is_creator(node) for _, node in workspace.launches.nodes
+    ):
+        seen.append(workspace.robots.known[0].root)
     for root, place in roots(workspace):
         if not any(root is it for it in seen):
             continue
@@ -128,10 +130,10 @@ def _options_of_creator(node: StartedNode) -> Iterator[Mismatch]:
 def _created_from(workspace: Workspace, node: StartedNode, topic: str) -> Iterator[Mismatch]:
     """Yield that no robot_state_publisher publishes the topic from which a robot is created."""
     name = node.topic(topic)
-    if name is None or workspace.unknown_nodes:
+    if name is None or workspace.launches.unknown_nodes:
         return
     published: dict[str, Location] = {}
-    for _, other in workspace.nodes:
+    for _, other in workspace.launches.nodes:
         if other.package == "robot_state_publisher":
             description = other.topic("robot_description")
             if description is None:
@@ -146,10 +148,10 @@ def _created_from(workspace: Workspace, node: StartedNode, topic: str) -> Iterat
 
 def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield bridges without any topic."""
-    for package, node in workspace.nodes:
+    for package, node in workspace.launches.nodes:
         is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"
         if is_bridge and node.arguments == ():
-            given = workspace.parameters_given(package, node)
+            given = workspace.parameters.given_to(package, node)
             if not given.unknown and "config_file" not in given.values:
                 message = (
                     "the bridge has no topics: neither arguments, nor the parameter config_file"

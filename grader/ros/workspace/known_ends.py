@@ -80,7 +80,7 @@ def _inputs(workspace: Workspace, program: KnownProgram) -> list[_Input]:
     if types is None:
         return []
     inputs = []
-    parameters = workspace.parameters_given(program.package, program.node)
+    parameters = workspace.parameters.given_to(program.package, program.node)
     for name, given in parameters.values.items():
         numbered = _INPUT.fullmatch(name)
         if numbered is None or numbered[1] not in types or not isinstance(given.value, str):
@@ -136,7 +136,7 @@ def _only_unread(
 
 def _may_be_published(workspace: Workspace, topic: str) -> bool:
     """Return whether something that is not read may publish a topic."""
-    for robot in workspace.robots:
+    for robot in workspace.robots.known:
         if any(_CLASSIC in tag.get("filename", "") for tag in robot.root.iter("plugin")):
             return True
     # Programs of other packages know the type, also where the workspace has its package.

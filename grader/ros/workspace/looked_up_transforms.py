@@ -72,7 +72,7 @@ def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
 
 def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
     """Yield what nodes that are certainly started look up, where both frames are known."""
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if node.when is not True:
             continue
         by_call: dict[Location, list[str]] = {}

@@ -154,7 +154,7 @@ def _other_type_of_bridge(graph: Graph) -> Iterator[Mismatch]:
     A row of a file that no launch file names counts too, as far as all bridges keep their names.
     """
     workspace = graph.workspace
-    bridges = [node for _, node in workspace.nodes if node.package == BRIDGE]
+    bridges = [node for _, node in workspace.launches.nodes if node.package == BRIDGE]
     is_plain = all(node.remaps == () and node.namespace in ("", "/") for node in bridges)
     if not bridges or not is_plain:
         return

@@ -66,7 +66,9 @@ def _offers(workspace: Workspace, publishers: Sequence[End]) -> Iterator[_Offer]
     """Yield what own code, controllers and bridges publish."""
     for end in publishers:
         yield _Offer(end.name, end.type, end.location, end.launch)
-    launches = {launch for launch, node in workspace.launched if node.package == BRIDGE} or {-1}
+    launches = {
+        launch for launch, node in workspace.launches.launched if node.package == BRIDGE
+    } or {-1}
     for row in bridge_rows(workspace):
         if row.is_published:
             for launch in launches:
@@ -95,12 +97,15 @@ def _may_be_published(workspace: Workspace, end: End) -> bool:
     if is_own_type(workspace, end.type):
         return False
     name, last = end.name.strip("/"), end.name.rpartition("/")[2]
-    if last in known()["topics_of_others"] or name.partition("/")[0] in workspace.controllers:
+    if (
+        last in known()["topics_of_others"]
+        or name.partition("/")[0] in workspace.installed.controllers
+    ):
         return True
     # A parameter, or a remapping of a plugin, may name what something publishes.
-    if any(name in tree.source.text for _, tree in workspace.trees):
+    if any(name in tree.source.text for _, tree in workspace.installed.trees):
         return True
-    for robot in workspace.robots:
+    for robot in workspace.robots.known:
         if any(name in (tag.text or "") for tag in robot.root.iter("remapping", "ros_topic")):
             return True
     return False
@@ -161,16 +166,16 @@ def _last_names(end: End, count: int) -> list[str]:
 def _may_be_of_gazebo(workspace: Workspace, publisher: End, waiting: End) -> bool:
     """Return whether Gazebo may have the same controller in another namespace."""
     is_same = _last_names(publisher, 2) == _last_names(waiting, 2)
-    return is_same and workspace.has_controllers_in_gazebo
+    return is_same and workspace.robots.has_controllers_in_gazebo
 
 
 def _is_all_read(workspace: Workspace, launch: int) -> bool:
     """Return whether all topics are known that the nodes of a launch file open."""
-    if workspace.roots[launch][1].unknown:
+    if workspace.launches.roots[launch][1].unknown:
         return False
-    for number, node in workspace.launched:
+    for number, node in workspace.launches.launched:
         may_command = number == launch and node.package not in known()["without_commands"]
-        if may_command and not workspace.is_read(node):
+        if may_command and not workspace.code.is_read(node):
             return False
     return True
 

@@ -17,8 +17,8 @@ def namespace_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the parameter files that have parameters of a node's name, but not in its namespace:
     rcl compares the full names, so the node gets none of them.
     """
-    for path, nodes in workspace.parameter_files.items():
-        tree = workspace.yaml_files.get(path)
+    for path, nodes in workspace.parameters.files.items():
+        tree = workspace.installed.yaml.get(path)
         if isinstance(tree, YamlNode):
             keys = keys_of_sections(tree)
             said: set[Location] = set()  # of several nodes that do not get a section, the first
@@ -34,7 +34,7 @@ def namespace_facts(workspace: Workspace) -> Iterator[Fact]:
 def _other_namespace(
     workspace: Workspace, tree: YamlNode, node: StartedNode, keys: Mapping[str, tuple[str, ...]]
 ) -> Iterator[Compared | Mismatch]:
-    name = workspace.name_of(node)
+    name = workspace.code.name_of(node)
     if not name or node.namespace is None or node.package in known()["containers"]:
         return
     full = node.full_name(name)

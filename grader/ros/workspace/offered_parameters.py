@@ -42,7 +42,7 @@ def parameter_text(workspace: Workspace, section: str, name: str) -> str:
 
 
 def _own_parameters(workspace: Workspace, section: str) -> Iterator[NodeParameter]:
-    for package in workspace.nodes_by_package.values():
+    for package in workspace.code.by_package.values():
         for node in package.nodes:
             if node.name == section:
                 yield from (it for it in node.parameters if it.is_declared)

@@ -26,9 +26,9 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
 
     Paths in launch files are problems of these files.
     """
-    launch_files = {package.path(path) for package, path, _ in workspace.launches}
+    launch_files = {package.path(path) for package, path, _ in workspace.launches.files}
     for package in workspace.packages:
-        for source in workspace.sources_of(package, _TEXTS):
+        for source in workspace.texts.sources_of(package, _TEXTS):
             if source.path in launch_files:
                 continue
             yield Compared("machine")
@@ -40,7 +40,7 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
                     message += f"; the file has {len(found)} such paths"
                 yield warning("machine", message, source.at(found[0].start(1)))
     for package in workspace.packages:
-        for source in workspace.launch_sources(package):
+        for source in workspace.texts.launch_sources(package):
             yield from _variables(source)
 
 

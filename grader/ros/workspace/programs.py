@@ -36,8 +36,8 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
     """
     for package in workspace.packages:
         yield from _entry_points(workspace, package)
-    for package, node in workspace.nodes:
-        if not workspace.means_one(package, node.package):
+    for package, node in workspace.launches.nodes:
+        if not workspace.folder.means_one(package, node.package):
             yield Undecided("programs", f"several packages are named {node.package!r}")
             continue
         owner = package.find(node.package)
@@ -153,7 +153,9 @@ def _missing_program(package: str, name: str, programs: Sequence[str]) -> _Missi
 
 def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
     """Yield the nodes that lifecycle managers are told of, and all that are started."""
-    managers = [pair for pair in workspace.nodes if pair[1].executable == "lifecycle_manager"]
+    managers = [
+        pair for pair in workspace.launches.nodes if pair[1].executable == "lifecycle_manager"
+    ]
     if managers:
         yield from _started(workspace)
     for package, manager in managers:
@@ -169,11 +171,11 @@ def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
 
 def _started(workspace: Workspace) -> Iterator[Fact]:
     """Yield the nodes that launch files start, and that there may be more."""
-    for _, _, launch in workspace.launches:
+    for _, _, launch in workspace.launches.files:
         if launch.more:
             yield Open("node", reason=launch.more)
-    for _, node in workspace.nodes:
-        name = workspace.name_of(node)
+    for _, node in workspace.launches.nodes:
+        name = workspace.code.name_of(node)
         if name is not None:
             yield Definition("node", name, node.location)
         elif node.package not in known()["without_lifecycle"]:

@@ -18,7 +18,7 @@ _SAME_PLACE, _SAME_ANGLE = 1e-3, 0.1  # metres, degrees
 
 def transform_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield transforms that two programs publish, frames with two parents, and cycles."""
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if is_zero_rotation(node):
             message = (
                 "the quaternion of a static_transform_publisher is 0 0 0 0, which is no "

@@ -15,7 +15,8 @@ from grader.ros.workspace.graph.started_controllers import (
     defined_controllers,
     parameters_of_controllers,
 )
-from grader.ros.workspace.model.workspace import MANAGER, Workspace
+from grader.ros.workspace.model.launches import MANAGER
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.xml.parsing import Element
 
@@ -35,7 +36,7 @@ class _StatedNumber(NamedTuple):
 def rate_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the rates and ranges that cannot be reached."""
     yield from _rates_of_controllers(workspace)
-    if workspace.has_other_robots:
+    if workspace.robots.may_be_others:
         return
     farthest = _largest(_ranges_of_lidars(workspace))
     rates = _numbers_of_lidars(workspace, "update_rate")
@@ -121,7 +122,7 @@ def _numbers_of_lidars(workspace: Workspace, tag: str) -> Iterator[tuple[_Stated
 
 def _scan_sources(workspace: Workspace) -> Iterator[tuple[str, YamlNode]]:
     """Yield the sections of costmaps' observation sources that are scans."""
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         for _, section in sections_in(tree):
             for layer in [node for _, node in section.pairs]:
                 listed = layer.get(_SOURCES)

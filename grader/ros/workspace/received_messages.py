@@ -36,7 +36,7 @@ def received_message_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
     """Yield the messages that a synchroniser drops, or stops at, since they have no header."""
-    for each in workspace.nodes_by_package[package].synchronised:
+    for each in workspace.code.by_package[package].synchronised:
         if _has_header(workspace, each.type) is not False:
             continue
         if each.together and not any(_has_header(workspace, it) for it in each.together):
@@ -51,7 +51,7 @@ def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
 def _has_header(workspace: Workspace, name: str) -> bool | None:
     """Return whether messages of a type have a header; None where this is not known."""
     package, _, own_name = name.partition(".")
-    own = workspace.interfaces.get(package)
+    own = workspace.code.interfaces.get(package)
     if own is not None:
         found = own.types.get(own_name)
         interface = found.interface if found is not None and own.is_complete else None
@@ -64,7 +64,7 @@ def _has_header(workspace: Workspace, name: str) -> bool | None:
 
 def _without_queue(workspace: Workspace, package: str) -> Iterator[Mismatch]:
     """Yield publishers and subscriptions whose queue has no length."""
-    for node in workspace.nodes_by_package[package].nodes:
+    for node in workspace.code.by_package[package].nodes:
         for endpoint in node.endpoints:
             if endpoint.kind in _ENDS and endpoint.qos.depth == 0:
                 message = (

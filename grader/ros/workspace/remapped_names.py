@@ -18,13 +18,13 @@ def remapping_facts(workspace: Workspace) -> Iterator[Fact]:
     many topics are compared.
     """
     owners: dict[tuple[str, ...], list[StartedNode]] = {}  # of each rule the first nodes with it
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         for rule in node.remaps or ():
             of_rule = owners.setdefault(rule, [])
             if len(of_rule) < 2 and not any(node is owner for owner in of_rule):
                 of_rule.append(node)
     read: set[object] = set()
-    for _, node in workspace.launched:
+    for _, node in workspace.launches.launched:
         key = (node.package, node.executable, node.location, node.remaps)
         if node.when is not False and key not in read:
             read.add(key)
@@ -37,7 +37,7 @@ def _remappings(
     workspace: Workspace, node: StartedNode, rules: Sequence[tuple[str, ...]]
 ) -> Iterator[Fact]:
     """Yield the names that a node has, and those that these remappings, of it alone, replace."""
-    facts = workspace.own_node(node)
+    facts = workspace.code.own_node(node)
     if facts is None or node.remaps is None:
         return
     owner = f"{node.package}/{node.executable} {node.location.file_and_line}"
@@ -92,9 +92,9 @@ def _count(graph: Graph) -> Counted:
 def _unread_programs(workspace: Workspace) -> list[str]:
     """Return the programs of the workspace that are started and whose nodes are not known."""
     programs = set()
-    for _, node in workspace.launched:
+    for _, node in workspace.launches.launched:
         owner = workspace.package_of(node)
-        if node.when is False or owner is None or workspace.own_node(node) is not None:
+        if node.when is False or owner is None or workspace.code.own_node(node) is not None:
             continue
         if owner.has_program(node.package, node.executable):
             programs.add(node.executable)

@@ -18,11 +18,13 @@ _COMPUTED = (".srdf.xacro", ".srdf.xml.xacro")
 
 def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what SRDF files define and name, if a robot is known."""
-    robots, files = [found.robot for found in workspace.robots], workspace.srdf_files
+    robots, files = [found.robot for found in workspace.robots.known], workspace.texts.srdf_files
     if not robots:
         return
     names = {file.root.get("name") for file in files}
-    is_only = len(robots) == 1 and not workspace.has_other_robots and robots[0].name not in names
+    is_only = (
+        len(robots) == 1 and not workspace.robots.may_be_others and robots[0].name not in names
+    )
     computed = [path for path in workspace.tree.files if path.endswith(_COMPUTED)]
     if computed or any("<xacro:" in file.source.text for file in files):
         yield Open("group")

@@ -46,15 +46,15 @@ class BridgeRow(NamedTuple):
 
 def bridge_rows(workspace: Workspace) -> Iterator[BridgeRow]:
     """Yield the rows of bridges in YAML files, and those in the arguments of bridges."""
-    for path, tree in workspace.trees:
+    for path, tree in workspace.installed.trees:
         is_used = any(
-            posixpath.basename(path) in text for text in workspace.searched_launch_texts()
+            posixpath.basename(path) in text for text in workspace.texts.searched_launch_texts()
         )
         for item in tree.items:
             row = _row_in_yaml(item, is_used=is_used)
             if row is not None:
                 yield row
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if node.package == BRIDGE:
             yield from _rows_in_arguments(node)
 
@@ -64,8 +64,12 @@ def rows_of_bridge(workspace: Workspace, node: StartedNode) -> Iterator[BridgeRo
     yield from _rows_in_arguments(node)
     for given in node.parameters or ():
         file = given.values.get("config_file")
-        path = workspace.source_of(file.value) if file and isinstance(file.value, str) else None
-        tree = workspace.yaml_files.get(path or "")
+        path = (
+            workspace.installed.source_of(file.value)
+            if file and isinstance(file.value, str)
+            else None
+        )
+        tree = workspace.installed.yaml.get(path or "")
         items = tree.items if isinstance(tree, YamlNode) else ()
         workspace.charge(1 + len(items))
         for item in items:

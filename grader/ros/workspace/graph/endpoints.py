@@ -62,14 +62,14 @@ class End(NamedTuple):
 
 def opened_by(workspace: Workspace, node: StartedNode, launch: int = -1) -> Iterator[End]:
     """Yield what the code of a node opens as it is started. Raises NotDecided."""
-    own_node = workspace.own_node(node)
+    own_node = workspace.code.own_node(node)
     if own_node is None:
         return
     workspace.charge(len(own_node.endpoints) * (1 + len(node.remaps or ())))
     values: Mapping[str, Value] = {}
     if any(part.kind in ("parameter", "item") for it in own_node.endpoints for part in it.parts):
         values = _values_given(workspace, node, own_node)
-    named = node._replace(node_name=workspace.name_of(node))
+    named = node._replace(node_name=workspace.code.name_of(node))
     for endpoint in own_node.endpoints:
         for name in _names(endpoint, named, values):
             full = named.topic(name) if name is not None else None
@@ -83,12 +83,12 @@ def frames_of(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str | N
     """Yield the frames that an own node names as it is started, each with its name; None for one
     that is not known. Raises NotDecided.
     """
-    own_node = workspace.own_node(node)
+    own_node = workspace.code.own_node(node)
     if own_node is None or not own_node.frames:
         return
     workspace.charge(len(own_node.frames))
     values = _values_given(workspace, node, own_node)
-    named = node._replace(node_name=workspace.name_of(node))
+    named = node._replace(node_name=workspace.code.name_of(node))
     for frame in own_node.frames:
         for name in _names(frame, named, values):
             is_known = name is not None and _ANY not in name
@@ -107,7 +107,9 @@ def _values_given(
     package = workspace.package_of(node)
     if package is None:
         return {}
-    given = workspace.read_given(package, node, workspace.name_of(node) or own_node.name or "")
+    given = workspace.parameters.read_given(
+        package, node, workspace.code.name_of(node) or own_node.name or ""
+    )
     if given.unknown:
         return {}
     return {**values, **{name: it.value for name, it in given.values.items()}}

@@ -29,7 +29,7 @@ class KnownProgram(NamedTuple):
 
 def programs_in(workspace: Workspace) -> Iterator[KnownProgram]:
     """Yield the well-known programs that launch files certainly start. Raises NotDecided."""
-    for launch, (package, file) in enumerate(workspace.roots):
+    for launch, (package, file) in enumerate(workspace.launches.roots):
         workspace.charge(1 + len(file.nodes))
         for node in file.nodes:
             if node.when is True:
@@ -104,7 +104,7 @@ def _type_by_parameter(
     where that is not known.
     """
     parameter, value, type_if_equal = row["if"]
-    parameters = workspace.parameters_given(package, node)
+    parameters = workspace.parameters.given_to(package, node)
     if parameters.unknown:
         return None
     given = parameters.values.get(parameter)

@@ -69,5 +69,5 @@ def roots(workspace: Workspace) -> Iterator[tuple[Element, Callable[[Element], L
     """Yield the roots of the robots and of the models and worlds, each with where its elements
     are written.
     """
-    yield from ((robot.root, robot.place) for robot in workspace.robots)
-    yield from ((file.root, file.location) for file in workspace.sdf_files)
+    yield from ((robot.root, robot.place) for robot in workspace.robots.known)
+    yield from ((file.root, file.location) for file in workspace.texts.sdf_files)

@@ -34,7 +34,7 @@ class Graph:
     def ends(self) -> Sequence[End]:
         """The ends of all nodes that are or may be started."""
         ends: list[End] = []
-        for launch, (package, file) in enumerate(self.workspace.roots):
+        for launch, (package, file) in enumerate(self.workspace.launches.roots):
             self.workspace.charge(1 + len(file.nodes))
             for node in file.nodes:
                 if node.when is not False:
@@ -45,7 +45,7 @@ class Graph:
     def edges(self) -> Sequence[Edge]:
         """The transforms of all nodes, whatever conditions say."""
         edges: list[Edge] = []
-        for launch in range(len(self.workspace.roots)):
+        for launch in range(len(self.workspace.launches.roots)):
             edges += edges_in(self.workspace, launch)
         return edges
 

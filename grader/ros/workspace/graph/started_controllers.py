@@ -13,7 +13,8 @@ from grader.ros.known.known import known
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.package.node_facts import Endpoint, EndpointKind
-from grader.ros.workspace.model.workspace import MANAGER, SPAWNERS, Workspace
+from grader.ros.workspace.model.launches import MANAGER, SPAWNERS
+from grader.ros.workspace.model.workspace import Workspace
 
 _JOINT_STATE = "sensor_msgs.msg.JointState"
 _LOCAL_TOPICS = "use_local_topics"  # the parameter that puts the broadcaster's name before its own
@@ -39,7 +40,7 @@ def named_sections(workspace: Workspace) -> tuple[tuple[tuple[str, ...], YamlNod
     mistake.
     """
     found: list[tuple[tuple[str, ...], YamlNode]] = []
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         for keys, node in sections_in(tree):
             if keys:
                 found += [(keys, node), *sections_in(node, keys)]
@@ -116,7 +117,7 @@ def spawned_controllers(
     its remappings.
     """
     remaps: dict[str | None, tuple[tuple[str, ...], ...]] = {}
-    for number, spawner in workspace.launched:
+    for number, spawner in workspace.launches.launched:
         if number == launch and spawner.executable in SPAWNERS and spawner.when:
             for controller in controllers_of(spawner) or ():
                 remaps[controller.node_name] = controller.remaps or ()

@@ -56,7 +56,7 @@ class Edge(NamedTuple):
 
 def edges_in(workspace: Workspace, launch: int) -> Iterator[Edge]:
     """Yield the transforms of the nodes and controllers of a launch file. Raises NotDecided."""
-    package, file = workspace.roots[launch]
+    package, file = workspace.launches.roots[launch]
     workspace.charge(1 + len(file.nodes))
     publishers = []
     for node in file.nodes:
@@ -105,7 +105,7 @@ def _published_by(
     else:
         yield from _edges_of_code(workspace, launch, node)
         if any("/".join(program) in row["by"] for row in known()["broadcasts"]):
-            given = workspace.parameters_given(package, node)
+            given = workspace.parameters.given_to(package, node)
             for parent, child in _broadcast("/".join(program), given):
                 is_certain = _is_certain(node)
                 by, at = node.executable, node.location
@@ -134,8 +134,8 @@ def _edges_of_robots(workspace: Workspace, launch: int, *, is_certain: bool) -> 
     """Yield the joints of the robots, which robot_state_publisher publishes; for certain where it
     is known of which robot.
     """
-    is_one = len(workspace.robots) == 1 and not workspace.has_other_robots
-    for known_robot in workspace.robots:
+    is_one = len(workspace.robots.known) == 1 and not workspace.robots.may_be_others
+    for known_robot in workspace.robots.known:
         for joint in known_robot.robot.joints:
             if joint.location is None:
                 continue
@@ -161,7 +161,7 @@ def _broadcast_by_controllers(workspace: Workspace, launch: int) -> Iterator[Edg
     for controller in defined_controllers(workspace):
         if controller.name not in spawned or spawned[controller.name]:
             continue  # a remapping may be of /tf
-        gifts = workspace.parameter_owners.get(controller.name, [])
+        gifts = workspace.parameters.owners.get(controller.name, [])
         if len(gifts) == 1:
             for parent, child in _broadcast(controller.type.text or "", gifts[0]):
                 by, at = controller.name, controller.location

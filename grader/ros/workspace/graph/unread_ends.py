@@ -28,24 +28,24 @@ def is_own_type(workspace: Workspace, kind: str | None) -> bool:
     """Return whether a package of the workspace defines a type, and only its own programs know it:
     none relays what others send.
     """
-    if any(node.package in known()["relaying"] for _, node in workspace.nodes):
+    if any(node.package in known()["relaying"] for _, node in workspace.launches.nodes):
         return False
-    return (kind or "").partition(".")[0] in workspace.interfaces
+    return (kind or "").partition(".")[0] in workspace.code.interfaces
 
 
 def may_be_opened(workspace: Workspace, sought: Sought) -> bool:
     """Return whether something that is not read may open an end that nothing is known to open."""
-    if workspace.has_more_nodes:
+    if workspace.launches.has_more_nodes:
         return True
     is_own = is_own_type(workspace, sought.type)
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         # A program of another package does not know an own type.
         is_of_workspace = workspace.package_of(node) is not None
         if (is_of_workspace or not is_own) and _may_open(workspace, node, sought):
             return True
     if sought.kind == "publisher":
         return False
-    return any(nodes.doubts for nodes in workspace.nodes_by_package.values())
+    return any(nodes.doubts for nodes in workspace.code.by_package.values())
 
 
 def _may_open(workspace: Workspace, node: StartedNode, sought: Sought) -> bool:
@@ -53,7 +53,7 @@ def _may_open(workspace: Workspace, node: StartedNode, sought: Sought) -> bool:
     package = workspace.package_of(node)
     if package is None:
         return _may_be_of_other_package(workspace, node, sought)
-    facts = workspace.own_node(node)
+    facts = workspace.code.own_node(node)
     if facts is None:
         return sought.kind != "publisher" or _may_publish_unread(workspace, package, node, sought)
     if facts.doubts:
@@ -83,7 +83,7 @@ def _may_publish_unread(
     """Return whether an own program whose nodes are not known may publish a topic, as its texts
     say.
     """
-    texts = [source.text for source in workspace.sources_of(package, _SOURCES)]
+    texts = [source.text for source in workspace.texts.sources_of(package, _SOURCES)]
     last = sought.name.rpartition("/")[2]
     return not texts or any(last in text for text in texts) or _is_remapped_to(node, sought.name)
 
@@ -105,8 +105,10 @@ def _is_plain_bridge(workspace: Workspace, node: StartedNode) -> bool:
     for given in node.parameters or ():
         file = given.values.get("config_file")
         if file is not None:
-            path = workspace.source_of(file.value) if isinstance(file.value, str) else None
-            if path not in workspace.yaml_files:
+            path = (
+                workspace.installed.source_of(file.value) if isinstance(file.value, str) else None
+            )
+            if path not in workspace.installed.yaml:
                 return False
     words_are_known = node.arguments is not None and None not in node.arguments
     return words_are_known and node.remaps == () and node.namespace in ("", "/")
