@@ -93,6 +93,8 @@ ROOMS = {
         "cli api",
     ),
 }
+# The rooms inside a room, from the bottom. The modules beside them are above all of them.
+INNER_ROOMS = {"ros.workspace": ("model", "graph")}
 # The packages, or rooms of them, that may import a library: each has one concern.
 LIBRARIES = {
     "typer": {"app.cli"},
@@ -190,9 +192,21 @@ def points_down(module: str, imported: str) -> bool:
     if other[0] != place[0]:
         return height(LAYERS, other[0]) < height(LAYERS, place[0])
     rooms = ROOMS.get(place[0])
-    if rooms is None or place[1:2] == other[1:2]:
+    if rooms is None:
         return True
+    if place[1:2] == other[1:2]:
+        return stays_below(".".join(place[:2]), place[2:], other[2:])
     return height(rooms, other[1]) < height(rooms, place[1])
+
+
+def stays_below(room: str, place: list[str], other: list[str]) -> bool:
+    """Return whether a module may import another one of the same room: of its own inner room, or of a lower one."""
+    inner = INNER_ROOMS.get(room)
+    if inner is None or place[:1] == other[:1]:
+        return True
+    heights = [height(inner, path[0]) if path else -1 for path in (place, other)]
+    own, imported = [number if number >= 0 else len(inner) for number in heights]
+    return imported < own or imported == own == len(inner)
 
 
 def test_imports_point_down() -> None:
@@ -273,6 +287,19 @@ def _words_of_code(path: Path) -> Iterator[list[str]]:
             yield [ast.get_docstring(node) or ""]
 
 
+def test_no_type_of_a_workspace_has_many_members() -> None:
+    """A type of the model or of the graph with more than twenty fields and methods is two things."""
+    many = {}
+    for module in MODULES:
+        if module.startswith(("grader.ros.workspace.model.", "grader.ros.workspace.graph.")):
+            classes = [it for it in prose().trees[module].body if isinstance(it, ast.ClassDef)]
+            for node in classes:
+                members = sum(isinstance(it, ast.FunctionDef | ast.AnnAssign) for it in node.body)
+                many[node.name] = members
+    assert len(many) > 10
+    assert {name: members for name, members in many.items() if members > 20} == {}
+
+
 def test_check_families_do_not_import_each_other() -> None:
     """Only the registry imports families of checks."""
     families = {check.function.__module__ for check in own_checks()}
@@ -288,6 +315,9 @@ def test_every_package_has_a_layer() -> None:
     for package, layers in ROOMS.items():
         rooms = {place[1] for place in places if place[0] == package and len(place) > 1}
         assert sorted(" ".join(layers).split()) == sorted(rooms), package
+    for room, layers in INNER_ROOMS.items():
+        folder = ROOT.joinpath(*room.split("."))
+        assert sorted(layers) == sorted(path.parent.name for path in folder.glob("*/__init__.py"))
 
 
 # What names its functions itself: the registry of checks, the commands of typer, the Python API.

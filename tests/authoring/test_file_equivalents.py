@@ -19,7 +19,7 @@ def workspace_with(detector: str) -> Submission:
 
 def parameters(submission: Submission) -> dict[str, list[object]]:
     """Return the values that nodes and controllers get, by their names."""
-    owners = submission.workspace.parameter_owners
+    owners = submission.workspace.parameters.owners
     return {
         name: [{key: it.value for key, it in one.values.items()} for one in given]
         for name, given in owners.items()

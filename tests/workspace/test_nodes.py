@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 
-from grader.ros.workspace.endpoints import opened_by
+from grader.ros.workspace.graph.endpoints import opened_by
 from grader.ros.workspace.names import Mismatch
 from tests.labs.variants import FOLDER
 from tests.workspace.carts import Edit, agreement_of, cart
@@ -38,12 +38,12 @@ def wrong(*edits: Edit) -> list[Mismatch]:
     return [*agreement_of(edited(*edits)).mismatches]
 
 
-def opened(executable: str, *edits: Edit) -> list[tuple[str, str | None]]:
+def opened(executable: str, *edits: Edit) -> list[tuple[str, str]]:
     """Return the kinds and names of what a program opens as it is started."""
     workspace = cart(edited(*edits)).workspace
     return [
         (found.endpoint.kind, found.name)
-        for _, node in workspace.nodes
+        for _, node in workspace.launches.nodes
         if node.executable == executable and node.when
         for found in opened_by(workspace, node)
     ]
@@ -70,23 +70,23 @@ NAMES = [
     ("'{}/{{state'.format(self.get_name())", "/drum/{state"),
     ("'{1}{0}'.format('state', 'a')", "/astate"),
     ("f'{self.get_namespace()}state'", "/state"),
-    ("f'{self.get_namespace()}/state'", None),
+    ("f'{self.get_namespace()}/state'", "*"),
     ("str(5) + 'state'", "/5state"),
     ("f'state_{self._find()}'", "/state_*"),
     ("f'{self._find()}_{self.get_name()}'", "/*_drum"),
-    ("f'{self.get_name():>9}'", None),
+    ("f'{self.get_name():>9}'", "*"),
     ("'{name}'.format(name='state')", "/state"),
-    ("'{name}'.format(name=self._find())", None),
-    ("self._find()", None),
+    ("'{name}'.format(name=self._find())", "*"),
+    ("self._find()", "*"),
     ("f'x{self.get_parameter(\"period\").value}'", "/x*"),
-    ("self.get_parameter('top_speed').get_parameter_value().string_value", None),
+    ("self.get_parameter('top_speed').get_parameter_value().string_value", "*"),
     ("f'a{self.get_parameter(self._find()).value}'", "/a*"),
 ]
 
 
 @pytest.mark.parametrize(("written", "name"), NAMES)
-def test_a_name_is_evaluated_for_the_started_node(written: str, name: str | None) -> None:
-    """What stays unknown is a pattern of the known parts; of a name with no known part, nothing is known."""
+def test_a_name_is_evaluated_for_the_started_node(written: str, name: str) -> None:
+    """What stays unknown is a pattern of the known parts, * for a name with no known part."""
     assert ("publisher", name) in opened("drum", (DRUM, NAME, written))
 
 
@@ -97,14 +97,12 @@ LOOPS = [
     ("for name in self._find():", "f'{name}/lock'", ["/*/lock"]),
     ("for name in self.get_parameter('names').value:", "f'{name}/lock'", ["/p/lock", "/q/lock"]),
     ("for name in self.get_parameter('machine').value:", "f'{name}/lock'", ["/*/lock"]),
-    ("for name in ['a']:", "other", [None]),
+    ("for name in ['a']:", "other", ["*"]),
 ]
 
 
 @pytest.mark.parametrize(("loop", "written", "names"), LOOPS)
-def test_a_loop_opens_something_for_each_item(
-    loop: str, written: str, names: list[str | None]
-) -> None:
+def test_a_loop_opens_something_for_each_item(loop: str, written: str, names: list[str]) -> None:
     """Of a list in the code, or in a parameter."""
     old = '        self.door = self.create_client(LockDoor, "door/lock")\n'
     declared = "        self.declare_parameter('names', ['p', 'q'])\n"

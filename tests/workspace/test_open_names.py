@@ -465,7 +465,7 @@ def test_a_robot_has_the_defaults_of_its_arguments() -> None:
         "'kit.urdf.xacro'])", "'kit.urdf.xacro']), ' mode:=', open('m').read()"
     )
     kit = _kit({"src/kit/launch/kit.launch.py": launch.replace("MORE", "")}, robot=robot)
-    assert [len(it.robot.links) for it in kit.workspace.robots] == [3]
+    assert [len(it.robot.links) for it in kit.workspace.robots.known] == [3]
 
 
 def test_a_part_without_a_name_is_no_robot() -> None:
@@ -569,7 +569,7 @@ def test_a_package_inside_another_one_is_not_built() -> None:
     [package] = low.packages
     assert package.installed["share/low/parts/old/config/a.yaml"] == "parts/old/config/a.yaml"
     assert not any(it.code == "PKG012" for it in listed_problems(low.workspace))
-    assert low.workspace.launches == ()
+    assert low.workspace.launches.files == ()
 
 
 def test_a_file_that_an_argument_chooses_is_a_part() -> None:

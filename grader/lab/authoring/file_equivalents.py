@@ -9,7 +9,7 @@ from contextlib import suppress
 from grader.lab.submission.submission import Submission
 from grader.ros.config.yaml_nodes import YamlNode, yaml_value
 from grader.ros.config.yaml_values import sections_in
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 
 EVERY_NODE, _FLOW_STYLE = "parameters of /**", "flow style of YAML"
 
@@ -17,8 +17,10 @@ EVERY_NODE, _FLOW_STYLE = "parameters of /**", "flow style of YAML"
 def file_equivalents(submission: Submission) -> Iterator[tuple[str, Mapping[str, str]]]:
     """Yield each family with the new texts of all files that it changes, by their paths."""
     workspace = submission.workspace
-    wide = {path: _for_every_node(workspace, path, tree) for path, tree in workspace.trees}
-    flow = {path: _in_flow_style(tree) for path, tree in workspace.trees}
+    wide = {
+        path: _for_every_node(workspace, path, tree) for path, tree in workspace.installed.trees
+    }
+    flow = {path: _in_flow_style(tree) for path, tree in workspace.installed.trees}
     for family, texts in ((EVERY_NODE, wide), (_FLOW_STYLE, flow)):
         changed = {path: text for path, text in texts.items() if text is not None}
         if changed:
@@ -31,9 +33,9 @@ def _for_every_node(workspace: Workspace, path: str, tree: YamlNode) -> str | No
     """
     sections, nodes = (
         [keys for keys, _ in sections_in(tree)],
-        workspace.parameter_files.get(path, []),
+        workspace.parameters.files.get(path, []),
     )
-    if len(nodes) != 1 or len(tree.value) != 1 or sections != [(workspace.name_of(nodes[0]),)]:
+    if len(nodes) != 1 or len(tree.value) != 1 or sections != [(workspace.code.name_of(nodes[0]),)]:
         return None
     before = tree.source.text
     text = re.sub(rf"(?m)^([\"']?){re.escape(sections[0][0])}\1(?=\s*:)", "/**", before, count=1)

@@ -44,7 +44,7 @@ def node_changes(
     if not source.path.endswith(".py"):
         return
     if "interfaces" in families:
-        for nodes in submission.workspace.nodes_by_package.values():
+        for nodes in submission.workspace.code.by_package.values():
             for use in nodes.field_uses:
                 if use.type.endswith(".GoalHandle") and len(use.path) == 1:
                     continue  # an attribute of rclpy's

@@ -242,7 +242,7 @@ def _without_names(submission: Submission, package: Package) -> _Files:
             own = [it for it in nodes if it.executable == executable and it.node_name == name]
             if given is None or not name or not own:
                 continue
-            if submission.workspace.name_of(own[0]._replace(node_name="")) == name:
+            if submission.workspace.code.name_of(own[0]._replace(node_name="")) == name:
                 spans.append(file.span(given))
         text = file.text
         for start, end in sorted(spans, reverse=True):

@@ -27,7 +27,7 @@ from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
-from grader.ros.workspace.endpoints import opened_by
+from grader.ros.workspace.graph.endpoints import opened_by
 from grader.ros.workspace.reading import read_agreement, wrong_names
 from grader.ros.workspace.rule_table import FAMILIES, Family
 
@@ -225,7 +225,7 @@ def _given(submission: Submission) -> Iterator[tuple[str, str, Any]]:
     """Yield the parameters that nodes get, by the names of the nodes and their own, and their
     values.
     """
-    for node, given in submission.workspace.parameter_owners.items():
+    for node, given in submission.workspace.parameters.owners.items():
         for name, found in {name: it for one in given for name, it in one.values.items()}.items():
             yield node, name, found.value
 

@@ -20,7 +20,7 @@ from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Cylinder, Joint, Sphere
 from grader.ros.urdf.visuals import placed
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 
 _Measure = Literal["radius", "length", "distance", "lower", "upper", "velocity", "effort"]
 _EXACT = 1e-6
@@ -129,7 +129,7 @@ def _written_otherwise(
     """Return what parameter files have for a parameter, of whatever node, if none of them has a
     certain value.
     """
-    written = submission.workspace.written_values(parameter)
+    written = submission.workspace.installed.written_values(parameter)
     known = [it for it in written if not isinstance(it.value, Unknown)]
     has_it = value is None or any(_equal(it.value, value, tolerance) for it in known)
     return None if has_it else next(iter(known), None)
@@ -140,12 +140,13 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
     that is not known.
     """
     workspace = submission.workspace
-    given = workspace.parameter_owners.get(node, [])
+    given = workspace.parameters.owners.get(node, [])
     values = [found.values[parameter] for found in given if parameter in found.values]
     if len({repr(it.value) for it in values}) == 1 and len(values) == len(given):
         return values[0]
     unknown = (
-        next((found.unknown for found in given if found.unknown), "") or workspace.unknown_nodes
+        next((found.unknown for found in given if found.unknown), "")
+        or workspace.launches.unknown_nodes
     )
     if values and not unknown:
         places = enumerated([it.location.file_and_line for it in values])
@@ -162,7 +163,7 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
         cause = "the name of a node is only in its program"
         raise NotDecided(f"{cause}: {other.package}/{other.executable}", cause)
     if not given:
-        there = similar_there(node, workspace.parameter_owners)
+        there = similar_there(node, workspace.parameters.owners)
         message = f"nothing gives parameters to a node {quoted(node)}{there}"
         raise MissingElement("parameters of the node", node, message=message)
     written = {name: it.location for found in given for name, it in found.values.items()}
@@ -178,9 +179,9 @@ def _nameless(workspace: Workspace) -> list[tuple[Package, StartedNode]]:
     packages.
     """
     found = []
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         package = workspace.package_of(node)
-        if package is not None and workspace.name_of(node) is None:
+        if package is not None and workspace.code.name_of(node) is None:
             found.append((package, node))
     return found
 

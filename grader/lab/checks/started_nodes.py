@@ -17,7 +17,7 @@ from grader.ros.xml.urdf_format import numbers_in
 if TYPE_CHECKING:
     from grader.lab.submission.submission import Submission
     from grader.ros.launch.launch_model import Launch, StartedNode
-    from grader.ros.workspace.workspace import Workspace
+    from grader.ros.workspace.model.workspace import Workspace
 
 _VERBS: Mapping[str, str] = {
     "publisher": "publishes",
@@ -72,7 +72,7 @@ def find_faults(
     """
     workspace = submission.workspace
     started = [node for node in launch.nodes if node.when is not False]
-    named = [node._replace(node_name=workspace.name_of(node)) for node in started]
+    named = [node._replace(node_name=workspace.code.name_of(node)) for node in started]
     launch = launch._replace(nodes=tuple(named))
     faults: list[Fault | None] = [*_started_although(launch, wanted.absent or ())]
     if wanted.remap or wanted.arguments:
@@ -208,7 +208,7 @@ class _NodeTopics:
     """The topics, services and actions of the nodes of a workspace that a launch file starts."""
 
     def __init__(self, launch: "Launch", workspace: "Workspace") -> None:
-        from grader.ros.workspace.endpoints import opened_by  # late: few rubrics ask for it
+        from grader.ros.workspace.graph.endpoints import opened_by  # late: few rubrics ask for it
         from grader.ros.workspace.reading import read_agreement
 
         self._topics: list[_NodeTopic] = []
@@ -222,10 +222,10 @@ class _NodeTopics:
             and it.rule.name not in _HARMLESS
         }
         for node in launch.nodes:
-            package, own_node = workspace.package_of(node), workspace.own_node(node)
+            package, own_node = workspace.package_of(node), workspace.code.own_node(node)
             if package is None:
                 continue
-            own = workspace.nodes_by_package.get(package.name)
+            own = workspace.code.by_package.get(package.name)
             programs = own.programs if own is not None else ()
             started = [it.syntax for it in programs if it.name == node.executable]
             syntax = next(filter(None, started), None)

@@ -44,7 +44,9 @@ def name_proposals(
     if as many do, both ways are proposed. A name that a file puts together from pieces has none.
     """
     workspace = submission.workspace
-    sources = [it for package in workspace.packages for it in workspace.sources_of(package, _TEXTS)]
+    sources = [
+        it for package in workspace.packages for it in workspace.texts.sources_of(package, _TEXTS)
+    ]
     spelling = _spelling(submission, sources, family, reference)
     wrong = wrong_names(workspace, family, submission.lab_packages.values())
     proposals = [[*_ways(submission, each.corrections, spelling)] for each in wrong]
@@ -65,12 +67,14 @@ def _spelling(
     """Return where the names of a family are counted."""
     workspace = submission.workspace
     texts = [source.text for source in sources]
-    for found in workspace.robots:
+    for found in workspace.robots.known:
         texts += [link.name for link in found.robot.links]
         texts += [joint.name for joint in found.robot.joints]
     texts_of_reference: list[str] = []
     for package in reference.packages.values() if reference is not None else ():
-        texts_of_reference += [source.text for source in workspace.sources_of(package, _TEXTS)]
+        texts_of_reference += [
+            source.text for source in workspace.texts.sources_of(package, _TEXTS)
+        ]
     # A part of a path is a name of its own, a part of a topic is none.
     if family in ("files", "programs"):
         pattern = r"(?<![\w-]){}(?![\w-])"

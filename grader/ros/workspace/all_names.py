@@ -10,11 +10,11 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
 from grader.ros.known.shared_names import shared_names
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Definition, Fact, Use
 from grader.ros.workspace.names_in_files import names_in_launch_files, names_in_yaml
 from grader.ros.workspace.names_in_robots import names_in_robots
 from grader.ros.workspace.names_in_xacro import names_in_xacro
-from grader.ros.workspace.workspace import Workspace
 from grader.ros.workspace.written_names import (
     Role,
     WrittenName,
@@ -72,7 +72,7 @@ def read_names(workspace: Workspace, facts: Iterable[Fact]) -> WorkspaceNames:
         facts: What `read_facts` yields of the workspace, as far as it is known.
     """
     names = [*names_in_robots(workspace.urdfs)]
-    names += names_in_xacro(workspace.urdfs, workspace.xacro_sources)
+    names += names_in_xacro(workspace.urdfs, workspace.robots.xacro_sources)
     names += names_in_launch_files(workspace)
     names += names_in_yaml(workspace)
     written = {(_key(it), it.role, it.location) for it in names}

@@ -21,8 +21,8 @@ from grader.ros.package.robot_file import Absent, Read, Surroundings, Unreadable
 from grader.ros.package.robots import RobotFile, find_robots, parts_of
 from grader.ros.python.budget import READING, Budget
 from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME
+from grader.ros.workspace.model.known_robots import INCLUDED
 from grader.ros.workspace.opened import OpenedWorkspace
-from grader.ros.workspace.workspace import INCLUDED
 
 _MAX_PACKAGES, _MAX_ROBOTS = 1000, 200
 

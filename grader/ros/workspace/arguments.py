@@ -7,8 +7,8 @@ from grader.base.source import Location
 from grader.ros.build.places import PREFIX
 from grader.ros.known.package_rows import launch_arguments
 from grader.ros.launch.launch_model import Launch
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Definition, Fact, Open, Use
-from grader.ros.workspace.workspace import Workspace
 
 _CONFIGURATION = re.compile(r"LaunchConfiguration\(\s*[\"'](\w+)[\"']|\$\(var (\w+)")
 _MAX_LAUNCH = 128 * 1024  # bytes, as launch files are read
@@ -26,9 +26,9 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the arguments that launch files and xacro declare, and those that includes and Command
     pass.
     """
-    for package, path, launch in workspace.launches:
+    for package, path, launch in workspace.launches.files:
         start = Location(package.path(path), 1, 1)
-        for owner in workspace.targets_of(package, path):
+        for owner in workspace.launches.targets_of(package, path):
             for name in launch.declared:
                 yield Definition("launch argument", name, start, owner)
             text = (package.tree.read(path, _MAX_LAUNCH) or b"").decode("utf-8", "replace")
@@ -54,16 +54,16 @@ def _included_arguments(workspace: Workspace, launch: Launch, owner: str) -> Ite
         if names is not None:
             for name in names:
                 yield Definition("launch argument", name, passed.location, owner)
-        elif not workspace.has_file(passed.path):
+        elif not workspace.installed.has_file(passed.path):
             yield Open("launch argument", owner)
 
 
 def _passed_arguments(workspace: Workspace) -> Iterator[Use]:
     """Yield the arguments that launch files pass to those that they include."""
-    for _, _, launch in workspace.launches:
+    for _, _, launch in workspace.launches.files:
         for passed in launch.passed:
             path = passed.path
-            if workspace.has_file(path) or path in launch_arguments():
+            if workspace.installed.has_file(path) or path in launch_arguments():
                 said = f"the include of {path.rpartition('/')[2]}"
                 for name, _ in passed.values:
                     yield Use("launch argument", name, passed.location, said, path, optional=True)
@@ -71,7 +71,7 @@ def _passed_arguments(workspace: Workspace) -> Iterator[Use]:
 
 def _xacro_arguments(workspace: Workspace) -> Iterator[Fact]:
     """Yield the arguments that xacro files declare, and those that launch files pass to xacro."""
-    for source in workspace.xacro_sources:
+    for source in workspace.robots.xacro_sources:
         for match in _XACRO_ARGUMENT.finditer(source.text):
             number = match.lastindex or 0
             yield Definition("xacro argument", match[number], source.at(match.start(number)))
@@ -81,12 +81,14 @@ def _xacro_arguments(workspace: Workspace) -> Iterator[Fact]:
             yield Open("xacro argument")  # of files that are included from other packages
         elif _OTHER_INCLUDE.search(source.text):
             yield Open("xacro argument")  # of files that are not read here
-    for _, _, launch in workspace.launches:
+    for _, _, launch in workspace.launches.files:
         for file in launch.named("urdf", "read"):
             path = (file.path or "").removeprefix(f"{PREFIX}/")
-            if file.by == "xacro" and workspace.has_file(path):
+            if file.by == "xacro" and workspace.installed.has_file(path):
                 said = "Command of xacro"
                 # What includes the file declare is known where all of it was expanded.
-                is_expanded = workspace.source_of(file.path or "") in workspace.robot_files
+                is_expanded = (
+                    workspace.installed.source_of(file.path or "") in workspace.robots.files
+                )
                 for name, _ in file.arguments:
                     yield Use("xacro argument", name, file.location, said, optional=not is_expanded)

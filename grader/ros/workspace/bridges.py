@@ -13,14 +13,14 @@ from grader.base.text import enumerated, quoted
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode
 from grader.ros.known.gazebo_rows import NO_SENSOR, gazebo
 from grader.ros.known.package_tables import bridge_table
-from grader.ros.launch.launch_model import StartedNode
-from grader.ros.workspace.gazebo import (
-    BRIDGE,
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, TO_GAZEBO, TO_ROS, BridgeRow, bridge_rows
+from grader.ros.workspace.graph.gazebo_topics import (
     GazeboTopic,
     gazebo_topics,
     roots,
     sensor_topics,
 )
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections, cost_of_guess
 from grader.ros.workspace.rule_table import (
     BRIDGE_ARGUMENT,
@@ -32,13 +32,8 @@ from grader.ros.workspace.rule_table import (
     BRIDGE_TYPE,
     SENSOR_TOPIC,
 )
-from grader.ros.workspace.workspace import Workspace
 
-_TO_ROS, _TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
 _TOPIC_KEYS = ("topic_name", "ros_topic_name", "gz_topic_name", "ign_topic_name")
-_DIRECTIONS = {"[": _TO_ROS, "]": _TO_GAZEBO, "@": _BOTH}
-_ARGUMENT = re.compile(r"(?P<topic>[^@\s]+)@(?P<ros>[\w/]+)(?P<direction>[@\[\]])(?P<gz>[\w.]+)")
-_OLDER_FORM = re.compile("^ignition[.]msgs(?=[.])")
 _COMPUTED = re.compile("^(world|model)/|[${<%]")  # names that Gazebo or a program makes
 _EXPANDED = "expand_gz_topic_names"  # the parameter that puts the namespace before the names
 # Below the topic, or beside it: also of cameras that segment (gz-sensors).
@@ -47,119 +42,12 @@ _DERIVED = ("points", "image", "depth_image", "camera_info", "labels_map", "colo
 _WITHOUT_SENSORS = ("sun", "ground_plane", "ground plane")
 
 
-class _BridgeRow(NamedTuple):
-    """What a bridge takes from a topic on one side to one on the other, without the first slash of
-    the names.
-    """
-
-    ros: str
-    gz: str
-    ros_type: str  # in the form of Python: sensor_msgs.msg.Image
-    gz_type: str  # in its newer form: gz.msgs.Image
-    direction: str
-    location: Location
-    ros_type_location: Location
-    gz_type_location: Location
-    direction_location: Location
-    is_used: bool  # whether a launch file names the file of the row
-
-    @property
-    def is_published(self) -> bool:
-        """Return whether the bridge publishes in ROS."""
-        return self.direction != _TO_GAZEBO
-
-    @property
-    def is_read(self) -> bool:
-        """Return whether the bridge subscribes in ROS."""
-        return self.direction != _TO_ROS
-
-
-def bridge_rows(workspace: Workspace) -> Iterator[_BridgeRow]:
-    """Yield the rows of bridges in YAML files, and those in the arguments of bridges."""
-    for path, tree in workspace.trees:
-        is_used = any(
-            posixpath.basename(path) in text for text in workspace.searched_launch_texts()
-        )
-        for item in tree.items:
-            row = _row_in_yaml(item, is_used=is_used)
-            if row is not None:
-                yield row
-    for _, node in workspace.nodes:
-        if node.package == BRIDGE:
-            yield from _rows_in_arguments(node)
-
-
-def rows_of_bridge(workspace: Workspace, node: StartedNode) -> Iterator[_BridgeRow]:
-    """Yield the rows that a bridge is given."""
-    yield from _rows_in_arguments(node)
-    for given in node.parameters or ():
-        file = given.values.get("config_file")
-        path = workspace.source_of(file.value) if file and isinstance(file.value, str) else None
-        tree = workspace.yaml_files.get(path or "")
-        items = tree.items if isinstance(tree, YamlNode) else ()
-        workspace.charge(1 + len(items))
-        for item in items:
-            row = _row_in_yaml(item, is_used=True)
-            if row is not None:
-                yield row
-
-
-def _rows_in_arguments(node: StartedNode) -> Iterator[_BridgeRow]:
-    for word in node.arguments or ():
-        match = _ARGUMENT.fullmatch(word or "")
-        if match is not None:
-            topic, at = match["topic"].strip("/"), node.location
-            yield _BridgeRow(
-                ros=topic,
-                gz=topic,
-                ros_type=_newer_ros_type(match["ros"]),
-                gz_type=_newer_gz_type(match["gz"]),
-                direction=_DIRECTIONS[match["direction"]],
-                location=at,
-                ros_type_location=at,
-                gz_type_location=at,
-                direction_location=at,
-                is_used=True,
-            )
-
-
-def _newer_ros_type(written: str) -> str:
-    return written.replace("/", ".")
-
-
-def _newer_gz_type(written: str) -> str:
-    return _OLDER_FORM.sub("gz.msgs", written)
-
-
-def _row_in_yaml(row: YamlNode, *, is_used: bool) -> _BridgeRow | None:
-    both = row.get("topic_name")
-    ros, gz = row.get("ros_topic_name") or both, row.get("gz_topic_name") or both
-    ros_type, gz_type = row.get("ros_type_name"), row.get("gz_type_name")
-    if ros is None or gz is None or not ros.text or not gz.text:
-        return None
-    if ros_type is None or gz_type is None:
-        return None
-    direction = row.get("direction")
-    return _BridgeRow(
-        ros=ros.text.strip("/"),
-        gz=gz.text.strip("/"),
-        ros_type=_newer_ros_type(ros_type.text or ""),
-        gz_type=_newer_gz_type(gz_type.text or ""),
-        direction=(direction.text if direction is not None else None) or _BOTH,
-        location=gz.location,
-        ros_type_location=ros_type.location,
-        gz_type_location=gz_type.location,
-        direction_location=(direction or gz).location,
-        is_used=is_used,
-    )
-
-
 def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield rows with types or directions that no bridge has, those of topics that Gazebo does not
     have, and clocks.
     """
     for path in bridge_files(workspace):
-        fault = workspace.yaml_files.get(path)
+        fault = workspace.installed.yaml.get(path)
         if isinstance(fault, YamlFault):
             yield Mismatch(BRIDGE_FILE, f"this is not YAML: {fault}", fault.location)
     yield from _unread_rows(workspace)
@@ -170,11 +58,11 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _clocks(workspace, rows)
 
 
-def _compared_rows(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Fact]:
+def _compared_rows(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Fact]:
     """Yield what is wrong with rows, by the topics that Gazebo has."""
     topics = list(gazebo_topics(workspace))
     named, bridged = _named_topics(workspace), {row.gz for row in rows}
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if node.package == "ros_gz_image":
             bridged |= {(word or "").strip("/") for word in node.arguments or ()}
     unused = [topic for topic in topics if topic.name not in bridged]
@@ -183,7 +71,7 @@ def _compared_rows(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Fac
         by_name.setdefault(topic.name, []).append(topic)
     is_known = not _is_open(workspace)
     nameless = _nameless_sensors(workspace, topics) if is_known else {}
-    are_expanded = any(_EXPANDED in text for text in workspace.searched_launch_texts())
+    are_expanded = any(_EXPANDED in text for text in workspace.texts.searched_launch_texts())
     for row in rows:
         yield Compared("topics")
         same = by_name.get(row.gz, [])
@@ -224,7 +112,7 @@ def _nameless_sensors(
     return nameless
 
 
-def _without_topic(row: _BridgeRow, nameless: dict[str, _NamelessSensor]) -> Iterator[Mismatch]:
+def _without_topic(row: BridgeRow, nameless: dict[str, _NamelessSensor]) -> Iterator[Mismatch]:
     """Yield that the only sensor with the messages of a row has no <topic>."""
     sensor = nameless.get(row.gz_type)
     if sensor is None or not row.is_published:
@@ -241,14 +129,14 @@ def _without_topic(row: _BridgeRow, nameless: dict[str, _NamelessSensor]) -> Ite
 def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the rows that a bridge leaves out, and the arguments with which it ends."""
     for path in sorted(bridge_files(workspace)):
-        tree = workspace.yaml_files.get(path)
+        tree = workspace.installed.yaml.get(path)
         for row in tree.items if isinstance(tree, YamlNode) else ():
             names_topic = [key for key in _TOPIC_KEYS if row.get(key) is not None]
             for key in bridge_table().keys if names_topic else ():
                 if row.get(key) is None and row.get(key.replace("gz", "ign")) is None:
                     message = f"the bridge leaves out the row: it has no {key}"
                     yield Mismatch(BRIDGE_ROW, message, row.location)
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"
         for word in node.arguments or () if is_bridge else ():
             if word is None or word == "--ros-args":
@@ -264,7 +152,7 @@ def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:
                 break
 
 
-def _no_direction(row: _BridgeRow) -> Mismatch:
+def _no_direction(row: BridgeRow) -> Mismatch:
     """Return that a row has a direction that no bridge has."""
     meant = closest(row.direction, bridge_table().directions)
     guess = f"; did you mean {meant}?" if meant is not None else ""
@@ -274,7 +162,7 @@ def _no_direction(row: _BridgeRow) -> Mismatch:
     return Mismatch(BRIDGE_DIRECTION, message, at, None, row.is_used, either)
 
 
-def _no_type(workspace: Workspace, row: _BridgeRow) -> Iterator[Mismatch]:
+def _no_type(workspace: Workspace, row: BridgeRow) -> Iterator[Mismatch]:
     """Yield that no bridge has a type like the one of a row in ROS, and which one it may mean."""
     types = [kind.replace(".", "/") for kind in bridge_table().types]
     written = row.ros_type.replace(".", "/")
@@ -298,20 +186,20 @@ def bridge_files(workspace: Workspace) -> set[str]:
     workspace.
     """
     paths: list[Any] = []
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         for given in node.parameters or () if node.package == BRIDGE else ():
             value = given.values.get("config_file")
             if value is not None:
                 paths.append(value.value)
-    for _, launch in workspace.roots:
+    for _, launch in workspace.launches.roots:
         for passed in launch.passed:
             if f"/{BRIDGE}/" in passed.path:
                 paths += [value for name, value in passed.values if name == "config_file"]
-    files = {workspace.source_of(path) for path in paths if isinstance(path, str)}
+    files = {workspace.installed.source_of(path) for path in paths if isinstance(path, str)}
     return {file for file in files if file is not None}
 
 
-def _conversions(row: _BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
+def _conversions(row: BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
     """Yield that no bridge converts a type into the other one, and that the time of ROS is sent to
     Gazebo.
 
@@ -336,20 +224,20 @@ def _conversions(row: _BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
             f"write {enumerated(meant, word='or')}"
         )
         yield Mismatch(BRIDGE_TYPE, message, at, None, row.is_used, either)
-    if row.gz_type == "gz.msgs.Clock" and row.direction == _TO_GAZEBO:
+    if row.gz_type == "gz.msgs.Clock" and row.direction == TO_GAZEBO:
         message = (
-            f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {_TO_ROS}"
+            f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {TO_ROS}"
         )
-        yield _wrong_direction(row, message, _TO_ROS)
+        yield _wrong_direction(row, message, TO_ROS)
 
 
-def _fitting_types(row: _BridgeRow) -> list[str]:
+def _fitting_types(row: BridgeRow) -> list[str]:
     """Return the types of Gazebo that a bridge converts into the type of a row in ROS."""
     return [f"gz.msgs.{kind}" for kind in bridge_table().types.get(row.ros_type, ())]
 
 
 def _wrong_direction(
-    row: _BridgeRow, message: str, right: str, related: Location | None = None
+    row: BridgeRow, message: str, right: str, related: Location | None = None
 ) -> Mismatch:
     """Return that a row has the wrong direction, with the right one; in an argument it is a
     character.
@@ -359,16 +247,16 @@ def _wrong_direction(
     return Mismatch(BRIDGE_DIRECTION, message, at, related, row.is_used, either)
 
 
-def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
+def _contradictions(row: BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
     """Yield that a topic of Gazebo is bridged in the other direction, or has messages of another
     type.
     """
     if not topics:
         return
     at = topics[0].location
-    wrong, right, done = _TO_GAZEBO, _TO_ROS, "publishes it"
+    wrong, right, done = TO_GAZEBO, TO_ROS, "publishes it"
     if topics[0].is_input:
-        wrong, right, done = _TO_ROS, _TO_GAZEBO, "reads it"
+        wrong, right, done = TO_ROS, TO_GAZEBO, "reads it"
     are_alike = len({topic.is_input for topic in topics}) == 1
     if are_alike and row.direction == wrong:
         message = (
@@ -385,7 +273,7 @@ def _contradictions(row: _BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mism
         yield Mismatch(BRIDGE_TYPE, message, row.gz_type_location, at, row.is_used)
 
 
-def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) -> Iterator[Mismatch]:
+def _not_there(row: BridgeRow, unused: list[GazeboTopic], *, is_known: bool) -> Iterator[Mismatch]:
     """Yield that Gazebo does not have the topic of a row, while no row has one of the same type
     that it has.
     """
@@ -408,19 +296,19 @@ def _not_there(row: _BridgeRow, unused: list[GazeboTopic], *, is_known: bool) ->
         yield Mismatch(BRIDGE_TOPIC, message, row.location, at, is_certain, either)
 
 
-def _clocks(workspace: Workspace, rows: list[_BridgeRow]) -> Iterator[Mismatch]:
+def _clocks(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]:
     """Yield that nodes wait for the time of the simulation, and no bridge takes it from Gazebo."""
     used = [row for row in rows if row.is_used]
-    has_bridge = any(node.package == BRIDGE for _, node in workspace.nodes)
+    has_bridge = any(node.package == BRIDGE for _, node in workspace.launches.nodes)
     has_clock = any(row.ros == "clock" for row in rows)
     if not has_bridge or not used or has_clock or _is_open(workspace):
         return
-    for _, launch in workspace.roots:
+    for _, launch in workspace.launches.roots:
         for passed in launch.passed:
-            if not workspace.source_of(passed.path) and "/ros_gz_sim/" not in passed.path:
+            if not workspace.installed.source_of(passed.path) and "/ros_gz_sim/" not in passed.path:
                 return  # what it includes may have a bridge
-    for package, node in workspace.nodes:
-        given = workspace.parameters_given(package, node)
+    for package, node in workspace.launches.nodes:
+        given = workspace.parameters.given_to(package, node)
         sim_time = given.values.get("use_sim_time")
         if sim_time is not None and str(sim_time.value).lower() == "true" and node.when:
             message = (
@@ -457,15 +345,17 @@ def _named_topics(workspace: Workspace) -> set[str]:
 
 def _is_open(workspace: Workspace) -> bool:
     """Return whether there may be other sensors and bridges than those that were read."""
-    if not workspace.robots or workspace.has_other_robots:
+    if (
+        not workspace.robots.known
+        or workspace.robots.may_be_others
+        or workspace.launches.has_more_nodes
+    ):
         return True
-    if any(launch.more for _, _, launch in workspace.launches):
-        return True
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         is_known = node.arguments is not None and None not in node.arguments
         if node.package in (BRIDGE, "ros_gz_image") and not is_known:
             return True
-    for file in workspace.sdf_files:
+    for file in workspace.texts.sdf_files:
         for include in file.root.iter("include"):
             model = (include.findtext("uri") or "").strip().rpartition("/")[2]
             if model.lower() not in _WITHOUT_SENSORS:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from grader.ros.package.node_facts import CodeRule
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, Undecided
 from grader.ros.workspace.rule_table import (
     BUFFER_LISTENER,
@@ -19,7 +20,6 @@ from grader.ros.workspace.rule_table import (
     UNDEFINED_NAME,
     Rule,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _RULES: Mapping[CodeRule, Rule] = {
     "undefined name": UNDEFINED_NAME,
@@ -38,7 +38,7 @@ _RULES: Mapping[CodeRule, Rule] = {
 
 def code_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what is wrong in the code of nodes."""
-    for package, nodes in workspace.nodes_by_package.items():
+    for package, nodes in workspace.code.by_package.items():
         if nodes.has_more_faults:
             yield Undecided("code", f"the code of {package!r} is too long to search")
         if nodes.nodes or nodes.programs:  # a script may use rclpy without a node of its own

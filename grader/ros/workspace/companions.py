@@ -17,9 +17,10 @@ from grader.ros.known.package_rows import (
 from grader.ros.known.ros_machine import ros_machine
 from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.workspace.bridges import bridge_rows
-from grader.ros.workspace.controllers import defined_controllers, spawned_controllers
-from grader.ros.workspace.gazebo import BRIDGE
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
+from grader.ros.workspace.graph.started_controllers import defined_controllers, spawned_controllers
+from grader.ros.workspace.model.launches import MANAGER
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rule_table import (
     CLOCK_PUBLISHED,
@@ -29,7 +30,6 @@ from grader.ros.workspace.rule_table import (
     ROBOT_PUBLISHED,
     SIMULATION_TIME,
 )
-from grader.ros.workspace.workspace import MANAGER, Workspace
 
 _ROBOT_PUBLISHER, _CONTROL_NODE = "robot_state_publisher", "ros2_control_node"
 _JOINT_STATE, _CLOCK = "sensor_msgs.msg.JointState", "rosgraph_msgs.msg.Clock"
@@ -46,12 +46,12 @@ def companion_facts(workspace: Workspace) -> Iterator[Fact]:
     A launch file may be one of several that a person starts: what is missing is missing in all of
     them. Where a launch file may start more than is known, nothing is.
     """
-    if not workspace.nodes:
+    if not workspace.launches.nodes:
         return
     yield Compared("wiring")
     yield from _same_names(workspace)
     yield from _two_joint_state_publishers(workspace)
-    if not workspace.unknown_nodes:
+    if not workspace.launches.unknown_nodes:
         yield from _no_joint_states(workspace)
         yield from _no_robot(workspace)
         yield from _no_clock(workspace)
@@ -61,7 +61,7 @@ def companion_facts(workspace: Workspace) -> Iterator[Fact]:
 def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the nodes that a launch file gives a name which it gives another one."""
     first: dict[tuple[int, str], StartedNode] = {}
-    for launch, node in workspace.launched:
+    for launch, node in workspace.launches.launched:
         if node.when is not True or not node.node_name or node.namespace is None:
             continue
         name = node.full_name(node.node_name)
@@ -86,7 +86,7 @@ def _broadcasters(workspace: Workspace) -> set[str]:
 def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the programs that publish joint states beside a controller that does."""
     broadcasters = _broadcasters(workspace)
-    for launch, node in workspace.launched:
+    for launch, node in workspace.launches.launched:
         is_source = program_row(node.package, node.executable).publishes_joint_states
         if not is_source or node.when is not True or node.remaps or node.parameters:
             continue
@@ -102,13 +102,15 @@ def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
 
 def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield a robot with moving joints whose positions nothing publishes."""
-    publishers = [it for _, it in workspace.nodes if it.executable == _ROBOT_PUBLISHER and it.when]
+    publishers = [
+        it for _, it in workspace.launches.nodes if it.executable == _ROBOT_PUBLISHER and it.when
+    ]
     moving = []
-    for robot in workspace.robots:
+    for robot in workspace.robots.known:
         moving += [it for it in robot.robot.joints if it.has_position and it.mimic is None]
-    if not publishers or not moving or workspace.has_other_robots:
+    if not publishers or not moving or workspace.robots.may_be_others:
         return
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if program_row(node.package, node.executable).publishes_joint_states:
             return
         if not _is_understood(workspace, node, _JOINT_STATE):
@@ -117,7 +119,9 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
         return
     if _broadcasters(workspace) or _is_mentioned(workspace, _JOINT_STATE_WORDS):
         return
-    if any(word in robot.source.text for robot in workspace.robots for word in _JOINT_STATE_WORDS):
+    if any(
+        word in robot.source.text for robot in workspace.robots.known for word in _JOINT_STATE_WORDS
+    ):
         return  # a plugin of Gazebo may publish them
     joint = moving[0]
     message = (
@@ -131,7 +135,7 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
 
 def _is_understood(workspace: Workspace, node: StartedNode, kind: str) -> bool:
     """Return whether it is known that a node publishes no messages of a type."""
-    own = workspace.own_node(node)
+    own = workspace.code.own_node(node)
     if own is not None:
         types = [each.type for each in own.endpoints if each.kind == "publisher"]
         return not own.doubts and kind not in types and None not in types
@@ -140,16 +144,16 @@ def _is_understood(workspace: Workspace, node: StartedNode, kind: str) -> bool:
 
 def _is_mentioned(workspace: Workspace, words: Sequence[str]) -> bool:
     """Return whether a launch file, a program or a page of the workspace has one of some words."""
-    texts = [*workspace.searched_launch_texts()]
+    texts = [*workspace.texts.searched_launch_texts()]
     for package in workspace.packages:
-        texts += [source.text for source in workspace.sources_of(package, _SOURCES)]
+        texts += [source.text for source in workspace.texts.sources_of(package, _SOURCES)]
     return any(word in text for text in texts for word in words)
 
 
 def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield a controller manager that waits for a robot which nothing publishes."""
     managers = []
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if node.executable == _ROBOT_PUBLISHER:
             return
         if node.package == MANAGER and node.executable == _CONTROL_NODE:
@@ -168,9 +172,9 @@ def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
 
 def _sim_time(workspace: Workspace) -> Iterator[Location]:
     """Yield where nodes that are started are told to use the time of a simulation."""
-    for package, node in workspace.nodes:
+    for package, node in workspace.launches.nodes:
         if node.when is True:
-            value = workspace.parameters_given(package, node).values.get(_TIME)
+            value = workspace.parameters.given_to(package, node).values.get(_TIME)
             if value is not None and value.value is True:
                 yield value.location
 
@@ -190,16 +194,16 @@ def _may_have_clock(workspace: Workspace) -> bool:
     """
     if any(row.is_published and row.ros_type == _CLOCK for row in bridge_rows(workspace)):
         return True
-    for _, launch in workspace.roots:
+    for _, launch in workspace.launches.roots:
         ending = (*ros_machine().ending_commands, *commands_that_end())
         if not all(command.startswith(ending) for command in launch.commands):
             return True
         for passed in launch.passed:
             package = share_parts(f"{PREFIX}/{passed.path}")[0]
-            is_own = workspace.source_of(passed.path) is not None
+            is_own = workspace.installed.source_of(passed.path) is not None
             if not is_own and not package_row(package).launches_no_clock:
                 return True
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if workspace.package_of(node) is None:
             is_open = _says_clock(f"{node.package} {node.executable}")
             is_open = is_open and "frames" not in package_row(node.package).without
@@ -220,10 +224,10 @@ def _is_told(workspace: Workspace) -> bool:
     program that is not started uses the type of the time.
     """
     for package in workspace.packages:
-        for source in workspace.sources_of(package, _PAGES):
+        for source in workspace.texts.sources_of(package, _PAGES):
             if _says_clock(source.text):
                 return True
-        for source in workspace.sources_of(package, _CODE):
+        for source in workspace.texts.sources_of(package, _CODE):
             if _CLOCK.partition(".")[0] in source.text:
                 return True
     return False
@@ -234,7 +238,7 @@ def _wall_time(workspace: Workspace) -> Iterator[Mismatch]:
     rows = [row for row in bridge_rows(workspace) if row.is_published and row.ros_type == _CLOCK]
     if not rows or _is_mentioned(workspace, (_TIME,)):
         return
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if package_row(node.package).compares_time and node.when is True:
             message = (
                 f"{node.executable} uses the time of the machine, but the simulation has its own "

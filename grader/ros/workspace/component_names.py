@@ -10,6 +10,7 @@ from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.launch.launch_model import Launch, LoadedComponent
 from grader.ros.package.package import Package
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Compared,
     Fact,
@@ -22,7 +23,6 @@ from grader.ros.workspace.rule_table import (
     COMPONENT_REGISTERED,
     CONTAINER_STARTED,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _CONTAINERS = "rclcpp_components"
 _CMAKE = ("CMakeLists.txt", ".cmake")
@@ -33,7 +33,7 @@ _OTHER_WAY = "ament_index_register_resource"
 
 def component_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield components that nothing registers, and containers that nothing starts."""
-    for package, launch in workspace.roots:
+    for package, launch in workspace.launches.roots:
         workspace.charge(1 + len(launch.components))
         for component in launch.components:
             yield from _unregistered(workspace, package, component)
@@ -49,14 +49,18 @@ def _unregistered(
     if owner is None or plugin is None:
         return
     setup = owner.installation
-    if setup is None or setup.fault is not None or not workspace.means_one(package, owner.name):
+    if (
+        setup is None
+        or setup.fault is not None
+        or not workspace.folder.means_one(package, owner.name)
+    ):
         return
     yield Compared("programs")
     registered: dict[str, Location] = {}
     for target in setup.targets:
         for own in target.components:
             registered[own.plugin] = setup.location(own.at)
-    texts = [source.text for source in workspace.sources_of(owner, _CMAKE)]
+    texts = [source.text for source in workspace.texts.sources_of(owner, _CMAKE)]
     if plugin in registered or any(plugin in text for text in texts):
         return
     workspace.charge(cost_of_guess(len(registered)))
@@ -104,7 +108,7 @@ def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | N
     places |= {it.loaded_at for it in launch.components}
     if any(unknown.location not in places for unknown in launch.unknown):
         return None
-    if not all(workspace.has_file(passed.path) for passed in launch.passed):
+    if not all(workspace.installed.has_file(passed.path) for passed in launch.passed):
         return None
     found: dict[str, Location] = {}
     for container in launch.containers:

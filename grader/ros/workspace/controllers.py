@@ -3,13 +3,11 @@ joints.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import lru_cache
-from typing import NamedTuple
 
 from grader.base.names import closest, near
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlNode
-from grader.ros.config.yaml_values import PARAMETERS, is_misspelt_key, sections_in
+from grader.ros.config.yaml_values import PARAMETERS, is_misspelt_key
 from grader.ros.known.package_rows import (
     controller_actions,
     controller_row,
@@ -17,9 +15,14 @@ from grader.ros.known.package_rows import (
     is_known_controller,
 )
 from grader.ros.known.releases import releases_with
-from grader.ros.launch.launch_model import StartedNode
-from grader.ros.launch.node_parameters import controllers_of
-from grader.ros.package.node_facts import Endpoint
+from grader.ros.workspace.graph.started_controllers import (
+    Controller,
+    defined_controllers,
+    named_sections,
+    parameters_of_controllers,
+)
+from grader.ros.workspace.model.launches import MANAGER
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Correction,
     Definition,
@@ -37,24 +40,9 @@ from grader.ros.workspace.rule_table import (
     CONTROLLER_TYPE,
 )
 from grader.ros.workspace.under_arguments import may_be_offered
-from grader.ros.workspace.workspace import MANAGER, SPAWNERS, Workspace
 
 _LIKENESS_IN_PACKAGE, _LIKENESS = 0.7, 0.85  # of a type to one of its package, and of another one
 _MAX_KEYS = 2  # of joints; steering controllers have those of an older release as well
-
-
-class Controller(NamedTuple):
-    """A controller that a parameter file defines for the controller manager."""
-
-    name: str
-    type: YamlNode
-    location: Location
-    has_file: bool  # of its own for its parameters
-
-    @property
-    def is_broadcaster(self) -> bool:
-        """Return whether it publishes, and moves nothing."""
-        return (self.type.text or "").endswith("Broadcaster")
 
 
 def controller_facts(workspace: Workspace) -> Iterator[Fact]:
@@ -67,99 +55,23 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from (Definition("controller", it.name, it.location) for it in controllers)
     # In other parameters, a section replaces the type before it: that it is there is a mistake of
     # parameters.
-    nested = ((keys[-1], node) for keys, node in _sections(workspace) if MANAGER in keys[:-1])
+    nested = ((keys[-1], node) for keys, node in named_sections(workspace) if MANAGER in keys[:-1])
     yield from (Definition("controller", name, node.location) for name, node in nested)
     sections = parameters_of_controllers(workspace)
     for controller in controllers:
         yield from _type_facts(workspace, controller)
         yield from _section_facts(workspace, controller, sections)
     yield from _action_facts(workspace)
-    managers = [node for _, node in workspace.nodes if node.executable == "ros2_control_node"]
-    if managers and workspace.command_interfaces is None and workspace.has_all_interfaces:
+    managers = [
+        node for _, node in workspace.launches.nodes if node.executable == "ros2_control_node"
+    ]
+    if (
+        managers
+        and workspace.robots.command_interfaces is None
+        and workspace.robots.has_all_interfaces
+    ):
         message = "the controller manager is started, but the robot has no <ros2_control>"
         yield Mismatch(CONTROLLER_HARDWARE, message, managers[0].location)
-
-
-@lru_cache(maxsize=2)
-def _sections(workspace: Workspace) -> tuple[tuple[tuple[str, ...], YamlNode], ...]:
-    """Return the parameters of nodes, also those that are inside of others, which is another
-    mistake.
-    """
-    found: list[tuple[tuple[str, ...], YamlNode]] = []
-    for _, tree in workspace.trees:
-        for keys, node in sections_in(tree):
-            if keys:
-                found += [(keys, node), *sections_in(node, keys)]
-    return tuple(found)
-
-
-def parameters_of_controllers(workspace: Workspace) -> Mapping[str, YamlNode]:
-    """Return the parameters in the sections of parameter files, by the last names of their nodes,
-    some of which are controllers.
-    """
-    return {keys[-1].rpartition("/")[2]: node for keys, node in _sections(workspace)}
-
-
-@lru_cache(maxsize=2)
-def defined_controllers(workspace: Workspace) -> tuple[Controller, ...]:
-    """Return the controllers that parameter files define, with their types."""
-    found: list[Controller] = []
-    for keys, section in _sections(workspace):
-        name = keys[-1].rpartition("/")[2]
-        # The type is in a section of the controller manager, or in their own, for a spawner.
-        if name == MANAGER and isinstance(section.value, dict):
-            defined = section.value
-        else:
-            defined = {name: section}
-        for controller, node in defined.items():
-            kind = node.get("type")
-            if kind is not None and kind.text is not None and "/" in kind.text:
-                has_file = node.get("params_file") is not None
-                found.append(Controller(controller, kind, kind.location, has_file))
-    return tuple(found)
-
-
-def controller_endpoints(
-    workspace: Workspace, launch: int, node: StartedNode
-) -> Iterator[tuple[str, Endpoint]]:
-    """Yield the topics of the controllers in the process of a node, those that its launch file
-    spawns.
-    """
-    if node.executable != "ros2_control_node" or node.namespace is None or node.remaps is None:
-        return
-    remaps = spawned_controllers(workspace, launch)
-    # With this parameter, the type of a topic depends on its value.
-    for keys, section in _sections(workspace):
-        if section.get("use_stamped_vel") is not None:
-            remaps.pop(keys[-1], None)
-    for controller in defined_controllers(workspace):
-        name = controller.name
-        if name not in remaps:
-            continue
-        started = node._replace(node_name=name, remaps=(*remaps[name], *node.remaps))
-        row, at = controller_row(controller.type.text), controller.location
-        for own_name, message in row.subscriptions.items():
-            topic = started.topic(f"~/{own_name}")
-            if topic is not None:
-                yield topic, Endpoint("subscription", message, topic, at)
-        for own_name, message in row.publishers.items():
-            topic = started.topic(f"~/{own_name}")
-            if topic is not None:
-                yield topic, Endpoint("publisher", message, topic, at)
-
-
-def spawned_controllers(
-    workspace: Workspace, launch: int
-) -> dict[str | None, tuple[tuple[str, ...], ...]]:
-    """Return the controllers that the spawners of a launch file start, by their names, each with
-    its remappings.
-    """
-    remaps: dict[str | None, tuple[tuple[str, ...], ...]] = {}
-    for number, spawner in workspace.launched:
-        if number == launch and spawner.executable in SPAWNERS and spawner.when:
-            for controller in controllers_of(spawner) or ():
-                remaps[controller.node_name] = controller.remaps or ()
-    return remaps
 
 
 def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
@@ -171,7 +83,7 @@ def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
     if (
         is_known_controller(written)
         or releases_with("controller", written)
-        or workspace.has_plugin(written)
+        or workspace.texts.has_plugin(written)
     ):
         return
     if any(own.name == package for own in workspace.packages):
@@ -252,7 +164,7 @@ def _section_corrections(
     meant = closest(controller.name, sections)
     if meant is not None:
         return corrections(meant, sections[meant].location, controller.name, controller.location)
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         section = tree.get(controller.name)
         if section is None or not isinstance(section.value, dict):
             continue
@@ -297,7 +209,7 @@ def _interface_facts(
     """Yield the command interfaces that a controller needs of a joint, and <ros2_control> does not
     have.
     """
-    interfaces, name = workspace.command_interfaces or {}, joint.text or ""
+    interfaces, name = workspace.robots.command_interfaces or {}, joint.text or ""
     message = f"{controller.name} needs the command interface {name}"
     if name in interfaces:
         offered, at = interfaces[name]
@@ -308,10 +220,10 @@ def _interface_facts(
                 text = f"{message}/{missing}; {there}"
                 yield Mismatch(CONTROLLER_INTERFACE, text, joint.location, at, corrections=either)
         return
-    if not interfaces or not workspace.has_all_interfaces:
+    if not interfaces or not workspace.robots.has_all_interfaces:
         return
     # Names that are no joints of a robot are mistakes of frames.
-    joints = {each.name for found in workspace.robots for each in found.robot.joints}
+    joints = {each.name for found in workspace.robots.known for each in found.robot.joints}
     if needed and joints.issuperset([name, *interfaces]):
         text = f"{message}/{needed[0]}; <ros2_control> has no joint {name!r}"
         yield Mismatch(CONTROLLER_INTERFACE, text, joint.location)
@@ -320,8 +232,8 @@ def _interface_facts(
 def _action_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers whose actions own nodes ask for."""
     namespaces = _namespaces(workspace)
-    for _, node in workspace.nodes:
-        own_node = workspace.own_node(node)
+    for _, node in workspace.launches.nodes:
+        own_node = workspace.code.own_node(node)
         for endpoint in own_node.endpoints if own_node is not None else ():
             topic = node.topic(endpoint.name or "") if endpoint.kind == "action client" else None
             controller, _, action = (topic or "").rpartition("/")
@@ -333,8 +245,10 @@ def _action_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def _namespaces(workspace: Workspace) -> set[str]:
     """Return the namespaces of controllers: those of keys, of controller managers and of Gazebo."""
-    names = {"/".join(keys).rpartition("/")[0] for keys, _ in _sections(workspace)}
-    names |= {node.namespace or "" for _, node in workspace.nodes if node.package == MANAGER}
-    for robot in workspace.robots:
+    names = {"/".join(keys).rpartition("/")[0] for keys, _ in named_sections(workspace)}
+    names |= {
+        node.namespace or "" for _, node in workspace.launches.nodes if node.package == MANAGER
+    }
+    for robot in workspace.robots.known:
         names |= {element.text or "" for element in robot.root.iter("namespace")}
     return {name.strip("/ ") for name in names}

@@ -9,10 +9,11 @@ from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.python.parse import START
 from grader.ros.python.values import SCALARS, Unknown, Value
-from grader.ros.workspace.controllers import defined_controllers
+from grader.ros.workspace.graph.started_controllers import defined_controllers
 from grader.ros.workspace.known_parameters import is_as_released
+from grader.ros.workspace.model.launches import SPAWNERS
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.parameter_rules import GivenNode, default_in
-from grader.ros.workspace.workspace import SPAWNERS, Workspace
 
 _EVERY_NODE = "rclcpp/node"
 _NOT_KNOWN = Unknown("its default is not known", START)
@@ -27,7 +28,7 @@ def default_value(workspace: Workspace, node: str, parameter: str) -> ParameterV
         node: The name of a node or controller that is started, without its namespace.
         parameter: The name of the parameter.
     """
-    owners = workspace.parameter_owners.get(node, [])
+    owners = workspace.parameters.owners.get(node, [])
     defaults: dict[str, ParameterValue | None] = {}
     for given in owners:
         for default in _defaults(workspace, node, given, parameter):
@@ -61,14 +62,14 @@ def _defaults(
 def _own_default(workspace: Workspace, node: StartedNode, parameter: str) -> ParameterValue | None:
     """Return the value with which a node of the workspace declares a parameter."""
     unknown = ParameterValue(_NOT_KNOWN, node.location)
-    own_node = workspace.own_node(node)
+    own_node = workspace.code.own_node(node)
     if own_node is None:
         return unknown
     for_all = row_for(_EVERY_NODE, parameter)
     if for_all is not None:
         return ParameterValue(_scalar_or_list(for_all.default), node.location)
     same_name = [it for it in own_node.parameters if it.name in (parameter, None)]
-    nodes = workspace.nodes_by_package[node.package]
+    nodes = workspace.code.by_package[node.package]
     if not same_name and not own_node.doubts and not nodes.has_loose_declarations:
         return None
     declarations = [it for it in same_name if it.is_declared and it.name is not None]

@@ -12,11 +12,11 @@ from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.package_rows import controller_row, is_known_controller, package_row
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections, cost_of_guess
 from grader.ros.workspace.rule_table import (
     DEPENDENCY_DECLARED,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _FIND = re.compile(r"\$\(find ([\w-]+)\)|package://([\w-]+)/")
 _OF_ROS = ("rclpy", "tf2_ros")
@@ -72,14 +72,14 @@ def _declared(package: Package) -> set[str]:
 
 def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Location]]:
     """Yield the packages that are used, and where."""
-    for owner, _, launch in workspace.launches:
+    for owner, _, launch in workspace.launches.files:
         if owner is package:
             yield from _launched(launch)
-    generated_at = workspace.interfaces[package.name].location
+    generated_at = workspace.code.interfaces[package.name].location
     if generated_at is not None:
         yield _RUNTIME, generated_at
     names = {other.name for other in workspace.packages}
-    for source in workspace.sources_of(package, (".xacro", ".urdf")):
+    for source in workspace.texts.sources_of(package, (".xacro", ".urdf")):
         for match in _FIND.finditer(source.text):
             name = match[1] or match[2]
             workspace.charge(cost_of_guess(len(names)))
@@ -87,7 +87,7 @@ def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Locatio
             if name in names or package.depends_on(name) or near(name, names) is None:
                 yield name, source.at(match.start())
     yield from _imported(workspace, package, names)
-    for path, tree in workspace.trees:
+    for path, tree in workspace.installed.trees:
         if package.holds(path):
             for _, section in sections_in(tree):
                 yield from _controller_packages(section)
@@ -112,7 +112,7 @@ def _imported(
     modules = set()  # of the package, as far as their names say
     for path in package.tree.files:
         modules |= {part.removesuffix(".py") for part in path.split("/")}
-    for source in workspace.sources_of(package, (".py",)):
+    for source in workspace.texts.sources_of(package, (".py",)):
         for match in _IMPORT.finditer(source.text):
             name = match[1]
             is_ros = name in names or name.endswith("_msgs") or name in _OF_ROS

@@ -9,7 +9,7 @@ from grader.ros.config.yaml_nodes import Visits, YamlNode
 from grader.ros.package.robot_file import Read
 
 if TYPE_CHECKING:
-    from grader.ros.workspace.workspace import Workspace
+    from grader.ros.workspace.model.workspace import Workspace
 
 _PLUGIN_TAGS = (("left_joint", "right_joint"), ("leftJoint", "rightJoint"))
 
@@ -32,7 +32,7 @@ def joints_of_controllers(workspace: "Workspace") -> list[str]:
     reading the workspace takes too much work.
     """
     with suppress(NotDecided):
-        for _, tree in workspace.trees:
+        for _, tree in workspace.installed.trees:
             for section in _tables_in(tree):
                 left, right = section.get("left_wheel_names"), section.get("right_wheel_names")
                 if left is not None and right is not None:

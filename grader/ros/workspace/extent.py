@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from grader.base.text import counted
 from grader.ros.known.releases import StatedReleases
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 
 _CPP = (".cpp", ".cc", ".cxx")
 
@@ -52,28 +52,28 @@ def _counted_ones(*counts: tuple[int, str]) -> list[str]:
 
 def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) -> Extent:
     """Return what of a workspace was read; `unread_robots` are not even opened."""
-    nodes = [node for found in workspace.nodes_by_package.values() for node in found.nodes]
+    nodes = [node for found in workspace.code.by_package.values() for node in found.nodes]
     unread = set()
-    for node in [node for _, launch in workspace.roots for node in launch.nodes]:
+    for node in [node for _, launch in workspace.launches.roots for node in launch.nodes]:
         owner = workspace.package_of(node)
-        if owner is None or workspace.own_node(node) is not None:
+        if owner is None or workspace.code.own_node(node) is not None:
             continue
         if owner.has_program(node.package, node.executable) is not False:
             unread.add((node.package, node.executable))
     cpp_files = expressions = 0
     for package in workspace.packages:
         names = [path for path in package.tree.files if not path.startswith("test/")]
-        read = workspace.nodes_by_package[package.name].cpp_files
+        read = workspace.code.by_package[package.name].cpp_files
         cpp_files += sum(name.endswith(_CPP) and name not in read for name in names)
         if package.installation is not None:
             expressions += len(package.installation.unknown)
-    for _, _, launch in workspace.launches:
+    for _, _, launch in workspace.launches.files:
         expressions += len(launch.unknown)
     endpoints = [endpoint for node in nodes for endpoint in node.endpoints]
     return Extent(
         packages=len(workspace.packages),
         robots=len(workspace.urdfs),
-        launch_files=len(workspace.launches),
+        launch_files=len(workspace.launches.files),
         nodes=len(nodes),
         all_nodes=len(nodes) + len(unread),
         unread_robots=unread_robots,

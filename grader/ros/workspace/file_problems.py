@@ -14,8 +14,8 @@ from grader.ros.launch.launch_model import Launch
 from grader.ros.package.found_problems import build_problems, launch_problems, sorted_problems
 from grader.ros.package.installed_files import are_installs_known
 from grader.ros.package.package import MANIFEST, Package
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.reading import read_agreement
-from grader.ros.workspace.workspace import Workspace
 
 _OF_MISSING_FILES = (kinds.SETUP_STOPS, kinds.EMPTY_GLOB)
 _LAUNCH_FOLDER = "launch/"
@@ -25,10 +25,10 @@ _COUNTED = (kinds.SETUP_UNKNOWN, kinds.LAUNCH_UNKNOWN)  # and not listed
 def _file_problems(workspace: Workspace) -> Iterator[Problem]:
     """Yield what is wrong in package.xml, setup.py, CMakeLists.txt, launch and RViz files."""
     yield from _build_problems(workspace)
-    roots = {id(launch) for _, launch in workspace.roots}
+    roots = {id(launch) for _, launch in workspace.launches.roots}
     mismatches = read_agreement(workspace).mismatches
     wrong_programs = {it.location for it in mismatches if it.family == "programs"}
-    for _, path, launch in workspace.launches:
+    for _, path, launch in workspace.launches.files:
         if launch.syntax is not None:
             yield Problem(kinds.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
         found = launch_problems(_started(workspace, path, launch)) if id(launch) in roots else []
@@ -36,7 +36,7 @@ def _file_problems(workspace: Workspace) -> Iterator[Problem]:
             if problem.location not in wrong_programs:  # which is also a name that does not agree
                 yield problem
     yield from _uninstalled_launch_files(workspace)
-    for package, paths in workspace.ros1_launches:
+    for package, paths in workspace.launches.of_ros1:
         files = counted(len(paths), "launch file")
         message = f"the package has {files} of ROS 1, which ros2 launch does not read"
         yield Problem(kinds.OF_ROS1, message, Location(package.path(paths[0]), 1, 1))
@@ -70,7 +70,7 @@ def _uninstalled_launch_files(workspace: Workspace) -> Iterator[Problem]:
 def _build_problems(workspace: Workspace) -> Iterator[Problem]:
     """Yield what stops a build, unless it needs what git has not fetched."""
     for package in workspace.packages:
-        lacks_submodule = any(map(package.holds, workspace.absent_submodules))
+        lacks_submodule = any(map(package.holds, workspace.folder.absent_submodules))
         for problem in build_problems(package):
             if not (lacks_submodule and problem.kind in _OF_MISSING_FILES):
                 yield problem
@@ -96,11 +96,11 @@ def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
     """
     name = path.rpartition("/")[2]
     try:
-        count = sum(name in text for text in workspace.searched_launch_texts())
+        count = sum(name in text for text in workspace.texts.searched_launch_texts())
         is_named = count > (name in launch.source.text)
     except NotDecided:
         is_named = True
-    is_closed = not is_named and not any(it.unknown for _, _, it in workspace.launches)
+    is_closed = not is_named and not any(it.unknown for _, _, it in workspace.launches.files)
     faults = []
     for fault in launch.faults:
         having = releases_with("argument", fault.argument) if fault.argument else ()

@@ -20,6 +20,7 @@ from grader.ros.package.installed_files import (
     similar_file,
 )
 from grader.ros.package.package import Package
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Compared,
     Correction,
@@ -36,7 +37,6 @@ from grader.ros.workspace.rule_table import (
     MAP_IMAGE,
     WORLD_MODEL,
 )
-from grader.ros.workspace.workspace import Workspace
 
 # A path ends at a quote, a tag or a space, in YAML's flow style and in a substitution also at a
 # comma or a bracket.
@@ -95,7 +95,7 @@ class _NamedPath(NamedTuple):
 
 def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
     """Yield the paths that are named."""
-    for package, own, launch in workspace.launches:
+    for package, own, launch in workspace.launches.files:
         beside = None
         # From the folder of the sources, a launch file finds what is beside it.
         if own not in package.installed.values():
@@ -112,11 +112,11 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
                     package, path, text.location, is_read, text.is_output, text.is_needed
                 )
     for package in workspace.packages:
-        for source in workspace.sources_of(package, (".xacro", ".urdf", ".yaml")):
+        for source in workspace.texts.sources_of(package, (".xacro", ".urdf", ".yaml")):
             is_read = (
                 source.path.endswith(".yaml")
-                or not workspace.robots
-                or source.path in workspace.robot_files
+                or not workspace.robots.known
+                or source.path in workspace.robots.files
             )
             for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
                 path = f"{SHARE}/{match[1]}/{match[2]}"
@@ -125,7 +125,7 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
 
 
 def _paths_in_cpp(workspace: Workspace, package: Package) -> Iterator[_NamedPath]:
-    for text, at in workspace.nodes_by_package[package.name].texts:
+    for text, at in workspace.code.by_package[package.name].texts:
         for match in _PACKAGE.finditer(f"{text} "):
             yield _NamedPath(package, f"{SHARE}/{match[1]}/{match[2]}", at, is_read=True)
 
@@ -136,7 +136,7 @@ def _is_unused_property(workspace: Workspace, source: Source, at: int) -> bool:
     name = _PROPERTY.match(tag)
     if name is None:
         return False
-    return name[1] not in workspace.words_in_expressions
+    return name[1] not in workspace.robots.words_in_expressions
 
 
 class _Text(NamedTuple):
@@ -192,7 +192,7 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
     workspace.charge(len(owner.installed) // 8)
     if any(path.startswith(f"{target}/") for path in owner.installed):
         return
-    if not workspace.means_one(package, name):
+    if not workspace.folder.means_one(package, name):
         yield Undecided("files", f"several packages are named {name!r}")
         return
     if not are_installs_known(owner):
@@ -203,7 +203,7 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
     if inside in owner.tree.folders:
         yield from _no_folder(owner, inside, f"a build installs no {target}", at)
     else:
-        is_absent = named.is_needed and workspace.is_nowhere(owner, target)
+        is_absent = named.is_needed and workspace.texts.is_nowhere(owner, target)
         yield _not_there(owner, target, at, is_output=named.is_output, is_absent=is_absent)
 
 
@@ -294,7 +294,7 @@ def _install_corrections(setup: Installation, file: str, start: Location) -> tup
 def _map_images(workspace: Workspace) -> Iterator[Fact]:
     """Yield the images of maps that are not there."""
     files = workspace.tree.files
-    for path, tree in workspace.trees:
+    for path, tree in workspace.installed.trees:
         image = tree.get("image")
         if image is None or not image.text or tree.get("resolution") is None:
             continue
@@ -318,7 +318,7 @@ def _models(workspace: Workspace) -> Iterator[Fact]:
         for path in package.tree.files:
             if path.endswith(("/model.sdf", "/model.config")):
                 models.add(posixpath.basename(posixpath.dirname(path)))
-    for file in workspace.sdf_files:
+    for file in workspace.texts.sdf_files:
         for element in file.root.iter("uri"):
             text = (element.text or "").strip()
             name = text.removeprefix("model://").partition("/")[0]

@@ -17,12 +17,13 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Collision, Mesh, Visual
 from grader.ros.urdf.numbers import finite_number
 from grader.ros.urdf.shapes import PlacedShape
+from grader.ros.workspace.model.known_robots import KnownRobot
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, warning
 from grader.ros.workspace.rule_table import (
     FOOTPRINT,
 )
 from grader.ros.workspace.under_arguments import may_vary
-from grader.ros.workspace.workspace import KnownRobot, Workspace
 
 _DIRECTIONS = 36  # horizontal directions in which the robot is measured
 _TOLERANCE, _ROUNDING = 0.05, 0.005  # of a length; metres
@@ -57,8 +58,8 @@ class _Room(NamedTuple):
 def footprint_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the costmaps for which the robot is smaller than it is."""
     rooms = [*_rooms(workspace)]
-    robots = workspace.robots
-    if not rooms or not robots or workspace.has_other_robots or may_vary(workspace, *_PLACING):
+    robots = workspace.robots.known
+    if not rooms or not robots or workspace.robots.may_be_others or may_vary(workspace, *_PLACING):
         return
     if any(len(it.robot.links) > _MAX_LINKS for it in robots):
         return
@@ -82,7 +83,7 @@ def _rooms(workspace: Workspace) -> Iterator[_Room]:
     """Yield the radii and footprints of the costmaps in parameter files; of two in one costmap, the
     footprint counts.
     """
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         for keys, section in sections_in(tree):
             base = section.get(_BASE)
             name = keys[-1] if keys else ""

@@ -18,8 +18,10 @@ from grader.ros.package.node_facts import NodeFrame
 from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
-from grader.ros.workspace.endpoints import frames_of
-from grader.ros.workspace.gazebo import roots, system_of
+from grader.ros.workspace.graph.endpoints import frames_of
+from grader.ros.workspace.graph.gazebo_topics import roots, system_of
+from grader.ros.workspace.model.known_robots import KnownRobot
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Definition,
     Fact,
@@ -34,7 +36,6 @@ from grader.ros.workspace.rule_table import (
     FRAME_PUBLISHED,
 )
 from grader.ros.workspace.under_arguments import names_under_arguments
-from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
 
 _JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
@@ -54,7 +55,7 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the frames and joints that are defined, and those that YAML, SRDF, Gazebo and
     transforms name.
     """
-    robots = [found.robot for found in workspace.robots if found.robot.links]
+    robots = [found.robot for found in workspace.robots.known if found.robot.links]
     if not robots:
         return
     for robot in robots:
@@ -68,12 +69,12 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from openings(workspace)
     yield from _static_transforms(workspace, robots)
     yield from _frames_in_code(workspace, robots)
-    controllers = workspace.typed_sections
-    for _, tree in workspace.trees:
+    controllers = workspace.installed.typed_sections
+    for _, tree in workspace.installed.trees:
         if is_parameters(tree):
             for value in values_in(tree):
                 yield from _in_yaml(value, is_of_controller=not controllers.isdisjoint(value.keys))
-    for found in workspace.robots:
+    for found in workspace.robots.known:
         yield from _in_robot(found)
     yield from _odometry_frames(workspace, robots)
     yield from _sensor_frames(workspace, robots)
@@ -89,19 +90,19 @@ def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
     """Yield that there may be other names: of other robots, under other arguments, and of programs
     that may publish frames.
     """
-    if workspace.has_other_robots:
+    if workspace.robots.may_be_others:
         yield from (Open("frame"), Open("link"), Open("joint"), Open("group"))
     for name in names_under_arguments(workspace, "joint"):
         yield Pattern("joint", name)
     for name in names_under_arguments(workspace, "link"):
         yield from (Pattern("link", name), Pattern("frame", name))
-    for _, _, launch in workspace.launches:
+    for _, _, launch in workspace.launches.files:
         if launch.more:
             yield Open("frame", reason=launch.more)
         if any("bag" in command for command in launch.commands):
             yield Open("frame")  # a recording has frames of its own
     packages = {package.name for package in workspace.packages}
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if "frames" not in package_row(node.package).without and node.package not in packages:
             yield Open("frame")
     if _may_be_published(workspace):
@@ -112,7 +113,7 @@ def _may_be_published(workspace: Workspace) -> bool:
     """Return whether code or a system of Gazebo may publish frames that are not known."""
     if any(_may_publish(workspace, package) for package in workspace.packages):
         return True
-    if any(word in text for text in workspace.python_texts for word in _BROADCASTING):
+    if any(word in text for text in workspace.texts.python_texts for word in _BROADCASTING):
         return True
     systems = (system_of(it) for root, _ in roots(workspace) for it in root.iter("plugin"))
     return _POSES in systems
@@ -123,7 +124,7 @@ def _may_publish(workspace: Workspace, package: Package) -> bool:
     setup = package.installation
     if not package.is_cmake or setup is None or not setup.programs:
         return False
-    found = workspace.nodes_by_package[package.name]
+    found = workspace.code.by_package[package.name]
     read = {program.name for program in found.programs if program.nodes}
     programs = {path.rpartition("/")[2] for path in setup.programs}
     if found.doubts or found.loose_frames or not programs <= read:
@@ -132,7 +133,9 @@ def _may_publish(workspace: Workspace, package: Package) -> bool:
         return True
     if any(end.type == _TRANSFORMS for node in found.nodes for end in node.endpoints):
         return True
-    started = {node.executable for _, node in workspace.nodes if node.package == package.name}
+    started = {
+        node.executable for _, node in workspace.launches.nodes if node.package == package.name
+    }
     for program in found.programs:
         frames = [frame for node in program.nodes for frame in node.frames]
         if program.name not in started and any(it.use == "publishes" for it in frames):
@@ -143,7 +146,7 @@ def _may_publish(workspace: Workspace, package: Package) -> bool:
 def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
     """Yield the frames that own nodes publish, look up and name in messages."""
     named: list[_NamedFrame] = []
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         for name, frame in frames_of(workspace, node) if node.when is not False else ():
             if name is not None and name.strip("/"):
                 named.append(_NamedFrame(name.removeprefix("/"), frame, node))
@@ -152,7 +155,7 @@ def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[F
     if named:
         yield from _frames_of_others(workspace)
     # Those that static transforms have as their parent, such as the root of a map.
-    above = {frames_named(node)[0] for _, node in workspace.nodes if _is_static(node)}
+    above = {frames_named(node)[0] for _, node in workspace.launches.nodes if _is_static(node)}
     for each in named:
         at = each.frame.location
         if each.frame.use in ("publishes", "is above"):
@@ -171,16 +174,16 @@ def _frames_of_others(workspace: Workspace) -> Iterator[Definition | Open]:
     """Yield the frames that nodes of other packages publish under names from launch files, and the
     links of robots under the prefix that robot_state_publisher gives them.
     """
-    for package, node in workspace.nodes:
+    for package, node in workspace.launches.nodes:
         if node.frame_prefix is None:
             yield Open("frame")
         elif node.frame_prefix:
-            for robot in workspace.robots:
+            for robot in workspace.robots.known:
                 for link in robot.robot.links:
                     name = f"{node.frame_prefix}{link.name}".removeprefix("/")
                     yield Definition("frame", name, node.location)
         if package_row(node.package).publishes_transforms:
-            given = workspace.parameters_given(package, node)
+            given = workspace.parameters.given_to(package, node)
             if given.unknown:
                 yield Open("frame")
             for name, value in given.values.items():
@@ -190,11 +193,11 @@ def _frames_of_others(workspace: Workspace) -> Iterator[Definition | Open]:
 
 def _frames_in_fields(workspace: Workspace) -> Iterator[Use]:
     """Yield the frames that Python code of started packages writes into messages."""
-    started = {node.package for _, node in workspace.nodes if node.when is not False}
+    started = {node.package for _, node in workspace.launches.nodes if node.when is not False}
     for package in workspace.packages:
         if package.name not in started:
             continue
-        for field in workspace.nodes_by_package[package.name].field_uses:
+        for field in workspace.code.by_package[package.name].field_uses:
             if field.path[-1] not in _FRAME_FIELDS or len(field.literal) != 1:
                 continue
             text = field.literal[0]
@@ -242,7 +245,7 @@ def _is_static(node: StartedNode) -> bool:
 def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
     children = {joint.child: joint for robot in robots for joint in robot.joints}
     links = {link.name for robot in robots for link in robot.links}
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if not _is_static(node):
             continue
         parent, child = frames_named(node)
@@ -310,7 +313,7 @@ def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[
     below the model's.
     """
     created = set()  # the names of the models that launch files create
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if node.executable == "create":
             options = pairwise(node.arguments or ())
             created |= {name for option, name in options if option == "-name" and name}
@@ -335,7 +338,7 @@ def _sensor_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Us
     Their own links and frames are ignored, since Gazebo may publish them.
     """
     links = {link.name for robot in robots for link in robot.links}
-    for file in workspace.sdf_files:
+    for file in workspace.texts.sdf_files:
         for model in file.root.iter("model"):
             own = {element.get("name") for element in model.iter("link", "frame")}
             if own.isdisjoint(links):

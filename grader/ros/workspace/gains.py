@@ -8,12 +8,12 @@ from grader.base.text import quoted
 from grader.ros.known.package_rows import GainsRow, controller_row
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.python.values import Unknown
-from grader.ros.workspace.controllers import defined_controllers
+from grader.ros.workspace.graph.started_controllers import defined_controllers
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch
 from grader.ros.workspace.rule_table import (
     GAIN_SET,
 )
-from grader.ros.workspace.workspace import Workspace
 
 
 class _LackingGains(NamedTuple):
@@ -28,7 +28,7 @@ def gain_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers that are given no gains for a joint, and need them."""
     for controller in defined_controllers(workspace):
         gains = controller_row(controller.type.text).gains
-        gifts = workspace.parameter_owners.get(controller.name, [])
+        gifts = workspace.parameters.owners.get(controller.name, [])
         if gains is None or not gifts or any(given.unknown for given in gifts):
             continue
         workspace.charge(len(gifts))

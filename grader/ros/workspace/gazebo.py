@@ -3,16 +3,18 @@ ask of the simulation.
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from itertools import pairwise
-from typing import NamedTuple
 
 from grader.base.names import closest
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
-from grader.ros.known.gazebo_rows import NO_SENSOR, NO_SYSTEM, gazebo
+from grader.ros.known.gazebo_rows import NO_SENSOR, gazebo
 from grader.ros.known.package_tables import create_table
 from grader.ros.launch.launch_model import StartedNode
+from grader.ros.workspace.graph.bridge_rows import BRIDGE
+from grader.ros.workspace.graph.gazebo_topics import roots, system_of
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Fact, Mismatch, corrections
 from grader.ros.workspace.rule_table import (
     BRIDGE_EMPTY,
@@ -22,88 +24,23 @@ from grader.ros.workspace.rule_table import (
     CREATED_WORLD,
     SENSOR_SYSTEM,
 )
-from grader.ros.workspace.workspace import Workspace
 from grader.ros.xml.parsing import Element, XmlFile
 
-BRIDGE, _SIMULATION = "ros_gz_bridge", "ros_gz_sim"
+_SIMULATION = "ros_gz_sim"
 _OPTION = re.compile(r"--?[A-Za-z]")
 _WITHOUT_VALUE = "allow_renaming"  # an option of create
-
-
-class GazeboTopic(NamedTuple):
-    """A topic of a sensor or a system, without the first slash, and the last word of the type of
-    its messages.
-    """
-
-    name: str
-    type: str
-    is_input: bool  # of commands, to which Gazebo subscribes
-    location: Location
-
-
-def gazebo_topics(workspace: Workspace) -> Iterator[GazeboTopic]:
-    """Yield the topics that are named in the robot, in models and in worlds, and whose types are
-    known.
-    """
-    for root, place in roots(workspace):
-        for sensor in root.iter("sensor"):
-            for child in sensor.iterchildren("topic"):
-                for name, kind in sensor_topics(sensor, child):
-                    yield GazeboTopic(name, kind, is_input=False, location=place(child))
-        for plugin in root.iter("plugin"):
-            system = gazebo().system.get(system_of(plugin), NO_SYSTEM)
-            for is_input, topics in ((True, system.subscriptions), (False, system.publishers)):
-                for tag, kind in topics.items():
-                    for child in plugin.iterchildren(tag):
-                        name = _plain_topic(child)
-                        if name:
-                            yield GazeboTopic(name, kind, is_input, place(child))
-
-
-def _plain_topic(element: Element) -> str:
-    return (element.text or "").strip().strip("/")
-
-
-def sensor_topics(sensor: Element, element: Element) -> Iterator[tuple[str, str]]:
-    """Yield the topics that a sensor of a known type makes of the one in its <topic>, with the
-    types of their messages.
-    """
-    types, name = gazebo().sensor.get(sensor.get("type", "")), _plain_topic(element)
-    if types is None or not name:
-        return
-    if types.topic:
-        yield name, types.topic
-    for last, kind in types.below.items():
-        yield f"{name}/{last}", kind
-    if next(sensor.iter("camera_info_topic"), None) is None:
-        above = name.rpartition("/")[0]
-        for last, kind in types.beside.items():
-            yield f"{above}/{last}".removeprefix("/"), kind
-
-
-def system_of(plugin: Element) -> str:
-    """Return the name of the class of a system, such as DiffDrive."""
-    return plugin.get("name", "").rpartition("::")[2]
-
-
-def roots(workspace: Workspace) -> Iterator[tuple[Element, Callable[[Element], Location]]]:
-    """Yield the roots of the robots and of the models and worlds, each with where its elements
-    are written.
-    """
-    yield from ((robot.root, robot.place) for robot in workspace.robots)
-    yield from ((file.root, file.location) for file in workspace.sdf_files)
 
 
 def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield systems that worlds lack, and what is spawned, or bridged, from what is not there."""
     worlds: dict[str, XmlFile] = {}  # those that launch files name
-    for file in workspace.sdf_files:
+    for file in workspace.texts.sdf_files:
         name = file.source.path.rpartition("/")[2]
-        if any(name in text for text in workspace.searched_launch_texts()):
+        if any(name in text for text in workspace.texts.searched_launch_texts()):
             for world in file.root.iterchildren("world"):
                 worlds[world.get("name", "")] = file
                 yield from _missing_systems(workspace, file, world)
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if _is_creator(node):
             yield from _created(workspace, node, worlds)
             yield from _options_of_creator(node)
@@ -119,15 +56,17 @@ def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Ite
     """Yield the systems that a world of its own systems lacks for sensors in it and in the
     robot.
     """
-    if next(world.iterchildren("plugin"), None) is None or not workspace.robots:
+    if next(world.iterchildren("plugin"), None) is None or not workspace.robots.known:
         return  # Gazebo loads its default systems
     systems = set()
     for root, _ in roots(workspace):
         systems |= {system_of(plugin) for plugin in root.iter("plugin")}
     seen = [file.root]
     # Which one of several robots is created in it is not evaluated.
-    if len(workspace.robots) == 1 and any(_is_creator(node) for _, node in workspace.nodes):
-        seen.append(workspace.robots[0].root)
+    if len(workspace.robots.known) == 1 and any(
+        _is_creator(node) for _, node in workspace.launches.nodes
+    ):
+        seen.append(workspace.robots.known[0].root)
     for root, place in roots(workspace):
         if not any(root is it for it in seen):
             continue
@@ -200,10 +139,10 @@ def _options_of_creator(node: StartedNode) -> Iterator[Mismatch]:
 def _created_from(workspace: Workspace, node: StartedNode, topic: str) -> Iterator[Mismatch]:
     """Yield that no robot_state_publisher publishes the topic from which a robot is created."""
     name = node.topic(topic)
-    if name is None or workspace.unknown_nodes:
+    if name is None or workspace.launches.unknown_nodes:
         return
     published: dict[str, Location] = {}
-    for _, other in workspace.nodes:
+    for _, other in workspace.launches.nodes:
         if other.package == "robot_state_publisher":
             description = other.topic("robot_description")
             if description is None:
@@ -218,10 +157,10 @@ def _created_from(workspace: Workspace, node: StartedNode, topic: str) -> Iterat
 
 def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield bridges without any topic."""
-    for package, node in workspace.nodes:
+    for package, node in workspace.launches.nodes:
         is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"
         if is_bridge and node.arguments == ():
-            given = workspace.parameters_given(package, node)
+            given = workspace.parameters.given_to(package, node)
             if not given.unknown and "config_file" not in given.values:
                 message = (
                     "the bridge has no topics: neither arguments, nor the parameter config_file"

@@ -25,6 +25,7 @@ from grader.ros.package.node_facts import FieldUse
 from grader.ros.package.package import Package
 from grader.ros.package.package_interfaces import PackageInterfaces
 from grader.ros.python.values import Value
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, Undecided, corrections
 from grader.ros.workspace.rule_table import (
     FIELD_VALUE,
@@ -34,7 +35,6 @@ from grader.ros.workspace.rule_table import (
     INTERFACE_GROUP,
     INTERFACE_TYPE,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _GROUP = "rosidl_interface_packages"
 # What rosidl brings for services and actions without naming them.
@@ -50,11 +50,11 @@ _OF_ONE_FOLDER: frozenset[Release] = frozenset({"foxy", "galactic"})
 def interface_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what is wrong with interfaces, and types and fields that are used and do not exist."""
     for package in workspace.packages:
-        own = workspace.interfaces[package.name]
+        own = workspace.code.interfaces[package.name]
         yield from _own_faults(workspace, package, own)
     for package in workspace.packages:
         yield from _used_types(workspace, package)
-        for use in workspace.nodes_by_package[package.name].field_uses:
+        for use in workspace.code.by_package[package.name].field_uses:
             workspace.charge(1 + len(use.path))
             yield from _used_field(workspace, use)
 
@@ -119,7 +119,7 @@ def _reached(workspace: Workspace, own: PackageInterfaces) -> set[str] | None:
         if name in reached:
             continue
         reached.add(name)
-        other = workspace.interfaces.get(name)
+        other = workspace.code.interfaces.get(name)
         if other is not None:
             pending += other.dependencies
         elif known_interfaces(name) is not None:
@@ -147,7 +147,7 @@ def is_absent(workspace: Workspace, name: str) -> bool:
     package, _, own_name = name.partition(".")
     if "_" in own_name:
         return False  # of a section or an event, which rosidl generates too
-    own = workspace.interfaces.get(package)
+    own = workspace.code.interfaces.get(package)
     if own is not None:
         return own.is_complete and own_name not in own.types
     known = known_interfaces(package, workspace.releases)
@@ -162,7 +162,7 @@ def _absent(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
         return None
     package, _, own_name = name.partition(".")
     kind, _, short = own_name.partition(".")
-    own = workspace.interfaces.get(package)
+    own = workspace.code.interfaces.get(package)
     unlisted: Mapping[str, str] = {}
     names = [*(known_interfaces(package, workspace.releases) or {})]
     if own is not None:
@@ -193,14 +193,14 @@ def _used_types(workspace: Workspace, package: Package) -> Iterator[Fact]:
     """Yield the types that the code of a package imports, or opens something with, and that do not
     exist.
     """
-    nodes = workspace.nodes_by_package[package.name]
+    nodes = workspace.code.by_package[package.name]
     used = {found.name: found.location for found in reversed(nodes.imports)}
     for node in nodes.nodes:
         for endpoint in node.endpoints:
             if endpoint.type is not None and endpoint.type.count(".") == 2:
                 used.setdefault(endpoint.type, endpoint.location)
     for name, at in used.items():
-        is_own = name.partition(".")[0] in workspace.interfaces
+        is_own = name.partition(".")[0] in workspace.code.interfaces
         if is_own or known_interfaces(name.partition(".")[0]) is not None:
             yield Compared("interfaces")
         absent = _absent(workspace, name, at)
@@ -209,7 +209,7 @@ def _used_types(workspace: Workspace, package: Package) -> Iterator[Fact]:
 
 
 def _interface(workspace: Workspace, package: str, name: str) -> Interface | None:
-    own = workspace.interfaces.get(package)
+    own = workspace.code.interfaces.get(package)
     if own is not None:
         found = own.types.get(name)
         return found.interface if found is not None and not found.interface.faults else None

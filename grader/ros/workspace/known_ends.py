@@ -9,35 +9,25 @@ from typing import NamedTuple
 from grader.base.names import near
 from grader.base.source import Location
 from grader.base.text import quoted
-from grader.ros.known.package_rows import ProgramRow, program_row
+from grader.ros.known.package_rows import ProgramRow
 from grader.ros.known.package_tables import display_types
-from grader.ros.launch.launch_model import Launch, StartedNode
-from grader.ros.package.package import Package
-from grader.ros.workspace.bridges import rows_of_bridge
-from grader.ros.workspace.controllers import controller_endpoints
-from grader.ros.workspace.endpoints import ANY, opened_by
-from grader.ros.workspace.gazebo import BRIDGE
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.workspace.graph.endpoints import End
+from grader.ros.workspace.graph.ends import KnownProgram, programs_in
+from grader.ros.workspace.graph.graph import graph_of, grouped
+from grader.ros.workspace.graph.unread_ends import Sought, may_be_opened
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
-from grader.ros.workspace.publishers import may_be_published_by
 from grader.ros.workspace.rule_table import (
     DISPLAY_TYPE,
     INPUT_PUBLISHED,
     INPUT_TYPE,
     REMAPPED_TOPIC,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _INPUT = re.compile(r"([a-z]+)\d+")
 _DEFAULT_DISPLAYS = "rviz_default_plugins"
 _CLASSIC = "libgazebo_ros_"  # how the names of plugins of Gazebo Classic begin, which publish
-
-
-class _Published(NamedTuple):
-    """A topic that a launch file certainly publishes, and who does."""
-
-    topic: str
-    type: str
-    location: Location
 
 
 class _Input(NamedTuple):
@@ -49,75 +39,41 @@ class _Input(NamedTuple):
     location: Location
 
 
-_ByTopic = Mapping[str, Sequence[_Published]]
+_ByTopic = Mapping[str, Sequence[End]]  # the ends that publish a topic
 
 
 def known_end_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield topics that well-known programs and displays cannot read, and names that these do not
     have.
     """
-    everything: dict[str, list[_Published]] = {}
-    for number, (package, launch) in enumerate(workspace.roots):
-        published: dict[str, list[_Published]] = {}
-        for each in _published(workspace, number, launch):
-            published.setdefault(each.topic, []).append(each)
-            everything.setdefault(each.topic, []).append(each)
-        for node in launch.nodes:
-            if node.when is True:
-                row = program_row(node.package, node.executable)
-                yield from _other_types(node, row, published)
-                inputs = _inputs(workspace, package, node, row)
-                yield from _other_inputs(workspace, node, inputs, published)
-                yield from _remappings(node, row)
-    yield from _displays(workspace, everything)
+    graph = graph_of(workspace)
+    published = graph.certain("publisher", "code", "controller", "bridge", "program")
+    published = [end for end in published if end.type is not None]
+    by_launch = grouped(published, lambda end: end.launch)
+    for program in programs_in(workspace):
+        by_topic = grouped(by_launch.get(program.launch, ()), lambda end: end.name)
+        yield from _other_types(program, by_topic)
+        yield from _other_inputs(workspace, program, by_topic)
+        yield from _remappings(program.node, program.row)
+    yield from _displays(workspace, grouped(published, lambda end: end.name))
 
 
-def _published(workspace: Workspace, number: int, launch: Launch) -> Iterator[_Published]:
-    """Yield the topics that nodes of a launch file certainly publish, with their types."""
-    workspace.charge(1 + len(launch.nodes))
-    for node in launch.nodes:
-        if node.when is not True:
-            continue
-        yield from _published_by_code(workspace, number, node)
-        is_plain = node.package == BRIDGE and node.namespace in ("", "/")
-        for row in rows_of_bridge(workspace, node) if is_plain else ():
-            topic = node.topic(f"/{row.ros}") if row.is_published else None
-            if topic is not None:
-                yield _Published(topic, row.ros_type, row.location)
-        for name, kind in program_row(node.package, node.executable).publishers.items():
-            topic = node.topic(name)
-            if topic is not None:
-                yield _Published(topic, kind, node.location)
-
-
-def _published_by_code(
-    workspace: Workspace, number: int, node: StartedNode
-) -> Iterator[_Published]:
-    """Yield what an own node publishes, or the controllers in the process of a node."""
-    for name, endpoint in opened_by(workspace, node):
-        is_known = name is not None and ANY not in name and endpoint.type is not None
-        if endpoint.kind == "publisher" and is_known:
-            yield _Published(name or "", endpoint.type or "", endpoint.location)
-    for name, endpoint in controller_endpoints(workspace, number, node):
-        if endpoint.kind == "publisher" and endpoint.type is not None:
-            yield _Published(name, endpoint.type, endpoint.location)
-
-
-def _other_type(published: Sequence[_Published], wanted: str) -> _Published | None:
+def _other_type(published: Sequence[End], wanted: str) -> End | None:
     """Return what is published with another type, if nothing is with the one that is wanted."""
     if any(each.type == wanted for each in published):
         return None
     return next(iter(published), None)
 
 
-def _other_types(node: StartedNode, row: ProgramRow, published: _ByTopic) -> Iterator[Fact]:
+def _other_types(program: KnownProgram, published: _ByTopic) -> Iterator[Fact]:
     """Yield the topics that a program reads, and that are published with another type."""
-    for name, wanted in row.subscriptions.items():
+    node = program.node
+    for name, wanted in program.row.subscriptions.items():
         topic = node.topic(name)
-        found = published.get(topic or "", ())
-        if found:
+        publishers = published.get(topic or "", ())
+        if publishers:
             yield Compared("wiring")
-        other = _other_type(found, wanted)
+        other = _other_type(publishers, wanted)
         if other is not None:
             message = (
                 f"{node.executable} reads {topic} with {wanted}, but it is published with "
@@ -126,30 +82,31 @@ def _other_types(node: StartedNode, row: ProgramRow, published: _ByTopic) -> Ite
             yield warning(INPUT_TYPE, message, node.location, other.location)
 
 
-def _inputs(
-    workspace: Workspace, package: Package, node: StartedNode, row: ProgramRow
-) -> list[_Input]:
+def _inputs(workspace: Workspace, program: KnownProgram) -> list[_Input]:
     """Return the topics that parameters of a program name, such as `odom0` of an ekf_node."""
+    row = program.row
     if not row.inputs:
         return []
     inputs = []
-    for name, given in workspace.parameters_given(package, node).values.items():
+    parameters = workspace.parameters.given_to(program.package, program.node)
+    for name, given in parameters.values.items():
         numbered = _INPUT.fullmatch(name)
         if numbered is None or numbered[1] not in row.inputs or not isinstance(given.value, str):
             continue
-        topic = node.topic(given.value)
+        topic = program.node.topic(given.value)
         if topic is not None:
             inputs.append(_Input(name, topic, row.inputs[numbered[1]], given.location))
     return inputs
 
 
 def _other_inputs(
-    workspace: Workspace, node: StartedNode, inputs: Sequence[_Input], published: _ByTopic
-) -> Iterator[Fact]:
+    workspace: Workspace, program: KnownProgram, published: _ByTopic
+) -> Iterator[Compared | Mismatch]:
     """Yield the inputs that are published with another type, or not at all while another topic of
     their type is.
     """
-    read = {each.topic for each in inputs}
+    inputs = _inputs(workspace, program)
+    topics = {each.topic for each in inputs}
     for each in inputs:
         yield Compared("wiring")
         other = _other_type(published.get(each.topic, ()), each.type)
@@ -160,37 +117,38 @@ def _other_inputs(
             )
             yield warning(INPUT_TYPE, message, each.location, other.location)
         elif each.topic not in published and not _may_be_published(workspace, each.topic):
-            meant = _only_unread(workspace, node, each.type, published, read)
+            meant = _only_unread(workspace, program.node, each.type, published, topics)
             if meant is not None:
                 message = (
                     f"{each.parameter} reads {each.topic}, which nothing publishes; did you mean "
-                    f"{meant.topic} ({meant.location.file_and_line})?"
+                    f"{meant.name} ({meant.location.file_and_line})?"
                 )
                 yield warning(INPUT_PUBLISHED, message, each.location, meant.location)
 
 
 def _only_unread(
     workspace: Workspace, node: StartedNode, wanted: str, published: _ByTopic, read: set[str]
-) -> _Published | None:
+) -> End | None:
     """Return what others than a node publish with a type, and it does not read; None if that is
     not one topic.
     """
     workspace.charge(len(published))
-    of_type = [it for row in published.values() for it in row if it.type == wanted]
-    topics = {it.topic for it in of_type if it.location != node.location} - read
+    of_type: list[End] = []
+    for ends in published.values():
+        of_type += [end for end in ends if end.type == wanted]
+    topics = {end.name for end in of_type if end.location != node.location} - read
     if len(topics) != 1:
         return None
-    return next(it for it in of_type if it.topic in topics)
+    return next(end for end in of_type if end.name in topics)
 
 
 def _may_be_published(workspace: Workspace, topic: str) -> bool:
     """Return whether something that is not read may publish a topic."""
-    for robot in workspace.robots:
-        if any(_CLASSIC in it.get("filename", "") for it in robot.root.iter("plugin")):
+    for robot in workspace.robots.known:
+        if any(_CLASSIC in tag.get("filename", "") for tag in robot.root.iter("plugin")):
             return True
-    if any(launch.more for _, _, launch in workspace.launches):
-        return True
-    return any(may_be_published_by(workspace, node, topic) for _, node in workspace.nodes)
+    # Programs of other packages know the type, also where the workspace has its package.
+    return may_be_opened(workspace, Sought("publisher", topic, None))
 
 
 def _remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:

@@ -21,11 +21,11 @@ from grader.ros.launch.node_parameters import value_in_file
 from grader.ros.package.package import Package
 from grader.ros.python.parse import START
 from grader.ros.python.values import Unknown
-from grader.ros.workspace.controllers import defined_controllers
+from grader.ros.workspace.graph.started_controllers import defined_controllers
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact
 from grader.ros.workspace.parameter_rules import GivenNode, wrong_values
 from grader.ros.workspace.stated_releases import deciding_launch_files, releases_in_path
-from grader.ros.workspace.workspace import Workspace
 
 # The node that MoveIt's joint_limits.yaml is for, and where its table is among the parameters.
 _MOVE_GROUP = "moveit_ros_move_group/move_group"
@@ -47,7 +47,7 @@ def known_parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         workspace.charge(1 + _COST_OF_VALUE * len(given.values))
         if any(value.named_at for value in given.values.values()):
             yield Compared("parameters")
-        if workspace.robots:
+        if workspace.robots.known:
             said |= _negative_lengths(given)
         releases = _releases_of(workspace, given)
         for mismatch in wrong_values(given, releases) if releases is not None else ():
@@ -103,14 +103,14 @@ def _started(workspace: Workspace) -> Iterator[GivenNode]:
     """Yield the well-known nodes that launch files start."""
     given = []
     shared: Counter[Location] = Counter()
-    for package, node in workspace.nodes:
+    for package, node in workspace.launches.nodes:
         values = _values_of(workspace, package, node)
         if values is None:
             continue
         is_all, values_by_name = values
         at = node.location if is_all and node.when is True else None
         program = f"{node.package}/{node.executable}"
-        said = repr(workspace.name_of(node) or node.executable)
+        said = repr(workspace.code.name_of(node) or node.executable)
         given.append(GivenNode(program, said, values_by_name, at))
         shared.update({value.location for value in values_by_name.values()})
     several = frozenset(place for place, count in shared.items() if count > 1)
@@ -128,10 +128,10 @@ def _values_of(
     """
     if workspace.package_of(node) is not None:
         return None
-    has_name = workspace.name_of(node) is not None and node.namespace is not None
+    has_name = workspace.code.name_of(node) is not None and node.namespace is not None
     if not has_name and any(it.path for it in node.parameters or ()):
         return None  # any section may be its own
-    given = workspace.read_given(package, node, workspace.name_of(node) or "")
+    given = workspace.parameters.read_given(package, node, workspace.code.name_of(node) or "")
     return not given.unknown and node.arguments == (), _without_time(given.values)
 
 
@@ -143,9 +143,9 @@ def _without_time(values: Mapping[str, ParameterValue]) -> dict[str, ParameterVa
 def _places_for_every_node(workspace: Workspace) -> frozenset[Location]:
     """Return the places of parameters that a file gives to all of several nodes."""
     places: frozenset[Location] = frozenset()
-    for nodes in workspace.parameter_files.values():
+    for nodes in workspace.parameters.files.values():
         if len(nodes) > 1:
-            places |= workspace.wildcard_places(nodes[0])
+            places |= workspace.installed.wildcard_places(nodes[0])
     return places
 
 
@@ -155,7 +155,7 @@ def _controllers(workspace: Workspace) -> Iterator[GivenNode]:
         kind = controller.type.text or ""
         if not is_as_released(workspace, kind):
             continue
-        for given in workspace.parameter_owners.get(controller.name, ()):
+        for given in workspace.parameters.owners.get(controller.name, ()):
             # Another launch file may define another controller of this name.
             paths = {value.location.path for value in given.values.values()}
             if controller.location.path in paths:
@@ -169,7 +169,7 @@ def _controllers(workspace: Workspace) -> Iterator[GivenNode]:
 def _places_for_any_name(workspace: Workspace) -> frozenset[Location]:
     """Return the places of the parameters that files give to nodes of any name."""
     places: set[Location] = set()
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         for keys, section in sections_in(tree):
             if not keys or keys[-1].strip("/") in ("*", "**"):
                 places.update(value.node.location for value in values_in(section))
@@ -198,7 +198,9 @@ def is_as_released(workspace: Workspace, node: str) -> bool:
     if rows is None:
         return False
     package = node.partition("/")[0]
-    is_own = any(own.name == package for own in workspace.packages) or workspace.has_plugin(node)
+    is_own = any(own.name == package for own in workspace.packages) or workspace.texts.has_plugin(
+        node
+    )
     repository = rows.source.partition(",")[0].rpartition("/")[2]
     return not is_own and repository not in _built_repositories(workspace)
 
@@ -223,14 +225,14 @@ def _sections_by_name(workspace: Workspace) -> Iterator[GivenNode]:
     """Yield the sections of parameter files that have the name of a controller of the same file, or
     the usual one of a well-known node.
     """
-    usual = dict(usual_names()) if workspace.yaml_files else {}
-    for _, node in workspace.nodes:
+    usual = dict(usual_names()) if workspace.installed.yaml else {}
+    for _, node in workspace.launches.nodes:
         if workspace.package_of(node) is not None:
-            usual.pop(workspace.name_of(node) or "", None)
+            usual.pop(workspace.code.name_of(node) or "", None)
     types = {(it.location.path, it.name): it.type.text for it in defined_controllers(workspace)}
     for controller in defined_controllers(workspace):
         usual.pop(controller.name, None)
-    for path, tree in workspace.trees:
+    for path, tree in workspace.installed.trees:
         for keys, section in sections_in(tree):
             name = keys[-1].rpartition("/")[2] if keys else ""
             known_node = types.get((path, name)) or usual.get(name, "")
@@ -256,9 +258,9 @@ def _limits_of_moveit(workspace: Workspace) -> Iterator[GivenNode]:
     """Yield the joint_limits.yaml of MoveIt, which moveit_configs_utils gives to move_group, of a
     workspace with an SRDF.
     """
-    if not workspace.srdf_files:
+    if not workspace.texts.srdf_files:
         return
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         table = tree.get(_LIMITS[1])
         if table is None or not isinstance(table.value, dict):
             continue

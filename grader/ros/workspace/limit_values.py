@@ -11,12 +11,13 @@ from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.urdf.model import Joint, Limit
 from grader.ros.urdf.numbers import finite_number
+from grader.ros.workspace.model.known_robots import KnownRobot
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, warning
 from grader.ros.workspace.rule_table import (
     JOINT_LIMIT,
 )
 from grader.ros.workspace.under_arguments import may_vary
-from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
 
 _TOLERANCE = 1e-3  # of a limit: files round differently
@@ -50,12 +51,12 @@ def limit_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the limits of joints that are wider than those of the robot."""
     if may_vary(workspace, "limit"):
         return
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         table = tree.get(_TABLE) or tree.get("robot_description_planning", _TABLE)
         if table is not None:
             for said in _said_by_moveit(table):
-                yield from _wider(said, workspace.robots)
-    for robot in workspace.robots:
+                yield from _wider(said, workspace.robots.known)
+    for robot in workspace.robots.known:
         for system in robot.systems:
             for said in _said_by_control(robot, system):
                 yield from _wider(said, [robot])

@@ -1,24 +1,18 @@
 """Transforms that own nodes look up between frames that are there, and that nothing connects."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.known.gazebo_rows import gazebo
-from grader.ros.known.package_rows import package_row
-from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
-from grader.ros.workspace.endpoints import frames_of
 from grader.ros.workspace.frames import openings
-from grader.ros.workspace.gazebo import roots, system_of
+from grader.ros.workspace.graph.endpoints import frames_of
+from grader.ros.workspace.graph.gazebo_topics import roots, system_of
+from grader.ros.workspace.graph.graph import graph_of
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Mismatch
-from grader.ros.workspace.rule_table import (
-    TRANSFORM_CONNECTED,
-)
-from grader.ros.workspace.workspace import Workspace
-
-_ROBOT_PUBLISHER = "robot_state_publisher"
-_PUBLISHED = ("publishes", "is above")
+from grader.ros.workspace.rule_table import TRANSFORM_CONNECTED
 
 
 class _Lookup(NamedTuple):
@@ -79,7 +73,7 @@ def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
 
 def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
     """Yield what nodes that are certainly started look up, where both frames are known."""
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if node.when is not True:
             continue
         by_call: dict[Location, list[str]] = {}
@@ -97,20 +91,8 @@ def _published(workspace: Workspace) -> _Trees | None:
     if any(system_of(it) in systems for root, _ in roots(workspace) for it in root.iter("plugin")):
         return None
     trees = _Trees()
-    if any(node.executable == _ROBOT_PUBLISHER for _, node in workspace.nodes):
-        for found in workspace.robots:
-            for joint in found.robot.joints:
-                trees.connect(joint.parent, joint.child)
-    for _, node in workspace.nodes:
-        frames: Sequence[str | None] = []
-        if package_row(node.package).publishes_transforms or node.frame_prefix != "":
+    for edge in graph_of(workspace).edges:
+        if not edge.is_known:
             return None
-        if (node.package, node.executable) == STATIC_PUBLISHER:
-            frames = [name or None for name in frames_named(node)]
-        elif node.executable != _ROBOT_PUBLISHER:
-            named = frames_of(workspace, node)
-            frames = [name for name, frame in named if frame.use in _PUBLISHED]
-        if None in frames:
-            return None
-        trees.connect(*(frame.removeprefix("/") for frame in frames if frame))
+        trees.connect(edge.parent.removeprefix("/"), edge.child.removeprefix("/"))
     return trees

@@ -16,8 +16,8 @@ from grader.ros.mesh.mesh_sample import SAMPLED, sample_size
 from grader.ros.package.mesh_files import mesh_file
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.model import Box, Cylinder, Geometry, Link, Mesh, Robot, Sphere
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rule_table import MESH_UNIT
-from grader.ros.workspace.workspace import Workspace
 
 # What is about a factor of 1000, and for which ones in a sample a whole mesh is read.
 _LEAST, _MOST, _SUSPECT = 500.0, 2000.0, 100.0

@@ -8,7 +8,8 @@ from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.package_tables import moveit_actions
-from grader.ros.workspace.controllers import defined_controllers
+from grader.ros.workspace.graph.started_controllers import defined_controllers
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Fact, Mismatch, Use, corrections
 from grader.ros.workspace.rule_table import (
     MOVEIT_ACTION,
@@ -16,7 +17,6 @@ from grader.ros.workspace.rule_table import (
     MOVEIT_JOINTS,
 )
 from grader.ros.workspace.spawners import started_controllers
-from grader.ros.workspace.workspace import Workspace
 
 _MANAGER = "moveit_simple_controller_manager"
 _TABLES_OF_JOINTS = ("joint_limits", "initial_positions")
@@ -24,9 +24,9 @@ _TABLES_OF_JOINTS = ("joint_limits", "initial_positions")
 
 def moveit_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what the YAML files of a configuration for MoveIt name, if a robot is known."""
-    if not workspace.robots:
+    if not workspace.robots.known:
         return
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         for key in _TABLES_OF_JOINTS:
             table = tree.get(key)
             if table is not None and isinstance(table.value, dict):
@@ -57,7 +57,7 @@ def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
             continue  # a list of plugins without its section
         if are_defined:
             # Another robot may have a driver with its controllers.
-            is_optional = workspace.has_other_robots
+            is_optional = workspace.robots.may_be_others
             yield Use("controller", name, node.location, "controller_names", optional=is_optional)
         if name in left_out:
             message = (
@@ -97,7 +97,7 @@ def _other_joints(workspace: Workspace, name: str, joints: YamlNode | None) -> I
     robot.
     """
     sections: list[YamlNode] = []
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         sections += [section for keys, section in sections_in(tree) if keys[-1:] == (name,)]
     if joints is None or len(sections) != 1:
         return
@@ -108,7 +108,7 @@ def _other_joints(workspace: Workspace, name: str, joints: YamlNode | None) -> I
         return
     by_moveit, by_controller = _joint_names(joints), _joint_names(controlled)
     # MoveIt sends no goals for joints that follow others.
-    every = [joint for found in workspace.robots for joint in found.robot.joints]
+    every = [joint for found in workspace.robots.known for joint in found.robot.joints]
     following = {joint.name for joint in every if joint.mimic is not None}
     differing = sorted((by_moveit ^ by_controller) - following)
     if not by_moveit or not by_controller or not differing:

@@ -79,7 +79,7 @@ class NamePlaces:
         """Return the values that an argument has, as far as they are known, each once."""
         found: list[str] = []
         if name.kind == "launch argument":
-            for _, _, launch in self._opened.workspace.launches:
+            for _, _, launch in self._opened.workspace.launches.files:
                 found += (value for declared, value in launch.values if declared == name.name)
         if name.kind == "xacro argument":
             for robot in self._opened.workspace.urdfs:

@@ -6,7 +6,7 @@ from contextlib import suppress
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import PARAMETERS, values_in
 from grader.ros.launch.argument_names import argument_names
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.written_names import Role, WrittenName, written_name
 
 _FRAMES_OF_RVIZ = ("Fixed Frame", "Reference Frame", "Target Frame")
@@ -17,12 +17,12 @@ def names_in_launch_files(workspace: Workspace) -> Iterator[WrittenName]:
     """Yield the arguments in launch files, whose owner is the installed file, as it is of those
     that includes pass.
     """
-    for package, path, _ in workspace.launches:
+    for package, path, _ in workspace.launches.files:
         data = package.tree.read(path, _MAX_TEXT)
         if data is None:
             continue
         source, found = argument_names(data, package.path(path))
-        for owner in workspace.targets_of(package, path) or (source.path,):
+        for owner in workspace.launches.targets_of(package, path) or (source.path,):
             for it in found:
                 role: Role = "definition" if it.is_definition else "use"
                 span = it.start, it.end
@@ -31,9 +31,9 @@ def names_in_launch_files(workspace: Workspace) -> Iterator[WrittenName]:
 
 def names_in_yaml(workspace: Workspace) -> Iterator[WrittenName]:
     """Yield the controllers that sections of parameters are for, and the frames of RViz files."""
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         for key, mapping in _keys_with_parameters(tree):
-            if key in workspace.typed_sections:
+            if key in workspace.installed.typed_sections:
                 yield _name_of_key(mapping, key)
     for package in workspace.packages:
         for path in [it for it in package.tree.files if it.endswith(".rviz")]:

@@ -9,19 +9,19 @@ from grader.ros.config.yaml_values import keys_of_sections
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import is_key_of
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch
 from grader.ros.workspace.rule_table import (
     PARAMETER_NAMESPACE,
 )
-from grader.ros.workspace.workspace import Workspace
 
 
 def namespace_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the parameter files that have parameters of a node's name, but not in its namespace:
     rcl compares the full names, so the node gets none of them.
     """
-    for path, nodes in workspace.parameter_files.items():
-        tree = workspace.yaml_files.get(path)
+    for path, nodes in workspace.parameters.files.items():
+        tree = workspace.installed.yaml.get(path)
         if isinstance(tree, YamlNode):
             keys = keys_of_sections(tree)
             said: set[Location] = set()  # of several nodes that do not get a section, the first
@@ -37,7 +37,7 @@ def namespace_facts(workspace: Workspace) -> Iterator[Fact]:
 def _other_namespace(
     workspace: Workspace, tree: YamlNode, node: StartedNode, keys: Mapping[str, tuple[str, ...]]
 ) -> Iterator[Compared | Mismatch]:
-    name = workspace.name_of(node)
+    name = workspace.code.name_of(node)
     if not name or node.namespace is None or package_row(node.package).holds_nodes:
         return
     full = node.full_name(name)

@@ -5,9 +5,9 @@ from collections.abc import Callable, Iterable, Mapping
 from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.package_rows import known_packages, programs_of
 from grader.ros.package.package import Package
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Definition
 from grader.ros.workspace.reading import facts_once
-from grader.ros.workspace.workspace import Workspace
 
 
 def offered_names(workspace: Workspace, kind: str, owner: str = "") -> list[str]:
@@ -23,11 +23,11 @@ def offered_names(workspace: Workspace, kind: str, owner: str = "") -> list[str]
 
 
 def _links(workspace: Workspace, _: str) -> Iterable[str]:
-    return (link.name for robot in workspace.robots for link in robot.robot.links)
+    return (link.name for robot in workspace.robots.known for link in robot.robot.links)
 
 
 def _joints(workspace: Workspace, _: str) -> Iterable[str]:
-    return (joint.name for robot in workspace.robots for joint in robot.robot.joints)
+    return (joint.name for robot in workspace.robots.known for joint in robot.robot.joints)
 
 
 def _frames(workspace: Workspace, owner: str) -> Iterable[str]:
@@ -35,13 +35,13 @@ def _frames(workspace: Workspace, owner: str) -> Iterable[str]:
 
 
 def _materials(workspace: Workspace, _: str) -> Iterable[str]:
-    for robot in workspace.robots:
+    for robot in workspace.robots.known:
         for element in robot.root.iter("material"):
             yield element.get("name", "")
 
 
 def _controllers(workspace: Workspace, _: str) -> Iterable[str]:
-    return [*workspace.typed_sections, *_defined(workspace, "controller", "")]
+    return [*workspace.installed.typed_sections, *_defined(workspace, "controller", "")]
 
 
 def _packages(workspace: Workspace, _: str) -> Iterable[str]:
@@ -78,7 +78,7 @@ def _owners(workspace: Workspace, owner: str) -> Iterable[Package]:
 
 def _interfaces(part: str) -> Callable[[Workspace, str], Iterable[str]]:
     def find(workspace: Workspace, owner: str) -> Iterable[str]:
-        own = workspace.interfaces.get(owner)
+        own = workspace.code.interfaces.get(owner)
         names = [*own.types] if own is not None else []
         names += known_interfaces(owner, workspace.releases) or ()
         start = f"{part}."

@@ -10,8 +10,8 @@ from grader.ros.known.parameter_texts import row_text
 from grader.ros.known.releases import Release
 from grader.ros.package.node_facts import NodeParameter
 from grader.ros.python.values import Unknown
-from grader.ros.workspace.controllers import defined_controllers
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.graph.started_controllers import defined_controllers
+from grader.ros.workspace.model.workspace import Workspace
 
 
 def parameters_below(workspace: Workspace, section: str, prefix: str) -> list[str]:
@@ -43,7 +43,7 @@ def parameter_text(workspace: Workspace, section: str, name: str) -> str:
 
 
 def _own_parameters(workspace: Workspace, section: str) -> Iterator[NodeParameter]:
-    for package in workspace.nodes_by_package.values():
+    for package in workspace.code.by_package.values():
         for node in package.nodes:
             if node.name == section:
                 yield from (it for it in node.parameters if it.is_declared)

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from grader.base.source import Source
 from grader.base.text import cut, quoted
 from grader.ros.known.ros_machine import ros_machine
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rule_table import (
     ENVIRONMENT_VARIABLE,
     HOME_PATH,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _HOME = re.compile(r"(?<![\w$}/.:])(?:file://)?(/(?:home|Users)/[\w.-]+/[^\s\"'<>,;:)}\]]*)")
 _PLACEHOLDERS = re.compile(r"^/(?:home|Users)/(?:user|username|you|your[\w-]*|<.*)/")
@@ -30,9 +30,9 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
 
     Paths in launch files are problems of these files.
     """
-    launch_files = {package.path(path) for package, path, _ in workspace.launches}
+    launch_files = {package.path(path) for package, path, _ in workspace.launches.files}
     for package in workspace.packages:
-        for source in workspace.sources_of(package, _TEXTS):
+        for source in workspace.texts.sources_of(package, _TEXTS):
             if source.path in launch_files:
                 continue
             yield Compared("machine")
@@ -44,7 +44,7 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
                     message += f"; the file has {len(found)} such paths"
                 yield warning(HOME_PATH, message, source.at(found[0].start(1)))
     for package in workspace.packages:
-        for source in workspace.launch_sources(package):
+        for source in workspace.texts.launch_sources(package):
             yield from _variables(source)
 
 

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from grader.ros.package.mesh_loading import Around, MeshLoader
     from grader.ros.workspace.all_names import WorkspaceNames
     from grader.ros.workspace.extent import Extent
-    from grader.ros.workspace.workspace import Workspace
+    from grader.ros.workspace.model.workspace import Workspace
 
 _NO_FILES = make_tree("", (), ())
 
@@ -60,7 +60,9 @@ class OpenedWorkspace:
     @cached_property
     def workspace(self) -> "Workspace":
         """Its packages and its robots, whose names are compared."""
-        from grader.ros.workspace.workspace import Workspace  # late: few rubrics ask for names
+        from grader.ros.workspace.model.workspace import (
+            Workspace,  # late: few rubrics ask for names
+        )
 
         has_other_robots = any(
             not it.is_part for it in self.unused_candidates if not it.path.endswith(MANIFEST)

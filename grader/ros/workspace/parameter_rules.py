@@ -4,7 +4,7 @@ effect, of another type or release, missing, or not accepted.
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 from grader.base.names import MAX_GUESSES, are_of_one_side, closest, is_misspelling, near
@@ -517,6 +517,12 @@ class _Corrected(NamedTuple):
     meant: str
 
 
+@lru_cache(maxsize=4096)
+def _may_mean(part: str, own: str) -> bool:
+    """Return whether a part of a name may be a misspelt one; each release asks for the same."""
+    return near(part, [own]) is not None
+
+
 def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> _Corrected | None:
     """Return a name with the one part corrected that differs from a row's; None if not one does, or
     not surely.
@@ -535,7 +541,7 @@ def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> _Corrected | None
         if meant != part:
             changed.append((part, meant))
         corrected.append(meant)
-    if len(changed) != 1 or near(changed[0][0], [changed[0][1]]) is None:
+    if len(changed) != 1 or not _may_mean(*changed[0]):
         return None
     return _Corrected(corrected, *changed[0])
 

@@ -26,6 +26,7 @@ from grader.ros.package.mesh_content import LFS_POINTER
 from grader.ros.package.node_facts import NodeFacts
 from grader.ros.package.package import Package
 from grader.ros.workspace.bridges import bridge_files
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Compared,
     Definition,
@@ -49,7 +50,6 @@ from grader.ros.workspace.rule_table import (
     PLUGIN_NAME,
     ROBOT_TEXT,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
@@ -65,27 +65,27 @@ _NOT_LISTS = ("plugin_lib_names",)
 def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what parameter files have for nodes, what own nodes declare, and lists of plugins."""
     files_of_bridges = bridge_files(workspace)
-    for path, tree in workspace.yaml_files.items():
+    for path, tree in workspace.installed.yaml.items():
         if isinstance(tree, YamlFault) and path not in files_of_bridges:
-            is_certain = path in workspace.parameter_files
-            is_of_opencv = not is_certain and workspace.begins_with(path, _OF_OPENCV)
-            if is_of_opencv or workspace.begins_with(path, LFS_POINTER):
+            is_certain = path in workspace.parameters.files
+            is_of_opencv = not is_certain and workspace.folder.begins_with(path, _OF_OPENCV)
+            if is_of_opencv or workspace.folder.begins_with(path, LFS_POINTER):
                 continue
             yield Mismatch(
                 PARAMETER_FILE, f"this is not YAML: {tree}", tree.location, is_certain=is_certain
             )
-    for path, nodes in workspace.parameter_files.items():
+    for path, nodes in workspace.parameters.files.items():
         yield Compared("parameters")
         yield from _file_given(workspace, path, nodes)
     yield from _controllers_given(workspace)
-    for package, node in workspace.nodes:
-        own_node = workspace.own_node(node)
+    for package, node in workspace.launches.nodes:
+        own_node = workspace.code.own_node(node)
         if own_node is not None:
             yield from _declared(workspace, package, node, own_node)
     yield from _without_time(workspace)
-    for path in workspace.parameter_files:
-        yield from _filters(workspace.yaml_files.get(path))
-    for package, node in workspace.nodes:
+    for path in workspace.parameters.files:
+        yield from _filters(workspace.installed.yaml.get(path))
+    for package, node in workspace.launches.nodes:
         yield from _robot_as_text(workspace, package, node)
     yield from _plugins(workspace)
 
@@ -95,9 +95,11 @@ def _plugins(workspace: Workspace) -> Iterator[Fact]:
     written.
     """
     sections_by_file = {
-        path: frozenset(_sections(tree)) for path, tree in workspace.trees if is_parameters(tree)
+        path: frozenset(_sections(tree))
+        for path, tree in workspace.installed.trees
+        if is_parameters(tree)
     }
-    for path, tree in workspace.trees:
+    for path, tree in workspace.installed.trees:
         if path not in sections_by_file and "controller_names" not in tree.source.text:
             continue
         elsewhere: set[tuple[str, str]] = set()
@@ -125,7 +127,7 @@ def _sections(node: YamlNode) -> Iterator[tuple[str, str]]:
 
 def _is_given_alone(workspace: Workspace, path: str) -> bool:
     """Return whether a node gets no other file, and none that is not known, beside this one."""
-    for node in workspace.parameter_files.get(path, ()):
+    for node in workspace.parameters.files.get(path, ()):
         files = [given for given in node.parameters or () if given.path or given.unknown]
         if len(files) == 1:
             return True
@@ -136,7 +138,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
     """Yield that a parameter file has nothing for a node that is given it, but for a node that
     is not.
     """
-    tree = workspace.yaml_files.get(path)
+    tree = workspace.installed.yaml.get(path)
     if not isinstance(tree, YamlNode):
         return
     # A container gives the file to the components that are loaded into it.
@@ -144,7 +146,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
         return
     yield from _misplaced(tree)
     sections = {keys[-1].rpartition("/")[2]: keys for keys, _ in sections_in(tree) if keys}
-    names = [workspace.name_of(node) for node in nodes]
+    names = [workspace.code.name_of(node) for node in nodes]
     known_names = [name for name in names if name is not None]
     if len(known_names) < len(nodes):
         return  # any section may be theirs
@@ -157,7 +159,7 @@ def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -
             lacking.add(name)
     if not lacking or not unread:
         return
-    is_passed = path in workspace.passed_files
+    is_passed = path in workspace.installed.passed_files
     keys = keys_of_sections(tree)
     for node, name in zip(nodes, known_names, strict=True):
         workspace.charge(len(keys))
@@ -188,7 +190,7 @@ def _unread_sections(
     """Return the keys of sections that neither the nodes of these names nor their children read."""
     children: set[str] = set()
     for name in set(names):
-        children |= workspace.children_of(name)
+        children |= workspace.code.children_of(name)
     unread, known_names = [], set(names)
     for key in sections:
         is_read = key in children or key in known_names
@@ -202,8 +204,10 @@ def _unread_sections(
 
 def _controllers_given(workspace: Workspace) -> Iterator[Fact]:
     """Yield what is misplaced in files that only controllers are given."""
-    for path in sorted(workspace.controller_files.difference(workspace.parameter_files)):
-        tree = workspace.yaml_files.get(path)
+    for path in sorted(
+        workspace.parameters.controller_files.difference(workspace.parameters.files)
+    ):
+        tree = workspace.installed.yaml.get(path)
         if isinstance(tree, YamlNode):
             yield Compared("parameters")
             yield from _misplaced(tree)
@@ -261,7 +265,7 @@ def _declared(
         yield Definition("parameter", name, own_node.location, owner)
     package_of_node = workspace.package_of(node)
     if package_of_node is not None:
-        nodes = workspace.nodes_by_package[package_of_node.name]
+        nodes = workspace.code.by_package[package_of_node.name]
         if own_node.doubts or nodes.has_loose_declarations:
             yield Open("parameter", owner)
     for parameter in own_node.parameters:
@@ -277,20 +281,20 @@ def _given(
 ) -> Iterator[Fact]:
     """Yield the parameters that a node of the workspace is given."""
     owner = f"{node.package}/{node.executable}"
-    if workspace.name_of(node) is None and any(it.path for it in node.parameters or ()):
+    if workspace.code.name_of(node) is None and any(it.path for it in node.parameters or ()):
         yield Undecided("parameters", f"the name of {node.executable} is computed")
         return
-    given = workspace.read_given(package, node, workspace.name_of(node) or "")
+    given = workspace.parameters.read_given(package, node, workspace.code.name_of(node) or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
     # What a file gives to every node, or to another of the same name, need not be declared by this.
-    shared = {*workspace.wildcard_places(node), *_places_of_others(workspace, node)}
+    shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
     for name, value in given.values.items():
         if value.location not in shared and not name.startswith("qos_overrides."):
-            said = f"the node {workspace.name_of(node) or node.executable!r}"
+            said = f"the node {workspace.code.name_of(node) or node.executable!r}"
             yield Use("parameter", name, value.named_at or value.location, said, owner)
     yield from _types_given(own_node, given.values)
-    if not given.unknown and node.arguments == () and workspace.name_of(node) is not None:
+    if not given.unknown and node.arguments == () and workspace.code.name_of(node) is not None:
         yield from _not_given(workspace, node, own_node, given.values)
 
 
@@ -298,16 +302,16 @@ def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Locat
     """Yield the places of parameters that a node of another program, or a controller, of the same
     name gets and may declare.
     """
-    for given in workspace.parameter_owners.get(workspace.name_of(node) or "", ()):
+    for given in workspace.parameters.owners.get(workspace.code.name_of(node) or "", ()):
         if (given.node.package, given.node.executable) == (node.package, node.executable):
             continue
         workspace.charge(len(given.values))
-        other = workspace.own_node(given.node)
+        other = workspace.code.own_node(given.node)
         is_known = other is not None and not other.doubts
         declared = {it.name for it in other.parameters} if other is not None else set()
         for name, value in given.values.items():
             may_be_declared = not is_known or not declared.isdisjoint({name, None})
-            if may_be_declared and value.location.path in workspace.yaml_files:
+            if may_be_declared and value.location.path in workspace.installed.yaml:
                 yield value.location
 
 
@@ -324,10 +328,10 @@ def _not_given(
     for parameter in own_node.parameters:
         name = parameter.name
         if parameter.is_unset and name in read and name not in values:
+            named = workspace.code.name_of(node) or node.executable
             message = (
-                f"the node {workspace.name_of(node) or node.executable!r} stops without a value of "
-                f"the parameter {name!r}, which it declares without one "
-                f"({parameter.location.file_and_line})"
+                f"the node {named!r} stops without a value of the parameter {name!r}, which it "
+                f"declares without one ({parameter.location.file_and_line})"
             )
             is_certain = node.when is True and not own_node.doubts
             yield Mismatch(
@@ -351,7 +355,7 @@ def _types_given(node: NodeFacts, values: Mapping[str, ParameterValue]) -> Itera
 
 def _without_time(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield that `use_sim_time`, which every node declares, is given no boolean."""
-    for given in chain.from_iterable(workspace.parameter_owners.values()):
+    for given in chain.from_iterable(workspace.parameters.owners.values()):
         value = given.values.get("use_sim_time")
         if value is not None:
             yield from _other_type("use_sim_time", value, type_in_words(True), at=None)
@@ -397,7 +401,7 @@ def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) ->
     row = row_for(f"{node.package}/{node.executable}", _ROBOT)
     if row is None or not row.is_required or node.arguments != ():
         return
-    robot = workspace.parameters_given(package, node).values.get(_ROBOT)
+    robot = workspace.parameters.given_to(package, node).values.get(_ROBOT)
     if robot is not None and isinstance(robot.value, str):
         text = robot.value.strip()
         if text and not text.startswith("<"):

@@ -14,6 +14,7 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import parameters_of
 from grader.ros.package.entry_points import entry_fault, entry_points, module_path
 from grader.ros.package.package import CMAKE, SETUP, Package
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
     Compared,
     Definition,
@@ -29,7 +30,6 @@ from grader.ros.workspace.rule_table import (
     PROGRAM_EXISTS,
     PROGRAM_RUNS,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _MAX_FIRST_LINE = 100  # bytes
 _OF_MISSING = 5_000  # parts: similar names are searched among all programs
@@ -41,8 +41,8 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
     """
     for package in workspace.packages:
         yield from _entry_points(workspace, package)
-    for package, node in workspace.nodes:
-        if not workspace.means_one(package, node.package):
+    for package, node in workspace.launches.nodes:
+        if not workspace.folder.means_one(package, node.package):
             yield Undecided("programs", f"several packages are named {node.package!r}")
             continue
         owner = package.find(node.package)
@@ -159,7 +159,9 @@ def _missing_program(package: str, name: str, programs: Sequence[str]) -> _Missi
 
 def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
     """Yield the nodes that lifecycle managers are told of, and all that are started."""
-    managers = [pair for pair in workspace.nodes if pair[1].executable == "lifecycle_manager"]
+    managers = [
+        pair for pair in workspace.launches.nodes if pair[1].executable == "lifecycle_manager"
+    ]
     if managers:
         yield from _started(workspace)
     for package, manager in managers:
@@ -175,11 +177,11 @@ def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
 
 def _started(workspace: Workspace) -> Iterator[Fact]:
     """Yield the nodes that launch files start, and that there may be more."""
-    for _, _, launch in workspace.launches:
+    for _, _, launch in workspace.launches.files:
         if launch.more:
             yield Open("node", reason=launch.more)
-    for _, node in workspace.nodes:
-        name = workspace.name_of(node)
+    for _, node in workspace.launches.nodes:
+        name = workspace.code.name_of(node)
         if name is not None:
             yield Definition("node", name, node.location)
         elif "lifecycle" not in package_row(node.package).without:

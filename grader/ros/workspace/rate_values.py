@@ -10,15 +10,19 @@ from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.urdf.numbers import finite_number
-from grader.ros.workspace.controllers import defined_controllers, parameters_of_controllers
-from grader.ros.workspace.gazebo import roots
+from grader.ros.workspace.graph.gazebo_topics import roots
+from grader.ros.workspace.graph.started_controllers import (
+    defined_controllers,
+    parameters_of_controllers,
+)
+from grader.ros.workspace.model.launches import MANAGER
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rule_table import (
     OBSTACLE_RANGE,
     PUBLISH_RATE,
     SCAN_RATE,
 )
-from grader.ros.workspace.workspace import MANAGER, Workspace
 from grader.ros.xml.parsing import Element
 
 _LIDARS = ("lidar", "gpu_lidar", "ray", "gpu_ray")
@@ -37,7 +41,7 @@ class _StatedNumber(NamedTuple):
 def rate_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the rates and ranges that cannot be reached."""
     yield from _rates_of_controllers(workspace)
-    if workspace.has_other_robots:
+    if workspace.robots.may_be_others:
         return
     farthest = _largest(_ranges_of_lidars(workspace))
     rates = _numbers_of_lidars(workspace, "update_rate")
@@ -123,7 +127,7 @@ def _numbers_of_lidars(workspace: Workspace, tag: str) -> Iterator[tuple[_Stated
 
 def _scan_sources(workspace: Workspace) -> Iterator[tuple[str, YamlNode]]:
     """Yield the sections of costmaps' observation sources that are scans."""
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         for _, section in sections_in(tree):
             for layer in [node for _, node in section.pairs]:
                 listed = layer.get(_SOURCES)

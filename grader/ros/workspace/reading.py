@@ -25,6 +25,9 @@ from grader.ros.workspace.known_ends import known_end_facts
 from grader.ros.workspace.known_parameters import known_parameter_facts
 from grader.ros.workspace.limit_values import limit_facts
 from grader.ros.workspace.looked_up_transforms import lookup_facts
+from grader.ros.workspace.meeting_ends import meeting_facts
+from grader.ros.workspace.missing_ends import missing_end_facts
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.moveit import moveit_facts
 from grader.ros.workspace.names import (
     Agreement,
@@ -42,16 +45,14 @@ from grader.ros.workspace.programs import program_facts
 from grader.ros.workspace.published_transforms import transform_facts
 from grader.ros.workspace.rate_values import rate_facts
 from grader.ros.workspace.received_messages import received_message_facts
+from grader.ros.workspace.remapped_names import remapping_facts
 from grader.ros.workspace.renamed_nodes import renamed_node_facts
 from grader.ros.workspace.rule_table import DEFINED, AnyFamily
-from grader.ros.workspace.services import service_facts
 from grader.ros.workspace.spawners import spawner_facts
 from grader.ros.workspace.srdf import srdf_facts
 from grader.ros.workspace.topic_wiring import topic_wiring_facts
-from grader.ros.workspace.topics import topic_facts
 from grader.ros.workspace.unused import unused_files
 from grader.ros.workspace.wheel_values import wheel_value_facts
-from grader.ros.workspace.workspace import Workspace
 
 _READERS = (
     file_facts,
@@ -63,8 +64,9 @@ _READERS = (
     argument_facts,
     program_facts,
     component_facts,
-    topic_facts,
-    service_facts,
+    meeting_facts,
+    missing_end_facts,
+    remapping_facts,
     gazebo_facts,
     bridge_facts,
     srdf_facts,

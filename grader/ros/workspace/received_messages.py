@@ -8,15 +8,16 @@ from collections.abc import Iterator, Mapping, Sequence
 from grader.base.text import quoted
 from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.package_tables import colour_encodings
-from grader.ros.package.node_facts import Endpoint, ImageEncoding
-from grader.ros.workspace.endpoints import certainly_opened
+from grader.ros.package.node_facts import EndpointKind, ImageEncoding
+from grader.ros.workspace.graph.endpoints import End
+from grader.ros.workspace.graph.graph import graph_of, grouped
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rule_table import (
     IMAGE_ENCODING,
     MESSAGE_DEPTH,
     MESSAGE_HEADER,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _HEADER = "header"
 # An encoding without colours: the type of a channel, and how many there are.
@@ -40,7 +41,7 @@ def received_message_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
     """Yield the messages that a synchroniser drops, or stops at, since they have no header."""
-    for each in workspace.nodes_by_package[package].synchronised:
+    for each in workspace.code.by_package[package].synchronised:
         if _has_header(workspace, each.type) is not False:
             continue
         if each.together and not any(_has_header(workspace, it) for it in each.together):
@@ -55,7 +56,7 @@ def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
 def _has_header(workspace: Workspace, name: str) -> bool | None:
     """Return whether messages of a type have a header; None where this is not known."""
     package, _, own_name = name.partition(".")
-    own = workspace.interfaces.get(package)
+    own = workspace.code.interfaces.get(package)
     if own is not None:
         found = own.types.get(own_name)
         interface = found.interface if found is not None and own.is_complete else None
@@ -68,7 +69,7 @@ def _has_header(workspace: Workspace, name: str) -> bool | None:
 
 def _without_queue(workspace: Workspace, package: str) -> Iterator[Mismatch]:
     """Yield publishers and subscriptions whose queue has no length."""
-    for node in workspace.nodes_by_package[package].nodes:
+    for node in workspace.code.by_package[package].nodes:
         for endpoint in node.endpoints:
             if endpoint.kind in _ENDS and endpoint.qos.depth == 0:
                 message = (
@@ -80,22 +81,24 @@ def _without_queue(workspace: Workspace, package: str) -> Iterator[Mismatch]:
 
 def _other_encodings(workspace: Workspace) -> Iterator[Fact]:
     """Yield the callbacks that convert images to an encoding to which they cannot be converted."""
-    sent: dict[tuple[int, str], list[Endpoint]] = {}
-    received: dict[tuple[int, str], list[Endpoint]] = {}
-    for end in certainly_opened(workspace):
-        key = end.launch, end.name
-        if end.endpoint.kind == "publisher":
-            sent.setdefault(key, []).append(end.endpoint)
-        elif end.endpoint.kind == "subscription":
-            received.setdefault(key, []).append(end.endpoint)
-    for key, subscriptions in received.items():
-        publishers = sent.get(key, [])
-        if not publishers or not all(publisher.encodings for publisher in publishers):
+    sent = _by_launch_and_topic(workspace, "publisher")
+    for key, subscriptions in _by_launch_and_topic(workspace, "subscription").items():
+        publishers = sent.get(key, ())
+        if not publishers or not all(end.endpoint.encodings for end in publishers):
             continue
-        made = [encoding for publisher in publishers for encoding in publisher.encodings]
+        made = [encoding for end in publishers for encoding in end.endpoint.encodings]
         for subscription in subscriptions:
-            workspace.charge(len(made) * len(subscription.encodings))
-            yield from _not_converted(key[1], made, subscription.encodings)
+            asked = subscription.endpoint.encodings
+            workspace.charge(len(made) * len(asked))
+            yield from _not_converted(subscription.name, made, asked)
+
+
+def _by_launch_and_topic(
+    workspace: Workspace, kind: EndpointKind
+) -> Mapping[tuple[int, str], Sequence[End]]:
+    """Return the ends of own code that certainly are opened, by launch and topic."""
+    ends = graph_of(workspace).certain(kind, "code")
+    return grouped(ends, lambda end: (end.launch, end.name))
 
 
 def _not_converted(

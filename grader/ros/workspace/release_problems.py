@@ -8,13 +8,14 @@ from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.releases import NameKind, other_name
-from grader.ros.workspace.controllers import defined_controllers
+from grader.ros.workspace.graph.started_controllers import defined_controllers
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.model.workspace_folder import TOO_MUCH
 from grader.ros.workspace.name_problems import name_problems
 from grader.ros.workspace.names import Agreement
 from grader.ros.workspace.reading import read_agreement
 from grader.ros.workspace.rule_table import NAME_RELEASE, NAMES_COMPARED
 from grader.ros.workspace.stated_releases import deciding_launch_files, releases_in_path
-from grader.ros.workspace.workspace import TOO_MUCH, Workspace
 
 _DEPENDENCY = re.compile(r"<\w*depend>\s*([\w-]+)\s*</")
 _PLUGIN_KEYS = ("plugin", "robot_model_type")
@@ -29,8 +30,8 @@ def compared_names(workspace: Workspace) -> Iterator[Problem]:
     try:
         yield from _release_problems(workspace, agreement)
     except NotDecided:
-        assert workspace.is_spent
-    if workspace.is_spent:
+        assert workspace.folder.is_spent
+    if workspace.folder.is_spent:
         start = Location(next(iter(workspace.tree.files), ""), 1, 1)
         yield NAMES_COMPARED.problem(f"not all names are compared: {TOO_MUCH}", start)
 
@@ -64,7 +65,7 @@ _Use = tuple[NameKind, str, Location, str]  # with the start of the name that is
 def _uses_in_robots(workspace: Workspace) -> Iterator[_Use]:
     """Yield the plugins of Gazebo and of ros2_control that robots load, but for own ones."""
     own = [package.name for package in workspace.packages]
-    for robot in workspace.robots:
+    for robot in workspace.robots.known:
         for element in robot.root.iter("plugin"):
             name = element.get("filename", "") or (element.text or "").strip()
             package = name.partition("/")[0].removeprefix("lib").removesuffix(".so")
@@ -77,9 +78,9 @@ def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
     types: dict[str, str] = {}
     for controller in defined_controllers(workspace):
         types[controller.name] = controller.type.text or ""
-        if not workspace.has_plugin(types[controller.name]):
+        if not workspace.texts.has_plugin(types[controller.name]):
             yield "controller", types[controller.name], controller.location, ""
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         for value in values_in(tree):
             if value.keys[-1:] and value.keys[-1] in _PLUGIN_KEYS:
                 yield "plugin", value.node.text or "", value.node.location, ""
@@ -92,12 +93,12 @@ def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
 
 def _uses_in_launch_files(workspace: Workspace) -> Iterator[_Use]:
     """Yield the packages, programs and launch files in launch files."""
-    for package, node in workspace.nodes:
+    for package, node in workspace.launches.nodes:
         if package.find(node.package) is None:
             yield "package", node.package, node.location, ""
             owner = f"{node.package}/"
             yield "program", f"{owner}{node.executable}", node.location, owner
-    for package, _, launch in workspace.launches:
+    for package, _, launch in workspace.launches.files:
         for passed in launch.passed:
             parts = passed.path.split("/")
             if parts[0] == "share" and len(parts) > 1 and package.find(parts[1]) is None:
@@ -117,15 +118,15 @@ def _topics_of_controllers(workspace: Workspace) -> Iterator[_Use]:
 
 def _topics(workspace: Workspace) -> Iterator[tuple[str, Location]]:
     """Yield the topics that remappings and own nodes in Python name."""
-    for robot in workspace.robots:
+    for robot in workspace.robots.known:
         for element in robot.root.iter("remapping"):
             for topic in (element.text or "").split(":="):
                 yield topic, robot.place(element)
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         for names in node.remaps or ():
             for topic in names:
                 yield topic, node.location
-        own_node = workspace.own_node(node)
+        own_node = workspace.code.own_node(node)
         for endpoint in own_node.endpoints if own_node is not None else ():
             yield node.topic(endpoint.name or "") or "", endpoint.location
 

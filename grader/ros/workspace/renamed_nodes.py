@@ -10,11 +10,11 @@ from grader.ros.config.yaml_values import keys_of_sections
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import is_key_of
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, corrections
 from grader.ros.workspace.rule_table import (
     RENAMED_NODE,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _ANY_NAMES = ("*", "**")
 _Keys = Mapping[str, tuple[str, ...]]  # of the sections of a file, by the full names that they are
@@ -25,21 +25,21 @@ def renamed_node_facts(workspace: Workspace) -> Iterator[Fact]:
     the node: rcl compares the new name, so the node gets none of them.
     """
     given: dict[tuple[str, int], list[StartedNode]] = {}
-    for launch, node in workspace.launched:
-        for path in dict.fromkeys(workspace.files_given(node)):
+    for launch, node in workspace.launches.launched:
+        for path in dict.fromkeys(workspace.parameters.files_given(node)):
             given.setdefault((path, launch), []).append(node)
     # What components get is not evaluated; a container gives them the files that it gets itself.
     with_components: set[int] = set()
-    for launch, (_, root) in enumerate(workspace.roots):
+    for launch, (_, root) in enumerate(workspace.launches.roots):
         if any(component.has_parameters for component in root.components):
             with_components.add(launch)
     for (path, launch), nodes in given.items():
-        tree, others = workspace.yaml_files.get(path), workspace.parameter_files[path]
+        tree, others = workspace.installed.yaml.get(path), workspace.parameters.files[path]
         workspace.charge(len(others))
         has_container = any(package_row(node.package).holds_nodes for node in others)
         if not isinstance(tree, YamlNode) or launch in with_components or has_container:
             continue
-        if path in workspace.passed_files:
+        if path in workspace.installed.passed_files:
             continue  # whose nodes may read the section
         elsewhere = _names_read(workspace, others)
         if with_components:
@@ -86,8 +86,8 @@ def _names_read(workspace: Workspace, nodes: Sequence[StartedNode]) -> set[str |
     is not known.
     """
     names: set[str | None] = set()
-    for name in {workspace.name_of(node) for node in nodes}:
-        names |= {name, *workspace.children_of(name or "")}
+    for name in {workspace.code.name_of(node) for node in nodes}:
+        names |= {name, *workspace.code.children_of(name or "")}
     return names
 
 
@@ -95,7 +95,7 @@ def key_of_program_name(workspace: Workspace, node: StartedNode, keys: _Keys) ->
     """Return the section that a node would get if it had the name of its program; None where there
     is none, or one for the name that it has.
     """
-    name, old = node.node_name, workspace.name_in_program(node)
+    name, old = node.node_name, workspace.code.name_in_program(node)
     if not name or not old or name == old or node.namespace is None:
         return None
     full, full_name = node.full_name(name), node.full_name(old)

@@ -13,7 +13,9 @@ from grader.ros.config.yaml_values import sections_in
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.package.package import Package
-from grader.ros.workspace.controllers import Controller, defined_controllers
+from grader.ros.workspace.graph.started_controllers import Controller, defined_controllers
+from grader.ros.workspace.model.launches import MANAGER, SPAWNERS
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Fact, Mismatch, Open, Use, corrections
 from grader.ros.workspace.rule_table import (
     CONTROLLER_STARTED,
@@ -21,7 +23,6 @@ from grader.ros.workspace.rule_table import (
     MANAGER_SECTION,
     SPAWNER_MANAGER,
 )
-from grader.ros.workspace.workspace import MANAGER, SPAWNERS, Workspace
 
 _OTHER_STARTS = re.compile(r"(load|switch|set)_controller|(Load|Switch)Controller")
 _MAX_CONTROLLERS = 3  # in a message
@@ -37,19 +38,19 @@ def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
     if not controllers:
         yield from _no_controllers(workspace)
         return
-    if any(isinstance(tree, YamlFault) for tree in workspace.yaml_files.values()):
+    if any(isinstance(tree, YamlFault) for tree in workspace.installed.yaml.values()):
         yield Open("controller", reason="a parameter file cannot be read")
     # Without a controller manager, the robot's driver starts one, with controllers of its own.
-    if not workspace.has_controller_manager:
+    if not workspace.robots.has_controller_manager:
         yield Open("controller")
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if not _is_spawner(node) or node.arguments is None:
             continue
         if _is_defined_by_files(workspace, node.arguments):
             for name in _named(node.arguments):
                 yield Use("controller", name, node.location, "spawner")
             yield from _managers_named(workspace, node)
-    for package, launch in workspace.roots:
+    for package, launch in workspace.launches.roots:
         yield from _without_type(workspace, package, launch, controllers)
     yield from _not_started(workspace, controllers)
 
@@ -72,7 +73,7 @@ def _is_defined_by_files(workspace: Workspace, words: Sequence[str | None]) -> b
     """
     files = [path for option, path in pairwise(words) if option in ("-p", "--param-file")]
     return not _is_typed(words) and all(
-        path is not None and workspace.source_of(path) is not None for path in files
+        path is not None and workspace.installed.source_of(path) is not None for path in files
     )
 
 
@@ -85,7 +86,9 @@ def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact
     one.
     """
     managers = {
-        workspace.name_of(node): node.location for _, node in workspace.nodes if _is_manager(node)
+        workspace.code.name_of(node): node.location
+        for _, node in workspace.launches.nodes
+        if _is_manager(node)
     }
     for option, word in pairwise(spawner.arguments or ()):
         if option not in ("-c", "--controller-manager"):
@@ -115,7 +118,9 @@ def _without_type(
     manager, lacks_type = _controllers_without_type(workspace, package, launch)
     if manager is None:
         return
-    files = [workspace.source_of(each.path) for each in manager.parameters or () if each.path]
+    files = [
+        workspace.installed.source_of(each.path) for each in manager.parameters or () if each.path
+    ]
     lacking = [controller for controller in controllers if controller.name in lacks_type]
     lacking = [controller for controller in lacking if controller.location.path not in files]
     if lacking:
@@ -137,7 +142,7 @@ def _controllers_without_type(
     if len(managers) != 1:
         return None, set()
     [manager] = managers
-    given = workspace.parameters_given(package, manager)
+    given = workspace.parameters.given_to(package, manager)
     if given.unknown:
         return None, set()
     lacks_type: dict[str | None, bool] = {}  # by the names of the controllers that are started
@@ -147,7 +152,7 @@ def _controllers_without_type(
         if not _is_spawner(spawner) or not spawner.when or not is_plain:
             continue
         for controller in controllers_of(spawner) or ():
-            own = workspace.read_parameters(package, controller, "")
+            own = workspace.parameters.read(package, controller, "")
             has_type = "type" in own.values or f"{controller.node_name}.type" in given.values
             lacks_type[controller.node_name] = not own.unknown and not has_type
     return manager, {name for name, lacks in lacks_type.items() if lacks}
@@ -157,10 +162,10 @@ def _misspelt_managers(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the sections of types of controllers that are called nearly as the controller manager,
     where none is called so.
     """
-    if not any(_is_spawner(node) for _, node in workspace.nodes):
+    if not any(_is_spawner(node) for _, node in workspace.launches.nodes):
         return
     found = []
-    for _, tree in workspace.trees:
+    for _, tree in workspace.installed.trees:
         for keys, section in sections_in(tree):
             name = keys[-1].rpartition("/")[2] if keys else ""
             if name == MANAGER:
@@ -184,9 +189,9 @@ def _has_types(section: YamlNode) -> bool:
 
 def _no_controllers(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the controllers that spawners start while no file has any, as an empty one."""
-    if any(isinstance(tree, YamlFault) for tree in workspace.yaml_files.values()):
+    if any(isinstance(tree, YamlFault) for tree in workspace.installed.yaml.values()):
         return
-    for package, launch in workspace.roots:
+    for package, launch in workspace.launches.roots:
         manager, lacking = _controllers_without_type(workspace, package, launch)
         if manager is not None and lacking:
             quoted_names = [quoted(name) for name in sorted(filter(None, lacking))]
@@ -207,7 +212,7 @@ def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Ite
     spawned = started_controllers(workspace)
     if spawned is None:
         return
-    given_files = {*workspace.parameter_files, *workspace.controller_files}
+    given_files = {*workspace.parameters.files, *workspace.parameters.controller_files}
     publishing, moving = [], []
     for controller in controllers:
         if controller.location.path not in given_files:
@@ -227,7 +232,7 @@ def started_controllers(workspace: Workspace) -> set[str | None] | None:
     name of one may be misspelt.
     """
     spawned = _spawned(workspace)
-    if spawned is None or not workspace.has_controller_manager:
+    if spawned is None or not workspace.robots.has_controller_manager:
         return None
     if spawned - {controller.name for controller in defined_controllers(workspace)}:
         return None
@@ -238,12 +243,12 @@ def _spawned(workspace: Workspace) -> set[str | None] | None:
     """Return the controllers that spawners start; None without a spawner, or where something else
     may start some.
     """
-    texts = (*workspace.launch_texts, *workspace.python_texts)
-    if workspace.unknown_nodes or any(map(_OTHER_STARTS.search, texts)):
+    texts = (*workspace.texts.launch_texts, *workspace.texts.python_texts)
+    if workspace.launches.unknown_nodes or any(map(_OTHER_STARTS.search, texts)):
         return None
     spawned: set[str | None] = set()
     has_spawner = False
-    for _, node in workspace.nodes:
+    for _, node in workspace.launches.nodes:
         if _is_spawner(node):
             has_spawner = True
             spawned |= {controller.node_name for controller in controllers_of(node) or ()}

@@ -7,6 +7,7 @@ from contextlib import suppress
 
 from grader.base.text import quoted
 from grader.ros.urdf.model import Robot
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Definition, Fact, Mismatch, Open, Use
 from grader.ros.workspace.rule_table import (
     DISABLED_PAIRS,
@@ -14,7 +15,6 @@ from grader.ros.workspace.rule_table import (
     SRDF_ROBOT,
     STATE_LIMITS,
 )
-from grader.ros.workspace.workspace import Workspace
 from grader.ros.xml.parsing import XmlFile
 
 _LINKS = ("link1", "link2", "parent_link", "child_link", "base_link", "tip_link")
@@ -24,11 +24,13 @@ _COMPUTED = (".srdf.xacro", ".srdf.xml.xacro")
 
 def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what SRDF files define and name, if a robot is known."""
-    robots, files = [found.robot for found in workspace.robots], workspace.srdf_files
+    robots, files = [found.robot for found in workspace.robots.known], workspace.texts.srdf_files
     if not robots:
         return
     names = {file.root.get("name") for file in files}
-    is_only = len(robots) == 1 and not workspace.has_other_robots and robots[0].name not in names
+    is_only = (
+        len(robots) == 1 and not workspace.robots.may_be_others and robots[0].name not in names
+    )
     computed = [path for path in workspace.tree.files if path.endswith(_COMPUTED)]
     if computed or any("<xacro:" in file.source.text for file in files):
         yield Open("group")

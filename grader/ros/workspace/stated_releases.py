@@ -7,7 +7,7 @@ from functools import lru_cache
 from grader.base.errors import InputError
 from grader.files.tree import File, Tree
 from grader.ros.known.releases import RELEASES, Release, StatedReleases
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 
 _NAME = rf"({'|'.join(RELEASES)})(?![a-z0-9])"
 _RELEASE = re.compile(_NAME, re.IGNORECASE)
@@ -137,5 +137,5 @@ def releases_in_path(path: str) -> list[Release]:
 @lru_cache(maxsize=2)
 def deciding_launch_files(workspace: Workspace) -> frozenset[str]:
     """Return the launch files that decide by the name of the release what each release has."""
-    sources = [launch.source for _, _, launch in workspace.launches]
+    sources = [launch.source for _, _, launch in workspace.launches.files]
     return frozenset(source.path for source in sources if _VARIABLE in source.text)

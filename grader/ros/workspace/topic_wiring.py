@@ -5,14 +5,11 @@ another transport, displays of RViz that ask for more, and programs that send an
 from collections.abc import Iterator, Sequence
 
 from grader.base.text import quoted
-from grader.ros.known.package_rows import CommandRow, program_row
 from grader.ros.known.package_tables import transport_types
-from grader.ros.launch.launch_model import StartedNode
-from grader.ros.launch.node_parameters import NodeParameters
-from grader.ros.package.node_facts import Endpoint
-from grader.ros.python.values import Unknown
-from grader.ros.workspace.controllers import controller_endpoints
-from grader.ros.workspace.endpoints import CertainEnd, certainly_opened
+from grader.ros.workspace.graph.endpoints import End
+from grader.ros.workspace.graph.ends import deciding_parameter
+from grader.ros.workspace.graph.graph import Graph, graph_of
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Fact, Mismatch, warning
 from grader.ros.workspace.rule_table import (
     COMMAND_TYPE,
@@ -20,34 +17,30 @@ from grader.ros.workspace.rule_table import (
     IMAGE_TRANSPORT,
     ONE_COMMANDER,
 )
-from grader.ros.workspace.workspace import Workspace
 
 _COMMANDS = ("geometry_msgs.msg.Twist", "geometry_msgs.msg.TwistStamped")
 _IMAGE = "sensor_msgs.msg.Image"
-_PUBLISHER, _SUBSCRIPTION = "publisher", "subscription"
 
 
 def topic_wiring_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield topics on which messages do not arrive as they should."""
-    opened = [*certainly_opened(workspace)]
-    publishers = [it for it in opened if it.endpoint.kind == _PUBLISHER]
-    subscriptions = [it for it in opened if it.endpoint.kind == _SUBSCRIPTION]
+    graph = graph_of(workspace)
+    publishers = graph.certain("publisher", "code")
+    subscriptions = graph.certain("subscription", "code")
     yield from _two_commanders(publishers, subscriptions)
     yield from _other_transport(publishers, subscriptions)
     yield from _displays(workspace, publishers)
-    yield from _programs(workspace)
+    yield from _programs(graph)
 
 
-def _two_commanders(
-    publishers: Sequence[CertainEnd], subscriptions: Sequence[CertainEnd]
-) -> Iterator[Mismatch]:
+def _two_commanders(publishers: Sequence[End], subscriptions: Sequence[End]) -> Iterator[Mismatch]:
     """Yield the topics of commands that two nodes publish, and another one obeys."""
     obeyed = {(it.launch, it.name) for it in subscriptions}
-    first: dict[tuple[int, str], CertainEnd] = {}
+    first: dict[tuple[int, str], End] = {}
     said: set[tuple[int, str]] = set()
     for each in publishers:
         key = each.launch, each.name
-        if each.endpoint.type not in _COMMANDS or key not in obeyed or key in said:
+        if each.type not in _COMMANDS or key not in obeyed or key in said:
             continue
         before = first.setdefault(key, each)
         if before.node is not each.node:
@@ -56,27 +49,25 @@ def _two_commanders(
                 f"{each.node.executable} and {before.node.executable} both publish {each.name}: "
                 "the robot obeys each in turn; twist_mux chooses one"
             )
-            yield warning(ONE_COMMANDER, message, each.endpoint.location, before.endpoint.location)
+            yield warning(ONE_COMMANDER, message, each.location, before.location)
 
 
-def _other_transport(
-    publishers: Sequence[CertainEnd], subscriptions: Sequence[CertainEnd]
-) -> Iterator[Mismatch]:
+def _other_transport(publishers: Sequence[End], subscriptions: Sequence[End]) -> Iterator[Mismatch]:
     """Yield subscriptions of images on a topic that carries compressed ones."""
     published = {it.name for it in publishers}
     for each in subscriptions:
         topic, _, transport = each.name.rpartition("/")
         kind = transport_types().get(transport)
-        if kind is None or each.endpoint.type != _IMAGE or each.name in published:
+        if kind is None or each.type != _IMAGE or each.name in published:
             continue
         message = (
             f"the topic {each.name} carries {kind}, and is subscribed to with {_IMAGE}: "
             f"subscribe to {topic}, or with the other type"
         )
-        yield warning(IMAGE_TRANSPORT, message, each.endpoint.location)
+        yield warning(IMAGE_TRANSPORT, message, each.location)
 
 
-def _displays(workspace: Workspace, publishers: Sequence[CertainEnd]) -> Iterator[Mismatch]:
+def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Mismatch]:
     """Yield displays of RViz that ask for reliable messages, which every publisher sends as best
     effort.
     """
@@ -98,37 +89,18 @@ def _displays(workspace: Workspace, publishers: Sequence[CertainEnd]) -> Iterato
                     yield warning(DISPLAY_QUALITY, message, policy.location)
 
 
-def _programs(workspace: Workspace) -> Iterator[Mismatch]:
-    """Yield the well-known programs that send a controller another type than it reads."""
-    for number, (package, launch) in enumerate(workspace.roots):
-        readers: dict[str, Endpoint] = {}
-        for node in launch.nodes:
-            for full, endpoint in controller_endpoints(workspace, number, node):
-                if endpoint.kind == _SUBSCRIPTION:
-                    readers[full] = endpoint
-        for node in launch.nodes:
-            command = program_row(node.package, node.executable).command
-            topic = node.topic(command.topic) if command is not None else None
-            reader = readers.get(topic or "")
-            if command is not None and reader is not None and node.when is True:
-                given = workspace.parameters_given(package, node)
-                yield from _other_command(node, given, command, reader)
-
-
-def _other_command(
-    node: StartedNode, given: NodeParameters, row: CommandRow, reader: Endpoint
-) -> Iterator[Mismatch]:
-    """Yield that a well-known program sends a controller another type than it reads, with the
-    parameters that it is given.
+def _programs(graph: Graph) -> Iterator[Mismatch]:
+    """Yield the well-known programs that send a controller another type than it reads, where a
+    parameter decides the type.
     """
-    found = given.values.get(row.parameter)
-    if given.unknown or (found is not None and isinstance(found.value, Unknown)):
-        return
-    is_other = found is not None and found.value == row.value
-    kind = row.other_type if is_other else row.type
-    if kind != reader.type:
-        message = (
-            f"{node.executable} publishes {node.topic(row.topic)} with {kind}, but the "
-            f"controller subscribes to it with {reader.type}: set its parameter {row.parameter}"
-        )
-        yield warning(COMMAND_TYPE, message, node.location, reader.location)
+    subscriptions = graph.of_kind("subscription", sources=("controller",))
+    publishers = graph.certain("publisher", "program")
+    for reader, publisher in graph.pairs(subscriptions, publishers):
+        parameter = deciding_parameter(publisher)
+        is_same = reader.launch == publisher.launch
+        if is_same and parameter is not None and publisher.type != reader.type:
+            message = (
+                f"{publisher.owner} publishes {publisher.name} with {publisher.type}, but the "
+                f"controller subscribes to it with {reader.type}: set its parameter {parameter}"
+            )
+            yield warning(COMMAND_TYPE, message, publisher.location, reader.location)

@@ -7,7 +7,7 @@ from functools import lru_cache
 
 from grader.base.source import Source
 from grader.ros.package.made_paths import made_paths
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 
 _TAG = re.compile(
     r"<(?P<end>/?)xacro:(?:if|unless)\b|<(?P<tag>command_interface|joint|link)\b[^>]*?"
@@ -32,7 +32,7 @@ def may_vary(workspace: Workspace, *tags: str) -> bool:
     """Return whether joints, or what elements of some tags say, may be others under other
     arguments.
     """
-    sources = workspace.xacro_sources
+    sources = workspace.robots.xacro_sources
     if not any("$(arg" in source.text for source in sources):
         return False
     if names_under_arguments(workspace, "joint"):
@@ -51,11 +51,11 @@ def names_under_arguments(workspace: Workspace, tag: str) -> frozenset[str]:
     """Return the names in elements of xacro that stand under a condition or in a file that an
     argument chooses, and those that arguments are a part of; with * for what is computed.
     """
-    sources = workspace.xacro_sources
+    sources = workspace.robots.xacro_sources
     if not any("$(arg" in source.text for source in sources):
         return frozenset()
     dependent = _dependent(sources)
-    chosen = _chosen_files(sources, workspace.robot_files)
+    chosen = _chosen_files(sources, workspace.robots.files)
     names: set[str] = set()
     for source in sources:
         is_chosen = source.path in chosen

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from grader.base.source import Location, Source
 from grader.files.tree import Tree
 from grader.ros.package.made_paths import made_paths
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 
 _KINDS = (".yaml", ".yml", ".xacro", ".urdf", ".rviz", ".srdf")
 _TEXTS = (
@@ -79,8 +79,8 @@ def _unnamed(workspace: Workspace) -> Iterator[str]:
 def _made(workspace: Workspace) -> Iterator[re.Pattern[str]]:
     """Yield patterns for the paths that texts of the workspace make of variables."""
     for package in workspace.packages:
-        for source in workspace.sources_of(package, _MAKERS):
-            yield from workspace.recall(_made_in, source.path, source.text)
+        for source in workspace.texts.sources_of(package, _MAKERS):
+            yield from workspace.folder.recall(_made_in, source.path, source.text)
 
 
 def _made_in(path: str, text: str) -> list[re.Pattern[str]]:
@@ -94,11 +94,11 @@ def _words_of_files(workspace: Workspace) -> dict[str, frozenset[bytes]]:
         for path in package.tree.files:
             data = _text(package.tree, path)
             if data is not None:
-                words[package.path(path)] = workspace.recall(_words, data)
+                words[package.path(path)] = workspace.folder.recall(_words, data)
     for path in workspace.tree.files:
         data = _text(workspace.tree, path) if path not in words else None
         if data is not None:
-            words[path] = workspace.recall(_words, data)
+            words[path] = workspace.folder.recall(_words, data)
     return words
 
 

@@ -24,8 +24,13 @@ from grader.ros.urdf.model import Joint, Robot
 from grader.ros.urdf.numbers import finite_number
 from grader.ros.urdf.rolling import middle_of
 from grader.ros.urdf.wheel_sizes import WheelSize, measure_wheel
-from grader.ros.workspace.controllers import defined_controllers, parameters_of_controllers
-from grader.ros.workspace.gazebo import system_of
+from grader.ros.workspace.graph.gazebo_topics import system_of
+from grader.ros.workspace.graph.started_controllers import (
+    defined_controllers,
+    parameters_of_controllers,
+)
+from grader.ros.workspace.model.known_robots import KnownRobot
+from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rule_table import (
     WHEEL_AXIS,
@@ -35,7 +40,6 @@ from grader.ros.workspace.rule_table import (
     Rule,
 )
 from grader.ros.workspace.under_arguments import may_vary
-from grader.ros.workspace.workspace import KnownRobot, Workspace
 from grader.ros.xml.parsing import Element
 
 _ENTRY = re.compile(r"(.*)\.(\d+)$")  # a parameter with a list, and the number of an entry
@@ -118,7 +122,7 @@ def wheel_value_facts(workspace: Workspace) -> Iterator[Fact]:
         return
     for source in sources:
         yield Compared("values")
-        is_open = workspace.has_other_robots
+        is_open = workspace.robots.may_be_others
         for fault in _faults_under_all(source):
             yield fault._replace(is_certain=fault.is_certain and not is_open)
 
@@ -144,9 +148,9 @@ def _controllers(workspace: Workspace) -> Iterator[_Source]:
         source = _Source(controller.name, rows, _reader_of_yaml(section), ())
         keys = {key for row in rows.values() for key in chain(*row.of)}
         named = [joint.text for joint in source.joints(sorted(keys))]
-        robots = [it for it in workspace.robots if all(map(it.robot.has_joint, named))]
-        if not robots and len(workspace.robots) == 1:
-            [robot] = workspace.robots
+        robots = [it for it in workspace.robots.known if all(map(it.robot.has_joint, named))]
+        if not robots and len(workspace.robots.known) == 1:
+            [robot] = workspace.robots.known
             if all(robot.robot.has_joint(_meant(robot.robot, name)) for name in named):
                 robots = [robot]
         if named and robots:
@@ -171,7 +175,7 @@ def _reader_of_yaml(section: YamlNode) -> _Parameters:
 
 
 def _plugins(workspace: Workspace) -> Iterator[_Source]:
-    for robot in workspace.robots:
+    for robot in workspace.robots.known:
         for plugin in robot.root.iter("plugin"):
             name = system_of(plugin)
             rows = gazebo().system.get(name, NO_SYSTEM).wheels

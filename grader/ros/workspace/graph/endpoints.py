@@ -1,84 +1,97 @@
 """What nodes open, with the full names that it has for each node as it is started."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from typing import Literal, NamedTuple, get_args
 
+from grader.base.source import Location
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.package.node_facts import Endpoint, NamePart, NodeFacts, NodeFrame
+from grader.ros.package.node_facts import Endpoint, EndpointKind, NamePart, NodeFacts, NodeFrame
 from grader.ros.python.values import Value
-from grader.ros.workspace.workspace import Workspace
+from grader.ros.workspace.model.workspace import Workspace
 
-ANY = "*"  # in a name, in place of a part that is not known
+_ANY = "*"  # in a name, in place of a part that is not known
+EndSource = Literal["code", "controller", "bridge", "program"]
+END_SOURCES: tuple[EndSource, ...] = get_args(EndSource)
 _MAX_NAMES = 20  # of one endpoint
 
 
-class OpenedName(NamedTuple):
-    """An endpoint of a node as it is started, with its full name, in which ANY stands for what is
-    not known; None where nothing of the name is known.
+class End(NamedTuple):
+    """An end of a topic, service or action, by its full name, of a node that is or may be started.
+
+    `Graph` makes the ends of a workspace, and the rules of topics, services and messages read them.
+    An endpoint is what the code has, or what is known of another program; a node that is started
+    twice has each of its ends twice.
     """
 
-    name: str | None
+    name: str  # _ANY stands for what is not known of it
     endpoint: Endpoint
+    launch: int  # the number of the launch file that starts the node; -1 where none is asked for
+    node: StartedNode
+    source: EndSource
+    owner: str  # the program, or the controller in its process
+
+    @property
+    def kind(self) -> EndpointKind:
+        """What it is."""
+        return self.endpoint.kind
+
+    @property
+    def type(self) -> str | None:
+        """The full name of its type: std_msgs.msg.Float32; None where it is not known."""
+        return self.endpoint.type
+
+    @property
+    def location(self) -> Location:
+        """Where it is written: in code, or in the file that asks for the program."""
+        return self.endpoint.location
 
     @property
     def is_known(self) -> bool:
-        """Whether all of the name is known."""
-        return self.name is not None and ANY not in self.name
+        """Whether all of its name is known."""
+        return _ANY not in self.name
+
+    @property
+    def is_certain(self) -> bool:
+        """Whether its node is started under the default arguments."""
+        return self.node.when is True
+
+    def surely_meets(self, other: "End") -> bool:
+        """Return whether one launch file certainly starts the nodes of both ends."""
+        return self.is_certain and other.is_certain and self.launch == other.launch
 
 
-class CertainEnd(NamedTuple):
-    """An endpoint with its full name in one launch, by a node that is certainly started."""
-
-    name: str
-    endpoint: Endpoint
-    launch: int  # its number among those that are started on their own
-    node: StartedNode
-
-
-def opened_by(workspace: Workspace, node: StartedNode) -> Iterator[OpenedName]:
-    """Yield what an own node opens as it is started. Raises NotDecided."""
-    own_node = workspace.own_node(node)
+def opened_by(workspace: Workspace, node: StartedNode, launch: int = -1) -> Iterator[End]:
+    """Yield what the code of a node opens as it is started. Raises NotDecided."""
+    own_node = workspace.code.own_node(node)
     if own_node is None:
         return
     workspace.charge(len(own_node.endpoints) * (1 + len(node.remaps or ())))
     values: Mapping[str, Value] = {}
     if any(part.kind in ("parameter", "item") for it in own_node.endpoints for part in it.parts):
         values = _values_given(workspace, node, own_node)
-    named = node._replace(node_name=workspace.name_of(node))
+    named = node._replace(node_name=workspace.code.name_of(node))
     for endpoint in own_node.endpoints:
         for name in _names(endpoint, named, values):
             full = named.topic(name) if name is not None else None
-            is_open = name is not None and ANY in name and node.remaps != ()
+            is_open = name is not None and _ANY in name and node.remaps != ()
             if full is None or is_open or "~" in full or "//" in full:
-                yield OpenedName(None, endpoint)
-            else:
-                yield OpenedName(full, endpoint)
-
-
-def certainly_opened(workspace: Workspace) -> Iterator[CertainEnd]:
-    """Yield the endpoints whose names are known of the nodes that are certainly started. Raises
-    NotDecided.
-    """
-    for launch, node in workspace.launched:
-        if node.when is True:
-            for found in opened_by(workspace, node):
-                if found.name is not None and found.is_known:
-                    yield CertainEnd(found.name, found.endpoint, launch, node)
+                full = _ANY
+            yield End(full, endpoint, launch, node, "code", node.executable)
 
 
 def frames_of(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str | None, NodeFrame]]:
     """Yield the frames that an own node names as it is started, each with its name; None for one
     that is not known. Raises NotDecided.
     """
-    own_node = workspace.own_node(node)
+    own_node = workspace.code.own_node(node)
     if own_node is None or not own_node.frames:
         return
     workspace.charge(len(own_node.frames))
     values = _values_given(workspace, node, own_node)
-    named = node._replace(node_name=workspace.name_of(node))
+    named = node._replace(node_name=workspace.code.name_of(node))
     for frame in own_node.frames:
         for name in _names(frame, named, values):
-            is_known = name is not None and ANY not in name
+            is_known = name is not None and _ANY not in name
             yield name if is_known else None, frame
 
 
@@ -94,7 +107,9 @@ def _values_given(
     package = workspace.package_of(node)
     if package is None:
         return {}
-    given = workspace.read_given(package, node, workspace.name_of(node) or own_node.name or "")
+    given = workspace.parameters.read_given(
+        package, node, workspace.code.name_of(node) or own_node.name or ""
+    )
     if given.unknown:
         return {}
     return {**values, **{name: it.value for name, it in given.values.items()}}
@@ -109,15 +124,15 @@ def _names(
     if endpoint.name is not None or not endpoint.parts:
         return [endpoint.name]
     lists = [part.text for part in endpoint.parts if part.kind == "item"]
-    items: Value = [ANY]
+    items: Value = [_ANY]
     if len({*lists}) == 1:
         items = values.get(lists[0])
     if not isinstance(items, list | tuple):
-        items = [ANY]
+        items = [_ANY]
     names: list[str | None] = []
     for item in items[:_MAX_NAMES]:
         name = "".join(_text_of(part, node, values, item) for part in endpoint.parts)
-        names.append(name if name.strip(f"{ANY}/") else None)
+        names.append(name if name.strip(f"{_ANY}/") else None)
     return names
 
 
@@ -134,10 +149,10 @@ def _text_of(part: NamePart, node: StartedNode, values: Mapping[str, Value], ite
             return _written(values.get(part.text))
         case "item":
             return _written(item)
-    return ANY
+    return _ANY
 
 
 def _written(value: Value) -> str:
     """Return a value as it is in a text, if it surely is written so."""
     is_plain = isinstance(value, str | int) and not isinstance(value, bool)
-    return str(value) if is_plain else ANY
+    return str(value) if is_plain else _ANY

@@ -1,0 +1,128 @@
+"""The rows of ros_gz_bridge: which topic it takes to which one, with their types."""
+
+import posixpath
+import re
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.workspace.model.workspace import Workspace
+
+BRIDGE = "ros_gz_bridge"  # the package
+TO_ROS, TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
+_DIRECTIONS = {"[": TO_ROS, "]": TO_GAZEBO, "@": _BOTH}
+_ARGUMENT = re.compile(r"(?P<topic>[^@\s]+)@(?P<ros>[\w/]+)(?P<direction>[@\[\]])(?P<gz>[\w.]+)")
+_OLDER_FORM = re.compile("^ignition[.]msgs(?=[.])")
+
+
+class BridgeRow(NamedTuple):
+    """What a bridge takes from a topic on one side to one on the other, without the first slash of
+    the names.
+    """
+
+    ros: str
+    gz: str
+    ros_type: str  # in the form of Python: sensor_msgs.msg.Image
+    gz_type: str  # in its newer form: gz.msgs.Image
+    direction: str
+    location: Location
+    ros_type_location: Location
+    gz_type_location: Location
+    direction_location: Location
+    is_used: bool  # whether a launch file names the file of the row
+
+    @property
+    def is_published(self) -> bool:
+        """Return whether the bridge publishes in ROS."""
+        return self.direction != TO_GAZEBO
+
+    @property
+    def is_read(self) -> bool:
+        """Return whether the bridge subscribes in ROS."""
+        return self.direction != TO_ROS
+
+
+def bridge_rows(workspace: Workspace) -> Iterator[BridgeRow]:
+    """Yield the rows of bridges in YAML files, and those in the arguments of bridges."""
+    for path, tree in workspace.installed.trees:
+        is_used = any(
+            posixpath.basename(path) in text for text in workspace.texts.searched_launch_texts()
+        )
+        for item in tree.items:
+            row = _row_in_yaml(item, is_used=is_used)
+            if row is not None:
+                yield row
+    for _, node in workspace.launches.nodes:
+        if node.package == BRIDGE:
+            yield from _rows_in_arguments(node)
+
+
+def rows_of_bridge(workspace: Workspace, node: StartedNode) -> Iterator[BridgeRow]:
+    """Yield the rows that a bridge is given."""
+    yield from _rows_in_arguments(node)
+    for given in node.parameters or ():
+        file = given.values.get("config_file")
+        path = (
+            workspace.installed.source_of(file.value)
+            if file and isinstance(file.value, str)
+            else None
+        )
+        tree = workspace.installed.yaml.get(path or "")
+        items = tree.items if isinstance(tree, YamlNode) else ()
+        workspace.charge(1 + len(items))
+        for item in items:
+            row = _row_in_yaml(item, is_used=True)
+            if row is not None:
+                yield row
+
+
+def _rows_in_arguments(node: StartedNode) -> Iterator[BridgeRow]:
+    for word in node.arguments or ():
+        match = _ARGUMENT.fullmatch(word or "")
+        if match is not None:
+            topic, at = match["topic"].strip("/"), node.location
+            yield BridgeRow(
+                ros=topic,
+                gz=topic,
+                ros_type=_newer_ros_type(match["ros"]),
+                gz_type=_newer_gz_type(match["gz"]),
+                direction=_DIRECTIONS[match["direction"]],
+                location=at,
+                ros_type_location=at,
+                gz_type_location=at,
+                direction_location=at,
+                is_used=True,
+            )
+
+
+def _newer_ros_type(written: str) -> str:
+    return written.replace("/", ".")
+
+
+def _newer_gz_type(written: str) -> str:
+    return _OLDER_FORM.sub("gz.msgs", written)
+
+
+def _row_in_yaml(row: YamlNode, *, is_used: bool) -> BridgeRow | None:
+    both = row.get("topic_name")
+    ros, gz = row.get("ros_topic_name") or both, row.get("gz_topic_name") or both
+    ros_type, gz_type = row.get("ros_type_name"), row.get("gz_type_name")
+    if ros is None or gz is None or not ros.text or not gz.text:
+        return None
+    if ros_type is None or gz_type is None:
+        return None
+    direction = row.get("direction")
+    return BridgeRow(
+        ros=ros.text.strip("/"),
+        gz=gz.text.strip("/"),
+        ros_type=_newer_ros_type(ros_type.text or ""),
+        gz_type=_newer_gz_type(gz_type.text or ""),
+        direction=(direction.text if direction is not None else None) or _BOTH,
+        location=gz.location,
+        ros_type_location=ros_type.location,
+        gz_type_location=gz_type.location,
+        direction_location=(direction or gz).location,
+        is_used=is_used,
+    )

@@ -1,0 +1,126 @@
+"""The controllers of ros2_control that parameter files define and spawners start, and the topics
+that these open.
+"""
+
+from collections.abc import Iterator, Mapping
+from functools import lru_cache
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.config.yaml_values import sections_in
+from grader.ros.known.package_rows import controller_row
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.node_parameters import controllers_of
+from grader.ros.package.node_facts import Endpoint, EndpointKind
+from grader.ros.workspace.model.launches import MANAGER, SPAWNERS
+from grader.ros.workspace.model.workspace import Workspace
+
+_JOINT_STATE = "sensor_msgs.msg.JointState"
+_LOCAL_TOPICS = "use_local_topics"  # the parameter that puts the broadcaster's name before its own
+
+
+class Controller(NamedTuple):
+    """A controller that a parameter file defines for the controller manager."""
+
+    name: str
+    type: YamlNode
+    location: Location
+    has_file: bool  # of its own for its parameters
+
+    @property
+    def is_broadcaster(self) -> bool:
+        """Return whether it publishes, and moves nothing."""
+        return (self.type.text or "").endswith("Broadcaster")
+
+
+@lru_cache(maxsize=2)
+def named_sections(workspace: Workspace) -> tuple[tuple[tuple[str, ...], YamlNode], ...]:
+    """Return the parameters of nodes, also those that are inside of others, which is another
+    mistake.
+    """
+    found: list[tuple[tuple[str, ...], YamlNode]] = []
+    for _, tree in workspace.installed.trees:
+        for keys, node in sections_in(tree):
+            if keys:
+                found += [(keys, node), *sections_in(node, keys)]
+    return tuple(found)
+
+
+def parameters_of_controllers(workspace: Workspace) -> Mapping[str, YamlNode]:
+    """Return the parameters in the sections of parameter files, by the last names of their nodes,
+    some of which are controllers.
+    """
+    return {keys[-1].rpartition("/")[2]: node for keys, node in named_sections(workspace)}
+
+
+@lru_cache(maxsize=2)
+def defined_controllers(workspace: Workspace) -> tuple[Controller, ...]:
+    """Return the controllers that parameter files define, with their types."""
+    found: list[Controller] = []
+    for keys, section in named_sections(workspace):
+        name = keys[-1].rpartition("/")[2]
+        # The type is in a section of the controller manager, or in their own, for a spawner.
+        if name == MANAGER and isinstance(section.value, dict):
+            defined = section.value
+        else:
+            defined = {name: section}
+        for controller, node in defined.items():
+            kind = node.get("type")
+            if kind is not None and kind.text is not None and "/" in kind.text:
+                has_file = node.get("params_file") is not None
+                found.append(Controller(controller, kind, kind.location, has_file))
+    return tuple(found)
+
+
+def controller_endpoints(
+    workspace: Workspace, launch: int, node: StartedNode
+) -> Iterator[tuple[str, Endpoint]]:
+    """Yield the topics of the controllers in the process of a node, those that its launch file
+    spawns, each with the name of its controller.
+    """
+    if node.executable != "ros2_control_node" or node.namespace is None or node.remaps is None:
+        return
+    remaps = spawned_controllers(workspace, launch)
+    # With this parameter, the type of a topic depends on its value.
+    for keys, section in named_sections(workspace):
+        if section.get("use_stamped_vel") is not None:
+            remaps.pop(keys[-1], None)
+    for controller in defined_controllers(workspace):
+        name = controller.name
+        if name not in remaps:
+            continue
+        started = node._replace(node_name=name, remaps=(*remaps[name], *node.remaps))
+        for kind, written, message in _topics_of(workspace, controller):
+            topic = started.topic(written)
+            if topic is not None:
+                yield name, Endpoint(kind, message, topic, controller.location)
+
+
+def _topics_of(
+    workspace: Workspace, controller: Controller
+) -> Iterator[tuple[EndpointKind, str, str]]:
+    """Yield kind, name and type of the topics that a controller opens."""
+    row = controller_row(controller.type.text)
+    for name, message in row.subscriptions.items():
+        yield "subscription", f"~/{name}", message
+    for name, message in row.publishers.items():
+        yield "publisher", f"~/{name}", message
+    if row.publishes_joint_states:
+        section = parameters_of_controllers(workspace).get(controller.name)
+        if section is None or section.get(_LOCAL_TOPICS) is None:
+            yield "publisher", "joint_states", _JOINT_STATE
+
+
+def spawned_controllers(
+    workspace: Workspace, launch: int
+) -> dict[str | None, tuple[tuple[str, ...], ...]]:
+    """Return the controllers that the spawners of a launch file start, by their names, each with
+    its remappings.
+    """
+    remaps: dict[str | None, tuple[tuple[str, ...], ...]] = {}
+    for number, spawner in workspace.launches.launched:
+        if number == launch and spawner.executable in SPAWNERS and spawner.when:
+            for controller in controllers_of(spawner) or ():
+                remaps[controller.node_name] = controller.remaps or ()
+    return remaps

@@ -1,0 +1,1 @@
+"""The files of a workspace, read once: packages, robots, and what launch files start."""

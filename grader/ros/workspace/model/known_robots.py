@@ -1,0 +1,185 @@
+"""The robots of a workspace as ROS 2 loads them, and what their files say of others."""
+
+import posixpath
+import re
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+from grader.base.source import LazyLocation, Location, Source
+from grader.ros.build.places import SHARE, share_parts
+from grader.ros.launch.launch_model import GivenParameters
+from grader.ros.package.robot_file import Read
+from grader.ros.urdf.model import Robot
+from grader.ros.workspace.model.launches import Launches
+from grader.ros.workspace.model.text_files import TextFiles
+from grader.ros.workspace.model.workspace_folder import WorkspaceFolder
+from grader.ros.xml.elements import readable
+from grader.ros.xml.parsing import Element
+
+_SYSTEM = re.compile(r"<ros2_control\b")
+_NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
+_CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
+_PACKAGE_IN = re.compile("the package '([\\w-]+)'")  # in the reason why a path is not known
+INCLUDED = re.compile(r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"']")
+_EXPRESSION, _WORD = re.compile(r"\$\{([^{}]*)"), re.compile(r"\w+")
+_FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
+
+
+@dataclass(frozen=True, eq=False)
+class KnownRobot:
+    """A robot as ROS 2 loads it, expanded, of which everything is known."""
+
+    path: str
+    robot: Robot
+    root: Element  # the <robot>
+    source: Source
+
+    @property
+    def systems(self) -> list[Element]:
+        """The <ros2_control> elements."""
+        return list(self.root.iterchildren("ros2_control"))
+
+    def place(self, element: Element) -> Location:
+        """Return where an element is written."""
+        return LazyLocation(self.source, self._positions[element]).resolve()
+
+    @cached_property
+    def _positions(self) -> Mapping[Element, int]:
+        """The position of each element in document order."""
+        return {element: tag for tag, element in enumerate(self.root.iter("*"))}
+
+
+@dataclass(frozen=True, eq=False)
+class Robots:
+    """The robots of a workspace as ROS 2 loads them, and what their files say of others."""
+
+    urdfs: tuple[Read, ...]  # the files of robots that are read
+    has_unread_robots: bool  # whether other files may be robots
+    folder: WorkspaceFolder
+    texts: TextFiles
+    launches: Launches
+
+    @cached_property
+    def known(self) -> tuple[KnownRobot, ...]:
+        """The robots of which everything is known."""
+        return tuple(found for urdf in self.urdfs if (found := _known_robot(urdf)) is not None)
+
+    @property
+    def may_be_others(self) -> bool:
+        """Whether there may be other robots than `robots`, which names may belong to."""
+        is_unknown = len(self.known) < len(self.urdfs)
+        return self.has_unread_robots or is_unknown or self._loads_others
+
+    @cached_property
+    def _loads_others(self) -> bool:
+        """Whether a launch file loads a robot of a package that is not there."""
+        for package, _, launch in self.launches.files:
+            for named in launch.named("urdf"):
+                names = {share_parts(named.path or "")[0], *_PACKAGE_IN.findall(named.reason)}
+                if any(name and package.find(name) is None for name in names):
+                    return True
+        return False
+
+    @property
+    def has_controller_manager(self) -> bool:
+        """Return whether a launch file starts a controller manager, or the robot has one in
+        Gazebo.
+        """
+        is_started = any(node.executable == "ros2_control_node" for _, node in self.launches.nodes)
+        return is_started or self.has_controllers_in_gazebo
+
+    @cached_property
+    def has_controllers_in_gazebo(self) -> bool:
+        """Whether a robot has a controller manager in Gazebo."""
+        for robot in self.known:
+            if any("ros2_control" in it.get("filename", "") for it in robot.root.iter("plugin")):
+                return True
+        return False
+
+    @cached_property
+    def command_interfaces(self) -> Mapping[str, tuple[frozenset[str], Location]] | None:
+        """The command interfaces of joints in <ros2_control>, of all robots; None without one."""
+        if not any(robot.systems for robot in self.known):
+            return None
+        interfaces: dict[str, tuple[frozenset[str], Location]] = {}
+        for robot in self.known:
+            for joint in [it for system in robot.systems for it in system.iterchildren("joint")]:
+                name, added = joint.get("name", ""), joint.iterchildren("command_interface")
+                before, at = interfaces.get(name, (frozenset[str](), robot.place(joint)))
+                interfaces[name] = (before.union(each.get("name", "") for each in added), at)
+        return interfaces
+
+    @property
+    def has_all_interfaces(self) -> bool:
+        """Return whether `command_interfaces` are those of every robot, also under other
+        arguments of xacro.
+        """
+        if not self.known or self.may_be_others:
+            return False
+        text = "".join(source.text for source in self.xacro_sources)
+        called = {*_CALLED.findall(text)}
+        if "call" not in called:  # <xacro:call macro="..."/> may compute the name
+            *macros, rest = text.split("</xacro:macro>")
+            text = "".join(_without_macro(macro, called) for macro in macros) + rest
+        written = len(_SYSTEM.findall(text))
+        return written <= sum(len(robot.systems) for robot in self.known)
+
+    @cached_property
+    def files(self) -> frozenset[str]:
+        """The files that the robots are made of, by their paths; empty where none is known."""
+        files: set[str] = set()
+        for robot in self.known:
+            files |= {robot.path, *(robot.place(it).path for it in robot.root.iter("*"))}
+        return frozenset(files)
+
+    @cached_property
+    def xacro_sources(self) -> tuple[Source, ...]:
+        """The texts of the xacro files and URDFs, and of the files of other endings that these
+        include.
+        """
+        sources: list[Source] = []
+        for package in self.folder.packages:
+            sources += self.texts.sources_of(package, (".xacro", ".urdf"))
+        names: set[str] = set()
+        for source in sources:
+            names |= {posixpath.basename(path) for path in INCLUDED.findall(source.text)}
+        others = tuple(name for name in names if name and not name.endswith((".xacro", ".urdf")))
+        for package in self.folder.packages:
+            sources += self.texts.sources_of(package, others)
+        return tuple(sources)
+
+    @cached_property
+    def words_in_expressions(self) -> frozenset[str]:
+        """The words in the expressions of the xacro files."""
+        words: set[str] = set()
+        for source in self.xacro_sources:
+            for expression in _EXPRESSION.findall(source.text):
+                words.update(_WORD.findall(expression))
+        return frozenset(words)
+
+    @property
+    def given_in_gazebo(self) -> Iterator[GivenParameters]:
+        """The files that the robots give to the controller manager in Gazebo."""
+        for robot in self.known:
+            for element in robot.root.iter("parameters"):
+                path = _FOUND.sub(rf"{SHARE}/\1/", readable((element.text or "").strip()))
+                if path.startswith(SHARE):
+                    yield GivenParameters(robot.place(element), path)
+
+
+def _known_robot(urdf: Read) -> KnownRobot | None:
+    loaded = urdf.loaded
+    is_known = not loaded.undetermined and loaded.verdict != "rejected"
+    if is_known and loaded.robot is not None and loaded.root is not None:
+        return KnownRobot(urdf.path, loaded.robot, loaded.root, loaded.source)
+    return None
+
+
+def _without_macro(text: str, called: Collection[str]) -> str:
+    """Return a text, which ends where a macro ends, without the macro if nothing calls it."""
+    before, _, macro = text.partition("<xacro:macro")
+    name = _NAME.search(macro.partition(">")[0])
+    if name is not None and name[1] not in called:
+        return before
+    return text

@@ -1,0 +1,140 @@
+"""What the code of the workspace's packages opens and declares, and the interfaces that they
+define.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from grader.ros.known.package_rows import children_by_node, program_row
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.package.node_facts import NodeFacts, PackageNodes
+from grader.ros.package.package import MANIFEST, Package
+from grader.ros.package.package_interfaces import PackageInterfaces, read_interfaces
+from grader.ros.package.python_nodes import read_nodes
+from grader.ros.workspace.model.installed_yaml import InstalledFiles
+from grader.ros.workspace.model.launches import MANAGER
+from grader.ros.workspace.model.text_files import MAX_YAML
+from grader.ros.workspace.model.workspace_folder import WorkspaceFolder
+
+# Of files without code: parameters, models, pictures and texts.
+_NO_CODE = frozenset(
+    {
+        *(".yaml", ".yml", ".urdf", ".xacro", ".srdf", ".sdf", ".world", ".rviz", ".xml"),
+        *(".stl", ".dae", ".obj", ".png", ".jpg", ".jpeg", ".gif", ".pgm", ".pdf", ".md"),
+    }
+)
+
+
+@dataclass(frozen=True, eq=False)
+class OwnCode:
+    """What the code of the workspace's packages opens and declares, and the interfaces that they
+    define.
+    """
+
+    folder: WorkspaceFolder
+    installed: InstalledFiles
+
+    @cached_property
+    def by_package(self) -> Mapping[str, PackageNodes]:
+        """The nodes of the installed Python modules and of C++, by the names of packages."""
+        return {package.name: self._nodes_in(package) for package in self.folder.packages}
+
+    def _nodes_in(self, package: Package) -> PackageNodes:
+        if self.folder.memory is None:
+            return _nodes_of(package)
+        key = ("nodes", package.name, _program_texts(package))
+        return self.folder.memory.recall(key, None, package.budget, lambda _: _nodes_of(package))
+
+    @cached_property
+    def interfaces(self) -> Mapping[str, PackageInterfaces]:
+        """The messages, services and actions of the packages, by the names of these. Of a name that
+        several packages have nothing is known.
+        """
+        found = {}
+        for package in self.folder.packages:
+            is_one = self.folder.counts[package.name] < 2
+            unknown = PackageInterfaces(is_complete=False)
+            found[package.name] = read_interfaces(package) if is_one else unknown
+        return found
+
+    def own_node(self, node: StartedNode) -> NodeFacts | None:
+        """Return the Python node of the workspace that a program starts, if it starts one that
+        is known.
+        """
+        owner = self.folder.package_of(node)
+        if owner is None or owner.name not in self.by_package:
+            return None
+        return self._nodes_by_program.get((owner.name, node.executable))
+
+    @cached_property
+    def _nodes_by_program(self) -> Mapping[tuple[str, str], NodeFacts]:
+        """The Python nodes by their packages and programs, of programs with one node."""
+        programs: dict[tuple[str, str], list[Sequence[NodeFacts]]] = {}
+        for package, found in self.by_package.items():
+            for program in found.programs:
+                programs.setdefault((package, program.name), []).append(program.nodes)
+        nodes: dict[tuple[str, str], NodeFacts] = {}
+        for key, of_programs in programs.items():
+            if len(of_programs) == 1 and len(of_programs[0]) == 1:
+                nodes[key] = of_programs[0][0]
+        return nodes
+
+    def is_read(self, node: StartedNode) -> bool:
+        """Return whether all is known that the code of a node opens."""
+        facts = self.own_node(node)
+        return facts is not None and not facts.doubts
+
+    def name_of(self, node: StartedNode) -> str | None:
+        """Return the name that a node has, without its namespace; None where it is not known."""
+        if node.node_name is None or node.node_name:
+            return node.node_name
+        return self.name_in_program(node)
+
+    def name_in_program(self, node: StartedNode) -> str | None:
+        """Return the name that the program of a node gives it; None where it is not known."""
+        own = self.own_node(node)
+        if own is not None:
+            return own.name
+        return program_row(node.package, node.executable).name
+
+    def children_of(self, name: str) -> frozenset[str]:
+        """Return the nodes that a node of another package makes in its process, and that read
+        its parameters.
+        """
+        children = frozenset(children_by_node().get(name, ()))
+        return children | self.installed.typed_sections if name == MANAGER else children
+
+
+def _program_texts(package: Package) -> tuple[tuple[str, bytes | None], ...]:
+    """Return the files of a package, each with its bytes unless its ending says that it has no
+    code.
+    """
+    texts: list[tuple[str, bytes | None]] = []
+    for path, file in package.tree.files.items():
+        has_code = path == MANIFEST or file.suffix not in _NO_CODE
+        texts.append((path, package.tree.read(path, MAX_YAML) if has_code else None))
+    return tuple(texts)
+
+
+def _nodes_of(package: Package) -> PackageNodes:
+    found = read_nodes(package)
+    setup = package.installation
+    if setup is None or not any(target.sources for target in setup.targets):
+        return found
+    from grader.ros.package.cpp_nodes import read_cpp_nodes  # late: few submissions have C++
+
+    compiled = read_cpp_nodes(package)
+    return found._replace(
+        nodes=(*found.nodes, *compiled.nodes),
+        programs=(*found.programs, *compiled.programs),
+        doubts=(*found.doubts, *compiled.doubts),
+        has_loose_declarations=found.has_loose_declarations or compiled.has_loose_declarations,
+        imports=(*found.imports, *compiled.imports),
+        field_uses=(*found.field_uses, *compiled.field_uses),
+        faults=(*found.faults, *compiled.faults),
+        synchronised=(*found.synchronised, *compiled.synchronised),
+        loose_frames=compiled.loose_frames,
+        texts=compiled.texts,
+        cpp_files=compiled.cpp_files,
+    )

@@ -1,0 +1,160 @@
+"""The texts of the files of packages, in which names are searched, and the XML files of Gazebo
+and MoveIt.
+"""
+
+import posixpath
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+from grader.base.errors import InputError
+from grader.base.source import Source
+from grader.files.tree import parents
+from grader.ros.build.places import is_launch_file
+from grader.ros.package.package import Package
+from grader.ros.workspace.model.workspace_folder import WorkspaceFolder
+from grader.ros.xml.parsing import XmlFault, XmlFile
+
+_MAX_FILES = 60  # of one kind in a package
+# What is charged as one part: names of files that are compared, and characters of a text in which
+# something is searched.
+FILES_A_PART, _SEARCHED_A_PART = 8, 512
+MAX_YAML = 512 * 1024  # bytes
+_TEXTS = (".yaml", ".yml", ".urdf", ".xacro", ".srdf", ".sdf", ".world", ".rviz", ".py", ".xml")
+_OWN_FOLDERS = frozenset({"config", "launch", "maps", "params", "rviz", "urdf", "worlds"})
+_PROGRAMS = (".py", ".cpp", ".cc", ".hpp", ".sh", "CMakeLists.txt")
+_WITH_LINES = (".yaml", ".yml", ".py")  # files whose comments begin with #
+_COMMENT_LINE = re.compile(r"(?:^|(?<=\s))#[^\n]*")
+_XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
+
+
+@dataclass(frozen=True, eq=False)
+class TextFiles:
+    """The texts of the files of packages, in which names are searched, and the XML files of Gazebo
+    and MoveIt. Each file is read once.
+    """
+
+    folder: WorkspaceFolder
+
+    @cached_property
+    def sdf_files(self) -> tuple[XmlFile, ...]:
+        """The models and worlds of Gazebo that can be read."""
+        return tuple(self._xml_files((".sdf", ".world")))
+
+    @cached_property
+    def srdf_files(self) -> tuple[XmlFile, ...]:
+        """The descriptions of robots for MoveIt that can be read."""
+        return tuple(self._xml_files((".srdf",)))
+
+    def _xml_files(self, endings: tuple[str, ...]) -> Iterator[XmlFile]:
+        for package in self.folder.packages:
+            for path in [it for it in package.tree.files if it.endswith(endings)][:_MAX_FILES]:
+                with suppress(InputError, XmlFault):
+                    data = package.tree.files[path].read(MAX_YAML)
+                    yield XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace")))
+
+    def sources_of(self, package: Package, endings: tuple[str, ...]) -> Iterator[Source]:
+        """Yield the texts of the files of a package with these endings, without those of tests."""
+        return self._sources(package, self._paths(package, endings))
+
+    def launch_sources(self, package: Package) -> Iterator[Source]:
+        """Yield the texts of the launch files of a package."""
+        return self._sources(package, package.launch_files)
+
+    def _sources(self, package: Package, paths: Iterable[str]) -> Iterator[Source]:
+        for path in read_paths(package, paths):
+            source = self._read_text(package, path)
+            if source is not None:
+                self.folder.charge(1 + len(source.text) // _SEARCHED_A_PART)
+                yield source
+
+    @cached_property
+    def _paths(self) -> Callable[[Package, tuple[str, ...]], Sequence[str]]:
+        """The paths of the files of a package with some endings, searched once."""
+        return cache(_paths_ending)
+
+    @cached_property
+    def _read_text(self) -> Callable[[Package, str], Source | None]:
+        """A reader of texts without comments that reads each once."""
+        return cache(_without_comments)
+
+    @cached_property
+    def launch_texts(self) -> tuple[str, ...]:
+        """The texts of the launch files, of those of ROS 1 too."""
+        sources: list[Source] = []
+        for package in self.folder.packages:
+            sources += self._sources(package, package.launch_files)
+        for package in self.folder.packages:
+            sources += self.sources_of(package, (".launch",))
+        return tuple(source.text for source in sources)
+
+    def searched_launch_texts(self) -> tuple[str, ...]:
+        """Return the texts of the launch files, to search something in each. Raises NotDecided."""
+        self.folder.charge(1 + sum(map(len, self.launch_texts)) // _SEARCHED_A_PART)
+        return self.launch_texts
+
+    @cached_property
+    def python_texts(self) -> tuple[str, ...]:
+        """The texts of the Python files."""
+        sources: list[Source] = []
+        for package in self.folder.packages:
+            sources += self.sources_of(package, (".py",))
+        return tuple(source.text for source in sources)
+
+    def has_plugin(self, name: str) -> bool:
+        """Return whether a package describes a plugin of this name for pluginlib."""
+        sources = (
+            it for package in self.folder.packages for it in self.sources_of(package, (".xml",))
+        )
+        return any(f'name="{name}"' in it.text for it in sources)
+
+    def is_nowhere(self, owner: Package, target: str) -> bool:
+        """Return whether a file of text that the package does not have is surely nowhere.
+
+        What the limits of reading, a submodule or a link leave out may be there, and an own program
+        may write a file that it names.
+        """
+        if not target.endswith(_TEXTS) or self.folder.tree.ignored or owner.tree.links:
+            return False
+        for folder in parents(target.removeprefix(owner.share)):
+            self.folder.charge(len(owner.tree.files) // FILES_A_PART)
+            is_empty = not any(path.startswith(f"{folder}/") for path in owner.tree.files)
+            is_submodule = is_empty and posixpath.basename(folder) not in _OWN_FOLDERS
+            if folder in owner.tree.folders and is_submodule:
+                return False
+        name = posixpath.basename(target)
+        for package in self.folder.packages:
+            for source in self.sources_of(package, _PROGRAMS):
+                if name in source.text and not is_launch_file(source.path):
+                    return False
+        return True
+
+
+def _paths_ending(package: Package, endings: tuple[str, ...]) -> Sequence[str]:
+    """Return the paths of the files of a package with some endings."""
+    return [path for path in package.tree.files if path.endswith(endings)]
+
+
+def _without_comments(package: Package, path: str) -> Source | None:
+    """Return the text of a file with blanks in place of comments; None if it cannot be read."""
+    data = package.tree.read(path, MAX_YAML)
+    if data is None:
+        return None
+    text = data.decode("utf-8", "replace")
+    comment = _COMMENT_LINE if path.endswith(_WITH_LINES) else _XML_COMMENT
+    return Source(package.path(path), comment.sub(_blank, text))
+
+
+def read_paths(package: Package, paths: Iterable[str]) -> list[str]:
+    """Return the paths of a package's files that are read: no tests, none of packages in it, and
+    not too many.
+    """
+    unread = ("test/", *package.inner)
+    return [path for path in paths if not path.startswith(unread)][:_MAX_FILES]
+
+
+def _blank(found: re.Match[str]) -> str:
+    """Return blanks in place of a comment, so that places stay the same."""
+    return re.sub(r"\S", " ", found[0])
