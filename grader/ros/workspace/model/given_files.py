@@ -38,7 +38,7 @@ class GivenFiles:
 
     @cached_property
     def files(self) -> Mapping[str, list[StartedNode]]:
-        """The parameter files, by their paths in the submission, with the nodes that are given
+        """The parameter files, by their paths in the workspace, with the nodes that are given
         them.
         """
         nodes: dict[str, list[StartedNode]] = {}
@@ -48,7 +48,7 @@ class GivenFiles:
         return nodes
 
     def files_given(self, node: StartedNode) -> Iterator[str]:
-        """Yield the parameter files that a node is given, by their paths in the submission."""
+        """Yield the parameter files that a node is given, by their paths in the workspace."""
         for given in node.parameters or ():
             path = self.installed.source_of(given.path) if given.path and given.is_plain else None
             if path is not None:
@@ -81,7 +81,7 @@ class GivenFiles:
 
     @cached_property
     def controller_files(self) -> frozenset[str]:
-        """The parameter files, by their paths in the submission, that Gazebo and spawners give
+        """The parameter files, by their paths in the workspace, that Gazebo and spawners give
         controllers.
         """
         given = [*self.robots.given_in_gazebo]

@@ -25,7 +25,7 @@ class InstalledFiles:
 
     @cached_property
     def yaml(self) -> Mapping[str, YamlNode | YamlFault]:
-        """The YAML files that are no launch files, by their paths in the submission; or why one
+        """The YAML files that are no launch files, by their paths in the workspace; or why one
         is not read.
         """
         files: dict[str, YamlNode | YamlFault] = {}
@@ -47,7 +47,7 @@ class InstalledFiles:
                 yield (path, node)
 
     def source_of(self, path: str) -> str | None:
-        """Return the file of the submission that is installed at a path, which begins with the
+        """Return the file of the workspace that is installed at a path, which begins with the
         prefix's stand-in.
         """
         inside = posixpath.normpath(path).removeprefix(f"{PREFIX}/")
@@ -66,7 +66,7 @@ class InstalledFiles:
 
     @cached_property
     def _sources_of_installed(self) -> Mapping[str, str]:
-        """The files of the submission, by the paths below the prefix where they are installed."""
+        """The files of the workspace, by the paths below the prefix where they are installed."""
         sources: dict[str, str] = {}
         for package in self.folder.packages:
             for target, source in package.installed.items():

@@ -122,7 +122,7 @@ def _nodes_of(package: Package) -> PackageNodes:
     setup = package.installation
     if setup is None or not any(target.sources for target in setup.targets):
         return found
-    from grader.ros.package.cpp_nodes import read_cpp_nodes  # late: few submissions have C++
+    from grader.ros.package.cpp_nodes import read_cpp_nodes  # late: few workspaces have C++
 
     compiled = read_cpp_nodes(package)
     return found._replace(

@@ -35,7 +35,7 @@ class Workspace:
     memory: Memory | None = None  # what was read of an earlier state of the files
 
     def charge(self, parts: int) -> None:
-        """Charge the work of comparing names to the budget of the submission. Raises NotDecided."""
+        """Charge the work of comparing names to the budget of the workspace. Raises NotDecided."""
         self.folder.charge(parts)
 
     @property

@@ -44,11 +44,11 @@ class WorkspaceFolder:
 
     @property
     def is_spent(self) -> bool:
-        """Whether more is left to read and compare than a submission may ask for."""
+        """Whether more is left to read and compare than a workspace may ask for."""
         return self._work.is_spent
 
     def charge(self, parts: int) -> None:
-        """Charge the work of comparing names to the budget of the submission. Raises NotDecided."""
+        """Charge the work of comparing names to the budget of the workspace. Raises NotDecided."""
         try:
             self._work.charge(parts)
         except OutOfBudget:
@@ -85,7 +85,7 @@ class WorkspaceFolder:
         return None
 
     def begins_with(self, path: str, start: bytes) -> bool:
-        """Return whether a file of the submission begins with some bytes."""
+        """Return whether a file of the workspace begins with some bytes."""
         file = self.tree.files.get(path)
         return file is not None and file.read(len(start), first=True) == start
 
