@@ -19,6 +19,7 @@ from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
 from grader.ros.workspace.graph.started_controllers import defined_controllers, spawned_controllers
+from grader.ros.workspace.graph.unread_ends import may_publish_type
 from grader.ros.workspace.model.launches import MANAGER
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import Compared, Fact, Mismatch, warning
@@ -113,7 +114,7 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
     for _, node in workspace.launches.nodes:
         if program_row(node.package, node.executable).publishes_joint_states:
             return
-        if not _is_understood(workspace, node, _JOINT_STATE):
+        if may_publish_type(workspace, node, _JOINT_STATE):
             return
     if any(row.is_published and row.ros_type == _JOINT_STATE for row in bridge_rows(workspace)):
         return
@@ -131,15 +132,6 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
     )
     at = joint.location.resolve() if joint.location is not None else None
     yield warning(JOINT_STATES, message, publishers[0].location, at)
-
-
-def _is_understood(workspace: Workspace, node: StartedNode, kind: str) -> bool:
-    """Return whether it is known that a node publishes no messages of a type."""
-    own = workspace.code.own_node(node)
-    if own is not None:
-        types = [each.type for each in own.endpoints if each.kind == "publisher"]
-        return not own.doubts and kind not in types and None not in types
-    return "frames" in package_row(node.package).without
 
 
 def _is_mentioned(workspace: Workspace, words: Sequence[str]) -> bool:
@@ -208,7 +200,7 @@ def _may_have_clock(workspace: Workspace) -> bool:
             is_open = _says_clock(f"{node.package} {node.executable}")
             is_open = is_open and "frames" not in package_row(node.package).without
         else:
-            is_open = not _is_understood(workspace, node, _CLOCK)
+            is_open = may_publish_type(workspace, node, _CLOCK)
         if is_open or (node.package == BRIDGE and None in (node.arguments or (None,))):
             return True
     return _is_told(workspace)

@@ -5,12 +5,16 @@ from typing import NamedTuple
 
 from grader.base.names import closest
 from grader.base.source import Location
-from grader.ros.known.package_rows import package_row
 from grader.ros.known.shared_names import shared_names
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
 from grader.ros.workspace.graph.endpoints import End
 from grader.ros.workspace.graph.graph import Graph, graph_of, grouped
-from grader.ros.workspace.graph.unread_ends import Sought, is_own_type, may_be_opened
+from grader.ros.workspace.graph.unread_ends import (
+    Sought,
+    is_all_read,
+    is_own_type,
+    may_be_opened,
+)
 from grader.ros.workspace.meeting_ends import SERVICES, TOPICS, Meeting
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.names import (
@@ -140,7 +144,7 @@ def _without_subscription(
             at, place = publisher.location, waiting.location
             if at in named or _may_be_of_gazebo(workspace, publisher, waiting):
                 continue
-            is_certain = publisher.surely_meets(waiting) and _is_all_read(workspace, waiting.launch)
+            is_certain = publisher.surely_meets(waiting) and is_all_read(workspace, waiting.launch)
             is_same = _last_names(publisher, 1) == _last_names(waiting, 1)
             if is_same or (is_certain and len(fitting) == 1):
                 named.add(at)
@@ -166,17 +170,6 @@ def _may_be_of_gazebo(workspace: Workspace, publisher: End, waiting: End) -> boo
     """Return whether Gazebo may have the same controller in another namespace."""
     is_same = _last_names(publisher, 2) == _last_names(waiting, 2)
     return is_same and workspace.robots.has_controllers_in_gazebo
-
-
-def _is_all_read(workspace: Workspace, launch: int) -> bool:
-    """Return whether all topics are known that the nodes of a launch file open."""
-    if workspace.launches.roots[launch][1].unknown:
-        return False
-    for number, node in workspace.launches.launched:
-        may_command = number == launch and "commands" not in package_row(node.package).without
-        if may_command and not workspace.code.is_read(node):
-            return False
-    return True
 
 
 def _without_server(graph: Graph, meeting: Meeting) -> Iterator[Mismatch]:

@@ -48,6 +48,26 @@ def may_be_opened(workspace: Workspace, sought: Sought) -> bool:
     return any(nodes.doubts for nodes in workspace.code.by_package.values())
 
 
+def may_publish_type(workspace: Workspace, node: StartedNode, message: str) -> bool:
+    """Return whether a node may publish messages of a type, on whatever topic."""
+    facts = workspace.code.own_node(node)
+    if facts is None:
+        return "frames" not in package_row(node.package).without
+    types = {end.type for end in facts.endpoints if end.kind == "publisher"}
+    return bool(facts.doubts) or not types.isdisjoint({message, None})
+
+
+def is_all_read(workspace: Workspace, launch: int) -> bool:
+    """Return whether all topics are known that the nodes of a launch file open."""
+    if workspace.launches.roots[launch][1].unknown:
+        return False
+    for number, node in workspace.launches.launched:
+        may_command = number == launch and "commands" not in package_row(node.package).without
+        if may_command and not workspace.code.is_read(node):
+            return False
+    return True
+
+
 def _may_open(workspace: Workspace, node: StartedNode, sought: Sought) -> bool:
     """Return whether a node may open an end that it is not known to open."""
     package = workspace.package_of(node)
