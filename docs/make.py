@@ -42,7 +42,7 @@ from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal
 from grader.ros.known.package_files import IndexedKey, facts_in_file, packages_with_files
 from grader.ros.known.parameter_rows import NodeRows, known_nodes, node_rows
-from grader.ros.workspace.problem_kinds import EVERY_KIND
+from grader.ros.workspace.rules.problem_kinds import EVERY_KIND
 
 KEYS = {
     "The rubric": RUBRIC,

@@ -41,10 +41,11 @@ ROOMS = {
     ),
     "ros": (
         "known python xml",
-        "xacro urdf build mesh interfaces cpp",
+        "xacro urdf installation mesh interfaces cpp",
         "config",
         "launch",
         "package",
+        "nodes",
         "workspace",
         "api",
     ),
@@ -94,7 +95,7 @@ ROOMS = {
     ),
 }
 # The rooms inside a room, from the bottom. The modules beside them are above all of them.
-INNER_ROOMS = {"ros.workspace": ("model", "graph")}
+INNER_ROOMS = {"ros.workspace": ("model", "graph", "rules", "index")}
 # The packages, or rooms of them, that may import a library: each has one concern.
 LIBRARIES = {
     "typer": {"app.cli"},
@@ -103,7 +104,15 @@ LIBRARIES = {
     "jinja2": {"report"},
     "markupsafe": {"report", "classroom.review"},
     "yaml": {"ros.config", "ros.launch", "ros.xacro"},
-    "ast": {"ros.python", "ros.build", "ros.launch", "ros.package", "lab.hints", "lab.authoring"},
+    "ast": {
+        "ros.python",
+        "ros.installation",
+        "ros.launch",
+        "ros.package",
+        "ros.nodes",
+        "lab.hints",
+        "lab.authoring",
+    },
     "tree_sitter": {"ros.cpp"},
     "tree_sitter_cpp": {"ros.cpp"},
     "docx": {"lab.documents"},
@@ -113,7 +122,7 @@ LIBRARIES = {
         "base.toml_file",
         "app.bundle",
         "ros.known",
-        "ros.build",
+        "ros.installation",
         "ros.launch",
         "classroom.marks",
         "report",
@@ -122,7 +131,7 @@ LIBRARIES = {
     "distributed": {"workers"},
     "csv": {"classroom.tables"},
     "xlsxwriter": {"classroom.spreadsheet"},
-    "pyflakes": {"ros.package"},
+    "pyflakes": {"ros.nodes"},
     "pygls": {"app.editor"},
     "lsprotocol": {"app.editor"},
 }
@@ -298,6 +307,19 @@ def test_no_type_of_a_workspace_has_many_members() -> None:
                 many[node.name] = members
     assert len(many) > 10
     assert {name: members for name, members in many.items() if members > 20} == {}
+
+
+def test_only_rules_say_that_something_does_not_agree() -> None:
+    """Each finding of a workspace is made in the room `rules`, by a function that names the rule's row."""
+    makers = {"Mismatch", "warning"}
+    places = []
+    for module, tree in prose().trees.items():
+        if module.startswith("grader.ros.workspace.rules."):
+            continue
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in makers:
+                places.append((module, node.lineno))
+    assert places == []
 
 
 def test_check_families_do_not_import_each_other() -> None:

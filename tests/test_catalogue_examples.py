@@ -24,9 +24,9 @@ from grader.ros.package.found_problems import package_problems
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Absent, Read, read_as_ros
 from grader.ros.python import budget
-from grader.ros.workspace.file_problems import listed_problems
-from grader.ros.workspace.problem_kinds import EVERY_KIND
-from grader.ros.workspace.release_problems import compared_names
+from grader.ros.workspace.rules.file_problems import listed_problems
+from grader.ros.workspace.rules.problem_kinds import EVERY_KIND
+from grader.ros.workspace.rules.release_problems import compared_names
 from tests.checks.submissions import png
 from tests.command_line import ROOT
 from tests.oracles.check_urdf import check_urdf

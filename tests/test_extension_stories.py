@@ -88,6 +88,34 @@ SAKAI = Form(
 )
 """
 
+RULE = """
+NOTE_LEFT = _machine("note-left", sentence="No launch file has a note of its author.")
+"""
+FINDER = """
+
+def _notes(source: Source) -> Iterator[Mismatch]:
+    \"\"\"Yield the first note of an author in a launch file.\"\"\"
+    at = source.text.find("FIXME")
+    if at >= 0:
+        yield warning(NOTE_LEFT, "the launch file has a note of its author", source.at(at))
+"""
+RULE_TEST = '''"""A note of an author in a launch file is named."""
+
+from grader.ros.workspace.rules.reading import read_agreement
+from tests.workspace.rovers import LAUNCH, Edit, rover
+
+
+def _found(*edits: Edit) -> int:
+    found = read_agreement(rover(*edits).workspace).mismatches
+    return sum(it.rule.name == "note-left" for it in found)
+
+
+def test_a_note_is_left() -> None:
+    """Once, and nothing is said without one."""
+    assert _found((LAUNCH, "def generate", "# FIXME: speed\\n# FIXME: name\\n\\n\\ndef generate")) == 1
+    assert _found() == 0
+'''
+
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
@@ -170,6 +198,28 @@ def test_a_new_rubric(project: Path) -> None:
         "tests/bundle",
         "tests/cli/test_answers.py",
         new="lab0",
+    )
+
+
+def test_a_new_rule(project: Path) -> None:
+    """A rule is a row of the table, a function in the file of its family, a test and a line of the changelog."""
+    rules = project / "grader/ros/workspace/rules"
+    replace(rules / "rule_table.py", "\n_moveit = ", f"{RULE}\n_moveit = ")
+    with (rules / "one_machine.py").open("a", encoding="utf-8") as family:
+        family.write(FINDER)
+    call = "            yield from _variables(source)\n"
+    replace(rules / "one_machine.py", call, f"{call}            yield from _notes(source)\n")
+    replace(rules / "one_machine.py", "    HOME_PATH,\n", "    HOME_PATH,\n    NOTE_LEFT,\n")
+    (project / "tests/workspace/test_notes.py").write_text(RULE_TEST, encoding="utf-8")
+    python(project, "docs/make.py")
+    add_to_changelog(project, "The rule `note-left`.")
+    passes(
+        project,
+        "tests/workspace",
+        "tests/test_architecture.py",
+        "tests/test_misconfigurations.py",
+        "tests/test_docs.py",
+        new="note",
     )
 
 

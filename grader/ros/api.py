@@ -63,13 +63,13 @@ if TYPE_CHECKING:
     from grader.ros.workspace.all_robots import read_workspace as read_workspace
     from grader.ros.workspace.extent import Extent as Extent
     from grader.ros.workspace.name_places import NamePlaces as NamePlaces
-    from grader.ros.workspace.names import Mismatch as Mismatch
     from grader.ros.workspace.opened import OpenedWorkspace as OpenedWorkspace
     from grader.ros.workspace.opening import STANDARD_INPUT as STANDARD_INPUT
     from grader.ros.workspace.opening import open_workspace as open_workspace
-    from grader.ros.workspace.problem_kinds import EVERY_KIND as EVERY_KIND
-    from grader.ros.workspace.rule_table import RULES as RULES
-    from grader.ros.workspace.rule_table import Rule as Rule
+    from grader.ros.workspace.rules.names import Mismatch as Mismatch
+    from grader.ros.workspace.rules.problem_kinds import EVERY_KIND as EVERY_KIND
+    from grader.ros.workspace.rules.rule_table import RULES as RULES
+    from grader.ros.workspace.rules.rule_table import Rule as Rule
     from grader.ros.xml.xml_problems import RECOVERED as RECOVERED
 else:
     _NAMES = {
@@ -89,11 +89,11 @@ else:
         "workspace.all_robots": "read_workspace",
         "workspace.extent": "Extent",
         "workspace.name_places": "NamePlaces",
-        "workspace.names": "Mismatch",
+        "workspace.rules.names": "Mismatch",
         "workspace.opened": "OpenedWorkspace",
         "workspace.opening": "STANDARD_INPUT open_workspace",
-        "workspace.problem_kinds": "EVERY_KIND",
-        "workspace.rule_table": "RULES Rule",
+        "workspace.rules.problem_kinds": "EVERY_KIND",
+        "workspace.rules.rule_table": "RULES Rule",
         "xml.xml_problems": "RECOVERED",
     }
     _MODULES = {name: module for module, names in _NAMES.items() for name in names.split()}

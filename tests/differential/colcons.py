@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from grader.files.folder import read_folder
-from grader.ros.build.installation import Installation
+from grader.ros.installation.installation import Installation
 from grader.ros.package.finding import read_packages
 from grader.ros.package.package import Package
 from tests.differential.compared import Compared

@@ -5,13 +5,13 @@ from functools import partial
 
 from grader.base.source import Location
 from grader.files.tree import Tree, make_tree
-from grader.ros.build.cmake.cmake_lists import read_cmake
-from grader.ros.build.manifest import read_manifest
-from grader.ros.build.setup_py import read_setup
 from grader.ros.config.rviz import read_rviz
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.installation.cmake.cmake_lists import read_cmake
+from grader.ros.installation.manifest import read_manifest
+from grader.ros.installation.setup_py import read_setup
 from grader.ros.launch.launch_file import read_launch
-from grader.ros.package.cpp_nodes import read_cpp_nodes
+from grader.ros.nodes.cpp.cpp_nodes import read_cpp_nodes
 from grader.ros.package.finding import read_packages
 from grader.ros.python.parse import Position, parse
 from tests.checks.submissions import file_of

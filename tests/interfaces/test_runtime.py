@@ -4,7 +4,7 @@ from pathlib import Path
 
 from grader.files.reading import URDF_LIMIT
 from grader.ros.workspace.opening import open_workspace
-from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.rules.reading import read_agreement
 from tests.labs.variants import make_variant
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import cmake
 
-from grader.ros.build.installation import Installation
+from grader.ros.installation.installation import Installation
 from tests.differential.colcons import package_in
 
 STUB = Path(__file__).with_name("ament.cmake")

@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from grader.ros.build.manifest import read_manifest
-from grader.ros.build.manifest_conditions import evaluate_condition
+from grader.ros.installation.manifest import read_manifest
+from grader.ros.installation.manifest_conditions import evaluate_condition
 from tests.examples import examples
 from tests.oracles.example_robots import MISSING
 

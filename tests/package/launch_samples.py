@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from grader.ros.build.places import PREFIX
+from grader.ros.installation.places import PREFIX
 from grader.ros.launch.launch_file import read_launch
 from grader.ros.launch.launch_model import Launch, LaunchFault, NamedFile
 

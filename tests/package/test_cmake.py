@@ -2,8 +2,8 @@
 
 import pytest
 
-from grader.ros.build.cmake.cmake_lists import read_cmake
-from grader.ros.build.installation import Installation
+from grader.ros.installation.cmake.cmake_lists import read_cmake
+from grader.ros.installation.installation import Installation
 from tests.checks.submissions import Submitted
 from tests.package.cmake_grammar import FILES
 from tests.work import limited_work

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.ros.package.node_facts import CodeFault
+from grader.ros.nodes.node_facts import CodeFault
 from tests.package.test_cpp_nodes import nodes_of
 
 _MAIN = "int main(int argc, char ** argv) {{ rclcpp::init(argc, argv); {} }}"

@@ -3,15 +3,15 @@
 import pytest
 
 from grader.files.tree import make_tree, overlaid
-from grader.ros.package.cpp_nodes import read_cpp_nodes
-from grader.ros.package.finding import read_packages
-from grader.ros.package.node_facts import (
+from grader.ros.nodes.cpp.cpp_nodes import read_cpp_nodes
+from grader.ros.nodes.node_facts import (
     Endpoint,
     NamePart,
     NodeFacts,
     NodeParameter,
     PackageNodes,
 )
+from grader.ros.package.finding import read_packages
 from grader.ros.python.values import Unknown
 
 _CMAKE = """

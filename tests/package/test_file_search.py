@@ -15,7 +15,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from grader.files.tree import File, Tree, make_tree
-from grader.ros.build.file_search import ORDERS, PackageListing, file_functions
+from grader.ros.installation.file_search import ORDERS, PackageListing, file_functions
 from grader.ros.python.interpreter import Interpreter
 from grader.ros.python.library import standard_functions
 from grader.ros.python.parse import Code, parse

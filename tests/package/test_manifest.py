@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.ros.build.manifest import Manifest, read_manifest
+from grader.ros.installation.manifest import Manifest, read_manifest
 from tests.work import limited_work
 
 # As ros2 pkg create writes it, filled in.

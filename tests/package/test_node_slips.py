@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.ros.package.node_slips import Program, node_slips
+from grader.ros.nodes.python.node_slips import Program, node_slips
 from grader.ros.python.parse import Code, parse
 from tests.samples import ROOT
 

@@ -3,15 +3,15 @@
 import pytest
 
 from grader.files.tree import make_tree, overlaid
-from grader.ros.package.finding import read_packages
-from grader.ros.package.node_facts import (
+from grader.ros.nodes.node_facts import (
     Endpoint,
     NodeFacts,
     NodeParameter,
     PackageNodes,
     Timer,
 )
-from grader.ros.package.python_nodes import read_nodes
+from grader.ros.nodes.python.python_nodes import read_nodes
+from grader.ros.package.finding import read_packages
 from grader.ros.python.values import Unknown
 
 _SETUP = """

@@ -8,8 +8,8 @@ from random import Random
 import pytest
 
 from grader.files.folder import read_folder
-from grader.ros.build.installation import Installation
-from grader.ros.build.setup_py import read_setup
+from grader.ros.installation.installation import Installation
+from grader.ros.installation.setup_py import read_setup
 from tests.oracles.python_setups import Ran, run_all
 from tests.package.my_robot import write_package
 

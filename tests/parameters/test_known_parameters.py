@@ -22,8 +22,8 @@ from grader.ros.known.parameter_rows import (
 )
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.workspace.all_robots import read_workspace
-from grader.ros.workspace.names import Mismatch
-from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.rules.names import Mismatch
+from grader.ros.workspace.rules.reading import read_agreement
 from tests.workspace.rovers import FILES
 
 MAX_SIZE = 400 * 1024  # bytes of the rows in the wheel

@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.files.tree import File, make_tree
-from grader.ros.build.installation import Installation
-from grader.ros.build.setup_py import read_setup
+from grader.ros.installation.installation import Installation
+from grader.ros.installation.setup_py import read_setup
 from grader.ros.python.parse import Code, parse
 from tests.examples import examples, spread
 from tests.package.my_robot import FILES

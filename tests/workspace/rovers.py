@@ -3,9 +3,9 @@
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
 from grader.ros.workspace.all_robots import read_workspace
-from grader.ros.workspace.name_problems import name_problems
 from grader.ros.workspace.opened import OpenedWorkspace
-from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.rules.name_problems import name_problems
+from grader.ros.workspace.rules.reading import read_agreement
 
 Edit = tuple[
     str, str, str

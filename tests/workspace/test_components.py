@@ -5,7 +5,7 @@ import pytest
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
 from grader.ros.workspace.all_robots import read_workspace
-from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.rules.reading import read_agreement
 
 _MANIFEST = """\
 <package format="3">

@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.ros.workspace.names import Mismatch
+from grader.ros.workspace.rules.names import Mismatch
 from tests.workspace.carts import agreement_of, edited
 
 _ALARM, _LAUNCH, _ROBOT_LAUNCH = (

@@ -6,7 +6,7 @@ import pytest
 
 from grader.files.reading import URDF_LIMIT
 from grader.ros.workspace.opening import open_workspace
-from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.rules.reading import read_agreement
 from tests.labs.variants import make_variant
 
 _ORBITER, _WATCHER = "beacon/src/orbiter.cpp", "beacon/src/watcher.cpp"

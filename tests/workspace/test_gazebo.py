@@ -2,7 +2,7 @@
 
 import pytest
 
-from grader.ros.workspace.names import Correction
+from grader.ros.workspace.rules.names import Correction
 from tests.workspace.carts import agreement_of, sure
 
 _BRIDGE = """\

@@ -7,7 +7,7 @@ import pytest
 from grader.files.tree import make_tree, overlaid
 from grader.lab.submission.opening import submission_of
 from grader.lab.submission.submission import Lab
-from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.rules.reading import read_agreement
 
 _ARM = Path(__file__).parent.parent / "corpus" / "given" / "moveit" / "arm"
 _CONTROLLERS = """\

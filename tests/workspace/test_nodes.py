@@ -5,7 +5,7 @@ from functools import cache
 import pytest
 
 from grader.ros.workspace.graph.endpoints import opened_by
-from grader.ros.workspace.names import Mismatch
+from grader.ros.workspace.rules.names import Mismatch
 from tests.labs.variants import FOLDER
 from tests.workspace.carts import Edit, agreement_of, cart
 
@@ -502,7 +502,7 @@ def test_interfaces_of_several_packages_with_one_name_are_open() -> None:
 
 def test_code_may_be_too_long_to_search(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whether it fails is left to a person."""
-    monkeypatch.setattr("grader.ros.package.python_nodes._MAX_CODE", 1_000)
+    monkeypatch.setattr("grader.ros.nodes.python.python_nodes._MAX_CODE", 1_000)
     found = agreement_of(edited((DOOR, "    rclpy.spin(Door())", "    Door()")))
     assert found.undecided["code"] == "the code of 'laundry' is too long to search"
 

@@ -3,8 +3,8 @@
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
 from grader.ros.workspace.all_robots import read_workspace
+from grader.ros.workspace.index.offered_parameters import parameter_text, parameters_below
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.offered_parameters import parameter_text, parameters_below
 from tests.command_line import ROOT
 from tests.workspace.random_edits import files_of
 

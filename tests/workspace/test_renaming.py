@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from grader.base.source import Edit
 from grader.lab.hints.name_edits import correction_edits
-from grader.ros.workspace.names import Correction, Use
-from grader.ros.workspace.reading import read_facts
-from grader.ros.workspace.rule_table import DEFINED, Family
+from grader.ros.workspace.rules.names import Correction, Use
+from grader.ros.workspace.rules.reading import read_facts
+from grader.ros.workspace.rules.rule_table import DEFINED, Family
 from tests.examples import examples
 from tests.hints.trials import applied
 from tests.workspace.carts import agreement_of, cart, cart_files, edited, sure

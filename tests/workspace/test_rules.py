@@ -4,8 +4,8 @@ import re
 
 from grader.lab.checks.registry import check_names
 from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
-from grader.ros.workspace import rule_table
-from grader.ros.workspace.rule_table import FAMILIES, NAME_CATALOGUE, RULES, Rule
+from grader.ros.workspace.rules import rule_table
+from grader.ros.workspace.rules.rule_table import FAMILIES, NAME_CATALOGUE, RULES, Rule
 from tests.command_line import ROOT, run
 
 _ROWS = {name: rule for name, rule in vars(rule_table).items() if isinstance(rule, Rule)}

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from grader.files.tree import make_tree, overlaid
 from grader.lab.submission.opening import submission_of
 from grader.lab.submission.submission import Lab, Submission
-from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.rules.reading import read_agreement
 
 _XACRO = """\
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">

@@ -9,11 +9,11 @@ from grader.base.extents import ended
 from grader.base.source import Location, Source
 from grader.files.tree import Tree, make_tree, overlaid
 from grader.ros.package.robot_file import Read
-from grader.ros.workspace.all_names import WorkspaceNames
 from grader.ros.workspace.all_robots import read_workspace
+from grader.ros.workspace.index.all_names import WorkspaceNames
+from grader.ros.workspace.index.written_names import Role, WrittenName, span_of_name
 from grader.ros.workspace.opened import OpenedWorkspace
 from grader.ros.workspace.opening import open_workspace
-from grader.ros.workspace.written_names import Role, WrittenName, span_of_name
 
 _ROOT = Path(__file__).parent.parent.parent
 _CART = _ROOT / "tests" / "corpus" / "given" / "cartkit"

@@ -8,13 +8,13 @@ from typing import Any
 
 from grader.base.text import enumerated
 from grader.lab.authoring.facts import CarriedFact, Fact, Facts, Omission, Solution, are_joints_free
-from grader.ros.build.places import is_of_one_machine
+from grader.ros.installation.places import is_of_one_machine
 from grader.ros.package.robot_file import Read, read_as_ros
 from grader.ros.package.trees import is_path, steps_of
 from grader.ros.python.budget import Budget
 from grader.ros.urdf.link_tree import JOINT_OF
-from grader.ros.workspace.controllers import needed_interfaces
-from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.rules.controllers import needed_interfaces
+from grader.ros.workspace.rules.reading import read_agreement
 from grader.ros.xml.elements import (
     attributes_of,
     foreign_elements,

@@ -29,7 +29,7 @@ from grader.ros.urdf.model import (
     Visual,
 )
 from grader.ros.urdf.reader import Reading
-from grader.ros.workspace.reading import read_agreement
+from grader.ros.workspace.rules.reading import read_agreement
 from grader.ros.xml.elements import words_of_foreign
 from grader.ros.xml.parsing import Element
 

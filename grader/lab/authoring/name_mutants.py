@@ -11,9 +11,9 @@ from grader.lab.hints.name_edits import correction_edits
 from grader.lab.submission.submission import Submission
 from grader.ros.config.yaml_nodes import YamlNode, yaml_root
 from grader.ros.package.package import CMAKE, MANIFEST
-from grader.ros.workspace.names import Correction, Fact, Use
-from grader.ros.workspace.reading import compared_facts
-from grader.ros.workspace.rule_table import Family
+from grader.ros.workspace.rules.names import Correction, Fact, Use
+from grader.ros.workspace.rules.reading import compared_facts
+from grader.ros.workspace.rules.rule_table import Family
 
 _YAML = (".yaml", ".yml")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")

@@ -15,7 +15,7 @@ from xml.sax.saxutils import quoteattr
 from grader.base.source import Source
 from grader.lab.submission.edited import content
 from grader.lab.submission.submission import Submission
-from grader.ros.build.places import PREFIX
+from grader.ros.installation.places import PREFIX
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
 from grader.ros.python.python_file import PythonFile, argument

@@ -21,15 +21,15 @@ from grader.lab.authoring.facts import (
 )
 from grader.lab.checks.parameters import measures
 from grader.lab.submission.submission import Submission
-from grader.ros.build.places import PREFIX, is_of_one_machine
+from grader.ros.installation.places import PREFIX, is_of_one_machine
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
 from grader.ros.workspace.graph.endpoints import opened_by
-from grader.ros.workspace.reading import read_agreement, wrong_names
-from grader.ros.workspace.rule_table import FAMILIES, Family
+from grader.ros.workspace.rules.reading import read_agreement, wrong_names
+from grader.ros.workspace.rules.rule_table import FAMILIES, Family
 
 _THE_PACKAGE, _THE_NAMES, _THE_VALUES = "The package", "The names", "The values"  # headings
 _NAME_TITLES: Mapping[Family, str] = {

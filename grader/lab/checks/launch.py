@@ -14,7 +14,7 @@ from grader.lab.checks.installed_files import INSTALLING, files_of_kind, require
 from grader.lab.checks.outcome import Outcome, failed, judged, passed
 from grader.lab.checks.started_nodes import Fault, Wanted, find_faults
 from grader.lab.submission.submission import Submission
-from grader.ros.build.places import (
+from grader.ros.installation.places import (
     is_launch_named,
 )
 from grader.ros.package.file_places import FilePlace, find_places

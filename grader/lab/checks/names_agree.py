@@ -5,7 +5,7 @@ from grader.base.text import enumerated, first_lines
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.submission.submission import Submission
-from grader.ros.workspace.rule_table import Family
+from grader.ros.workspace.rules.rule_table import Family
 
 ABOUT = {
     "names_agree": About(
@@ -32,7 +32,7 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
             their fields); or code, of which nothing may certainly stop a node, or keep it from
             working; values (numbers that contradict the robot) or transforms (that are no tree).
     """
-    from grader.ros.workspace.reading import (  # late: few rubrics ask for it
+    from grader.ros.workspace.rules.reading import (  # late: few rubrics ask for it
         read_agreement,
         wrong_names,
     )

@@ -15,7 +15,7 @@ from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.reader import Reading
 from grader.ros.urdf.urdf_problems import UNLISTED
-from grader.ros.workspace.problem_kinds import EVERY_KIND
+from grader.ros.workspace.rules.problem_kinds import EVERY_KIND
 
 # Another text for the same robot may have problems of its own.
 ABOUT = {"without_problems": About(breaks_under=everything, is_of_writing=True)}

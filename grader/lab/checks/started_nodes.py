@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from grader.base.names import closest
 from grader.base.source import Location
 from grader.base.text import MAX_NAMED, enumerated, quoted
-from grader.ros.build.places import PREFIX
+from grader.ros.installation.places import PREFIX
 from grader.ros.xml.urdf_format import numbers_in
 
 if TYPE_CHECKING:
@@ -209,7 +209,7 @@ class _NodeTopics:
 
     def __init__(self, launch: "Launch", workspace: "Workspace") -> None:
         from grader.ros.workspace.graph.endpoints import opened_by  # late: few rubrics ask for it
-        from grader.ros.workspace.reading import read_agreement
+        from grader.ros.workspace.rules.reading import read_agreement
 
         self._topics: list[_NodeTopic] = []
         self._is_open = bool(launch.unknown)

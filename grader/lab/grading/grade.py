@@ -103,7 +103,9 @@ def _slips_of(submission: Submission) -> list[Slip]:
     slips = submission.urdf.slips if isinstance(submission.urdf, Read) else []
     packages = [submission.package, *submission.lab_packages.values()]
     for package in dict.fromkeys(filter(None, packages)):
-        from grader.ros.package.package_slips import package_slips  # late: many have no package
+        from grader.ros.nodes.python.package_slips import (
+            package_slips,  # late: many have no package
+        )
 
         slips += package_slips(package)
     return slips

@@ -14,9 +14,9 @@ from grader.lab.checks.parameters import measured, value_of
 from grader.lab.hints.edits import Proposal
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import CMAKE, MANIFEST, Package
-from grader.ros.workspace.names import Correction
-from grader.ros.workspace.reading import wrong_names
-from grader.ros.workspace.rule_table import Family
+from grader.ros.workspace.rules.names import Correction
+from grader.ros.workspace.rules.reading import wrong_names
+from grader.ros.workspace.rules.rule_table import Family
 
 _MAX_WRONG = 4  # names of which all combinations are tried
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".sdf", ".txt", ".cfg")

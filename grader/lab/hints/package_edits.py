@@ -22,7 +22,7 @@ from grader.base.source import Edit, Edits, Source
 from grader.base.text import in_backticks
 from grader.lab.hints.edits import Proposal
 from grader.lab.hints.package_task import WHAT, PackageTask, change, file_proposals, package_names
-from grader.ros.build.places import HOME, PREFIX, WORKING_FOLDER
+from grader.ros.installation.places import HOME, PREFIX, WORKING_FOLDER
 from grader.ros.launch.launch_model import Launch, NamedFile
 from grader.ros.package.package import SETUP, Package
 from grader.ros.python.library import USUAL_NAMES

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from grader.base.names import closest
 from grader.base.source import Edit, Source
 from grader.lab.hints.edits import Proposal
-from grader.ros.build.places import is_launch_file, is_launch_named
+from grader.ros.installation.places import is_launch_file, is_launch_named
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import MANIFEST, SETUP, Package
 from grader.ros.python.budget import PYTHON_LIMIT

@@ -10,9 +10,9 @@ from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.problems import Problem
 from grader.base.reuse import reuse
 from grader.base.source import Location, Source
-from grader.ros.build import package_problems as kinds
-from grader.ros.build.places import is_of_one_machine
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.installation import package_problems as kinds
+from grader.ros.installation.places import is_of_one_machine
 
 _MAX_DISPLAYS = 500
 

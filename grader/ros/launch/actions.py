@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
-from grader.ros.build.places import PREFIX
+from grader.ros.installation.places import PREFIX
 from grader.ros.launch.call_arguments import items_in, kind_of
 from grader.ros.launch.components import load_components, start_container
 from grader.ros.launch.launch_classes import CONDITION, ENTITY, SOURCE, class_named, is_a

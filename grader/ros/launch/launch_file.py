@@ -17,8 +17,8 @@ from typing import Any
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.reuse import Answers, Memory
 from grader.base.source import Location, Source
-from grader.ros.build.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.ros.config.yaml_nodes import yaml_value
+from grader.ros.installation.places import HOME, PREFIX, SHARE, WORKING_FOLDER
 from grader.ros.launch.actions import ActionVisitor, Include, NotIncluded
 from grader.ros.launch.call_arguments import LaunchFunctions, join_path, kind_of
 from grader.ros.launch.launch_classes import (

@@ -9,7 +9,7 @@ from functools import partial
 from typing import Any, Literal, NamedTuple, Protocol
 
 from grader.base.source import Location, Source
-from grader.ros.build.places import PREFIX
+from grader.ros.installation.places import PREFIX
 from grader.ros.python.budget import Budget
 from grader.ros.python.parse import Position
 from grader.ros.python.values import (

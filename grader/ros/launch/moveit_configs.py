@@ -14,8 +14,8 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.files.limits import SETUP_ASSISTANT
-from grader.ros.build.places import BY_MOVEIT, PREFIX, SHARE
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml, yaml_value
+from grader.ros.installation.places import BY_MOVEIT, PREFIX, SHARE
 from grader.ros.known.package_tables import StartRow, launch_functions
 from grader.ros.launch.launch_classes import DESCRIPTION
 from grader.ros.launch.launch_model import (

@@ -14,8 +14,8 @@ from pathlib import PurePosixPath
 from typing import Any, NamedTuple
 
 from grader.base.source import Location
-from grader.ros.build.places import PREFIX
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml, yaml_value
+from grader.ros.installation.places import PREFIX
 from grader.ros.known.package_rows import program_row
 from grader.ros.launch.call_arguments import FILE, SCALARS, TYPED, items_in, kind_of, type_of
 from grader.ros.launch.launch_model import (

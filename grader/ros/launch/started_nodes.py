@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
-from grader.ros.build.places import PREFIX, ROS, SHARE
+from grader.ros.installation.places import PREFIX, ROS, SHARE
 from grader.ros.known.package_rows import package_row, program_row
 from grader.ros.known.ros_machine import ros_machine
 from grader.ros.launch.call_arguments import OPENED, TYPED, items_in

@@ -10,8 +10,8 @@ from dataclasses import dataclass, replace
 from math import isclose
 
 from grader.base.text import enumerated
-from grader.ros.build.places import HOME, PREFIX, SHARE
 from grader.ros.config.yaml_nodes import yaml_value
+from grader.ros.installation.places import HOME, PREFIX, SHARE
 from grader.ros.known.package_rows import package_row, programs_of
 from grader.ros.launch.launch_model import Contents, Context, FileText, Resolved
 from grader.ros.python.budget import Budget, OutOfBudget

@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterator
 
 from grader.base.problems import Problem
-from grader.ros.build import package_problems as kinds
-from grader.ros.build.installation import CmakeTarget, Installation
+from grader.ros.installation import package_problems as kinds
+from grader.ros.installation.installation import CmakeTarget, Installation
 from grader.ros.known.cmake_words import cmake_words
 from grader.ros.package.package import Package
 

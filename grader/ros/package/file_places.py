@@ -7,7 +7,7 @@ from grader.base.errors import InputError, MissingElement
 from grader.base.names import closest, is_misspelling
 from grader.base.text import enumerated
 from grader.files.reading import URDF_LIMIT
-from grader.ros.build.places import (
+from grader.ros.installation.places import (
     BY_MOVEIT,
     BY_UTF8,
     HOME,

@@ -10,8 +10,8 @@ from grader.base.names import closest, folded
 from grader.base.reuse import Memory
 from grader.base.source import Location, Source
 from grader.files.tree import Tree
-from grader.ros.build.manifest import Manifest, read_manifest
-from grader.ros.build.places import SHARE
+from grader.ros.installation.manifest import Manifest, read_manifest
+from grader.ros.installation.places import SHARE
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
 from grader.ros.package.robot_file import launch_folders
 from grader.ros.package.robots import RobotFile

@@ -9,9 +9,9 @@ from grader.base.names import did_you_mean
 from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.base.text import enumerated
-from grader.ros.build import package_problems as kinds
-from grader.ros.build.installation import Installation
-from grader.ros.build.places import is_of_one_machine, one_machine_only
+from grader.ros.installation import package_problems as kinds
+from grader.ros.installation.installation import Installation
+from grader.ros.installation.places import is_of_one_machine, one_machine_only
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import MANIFEST, RESOURCE_INDEX, Package
 

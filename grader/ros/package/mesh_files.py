@@ -14,8 +14,8 @@ from grader.base.problems import Problem
 from grader.base.source import LazyLocation
 from grader.base.text import quoted, quoted_end
 from grader.files.tree import File, Tree
-from grader.ros.build.package_problems import MESH_PATH
-from grader.ros.build.places import is_of_one_machine
+from grader.ros.installation.package_problems import MESH_PATH
+from grader.ros.installation.places import is_of_one_machine
 from grader.ros.package.installed_files import Lookup, look_up, similar_file
 from grader.ros.package.mesh_content import content_fault
 from grader.ros.package.package import Package

@@ -14,7 +14,7 @@ from grader.base.reuse import Memory
 from grader.base.source import Location, Source
 from grader.base.text import enumerated, was_not_committed
 from grader.files.tree import IS_LINK, Tree
-from grader.ros.build.places import (
+from grader.ros.installation.places import (
     ENDINGS,
     PREFIX,
     SHARE,
@@ -29,9 +29,9 @@ from grader.ros.python.budget import PYTHON_LIMIT, Budget
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
-    from grader.ros.build.installation import Installation, KnownPrograms
-    from grader.ros.build.manifest import Manifest
     from grader.ros.config.rviz import RvizFile
+    from grader.ros.installation.installation import Installation, KnownPrograms
+    from grader.ros.installation.manifest import Manifest
     from grader.ros.launch.launch_model import Launch, NamedFile
 
 MANIFEST, SETUP, CMAKE = "package.xml", "setup.py", "CMakeLists.txt"
@@ -239,7 +239,7 @@ class Package:
         file = self.tree.files.get(name)
         if file is None:
             return None
-        from grader.ros.build.installation import Installation
+        from grader.ros.installation.installation import Installation
         from grader.ros.python.parse import SyntaxFault
 
         path = self.path(name)
@@ -250,12 +250,12 @@ class Package:
             fault = SyntaxFault(source, str(error), Location(path, 1, 1), is_certain=False)
             return Installation(source, fault)
         if self.is_cmake:
-            from grader.ros.build.cmake.cmake_lists import read_cmake
+            from grader.ros.installation.cmake.cmake_lists import read_cmake
 
             declared = (self.manifest.name if self.manifest is not None else None) or ""
             text = data.decode("utf-8", "replace")
             return read_cmake(text, path, self.tree, declared, self.budget)
-        from grader.ros.build.setup_py import read_setup
+        from grader.ros.installation.setup_py import read_setup
 
         return read_setup(data, path, self.tree, self.budget)
 

@@ -385,7 +385,7 @@ def _expand_xacro(
     xacro. A file that the launch file names there and that no build certainly installs stays as it
     is: what is in it cannot be determined.
     """
-    from grader.ros.build.places import SHARE  # late: most URDFs are no xacro
+    from grader.ros.installation.places import SHARE  # late: most URDFs are no xacro
     from grader.ros.xacro.texts import INSTALLED
 
     launched = dict(references[0].arguments) if references else {}

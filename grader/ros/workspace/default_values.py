@@ -10,10 +10,10 @@ from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.python.parse import START
 from grader.ros.python.values import SCALARS, Unknown, Value
 from grader.ros.workspace.graph.started_controllers import defined_controllers
-from grader.ros.workspace.known_parameters import is_as_released
 from grader.ros.workspace.model.launches import SPAWNERS
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.parameter_rules import GivenNode, default_in
+from grader.ros.workspace.rules.known_parameters import is_as_released
+from grader.ros.workspace.rules.parameter_rules import GivenNode, default_in
 
 _EVERY_NODE = "rclcpp/node"
 _NOT_KNOWN = Unknown("its default is not known", START)

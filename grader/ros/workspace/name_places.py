@@ -3,13 +3,13 @@
 from collections.abc import Collection, Mapping
 from functools import cached_property
 
-from grader.ros.workspace.all_names import WorkspaceNames
-from grader.ros.workspace.names import Mismatch
-from grader.ros.workspace.offered_names import offered_names
-from grader.ros.workspace.offered_parameters import parameter_text, parameters_below
+from grader.ros.workspace.index.all_names import WorkspaceNames
+from grader.ros.workspace.index.offered_names import offered_names
+from grader.ros.workspace.index.offered_parameters import parameter_text, parameters_below
+from grader.ros.workspace.index.written_names import WrittenName
 from grader.ros.workspace.opened import OpenedWorkspace
-from grader.ros.workspace.reading import read_agreement
-from grader.ros.workspace.written_names import WrittenName
+from grader.ros.workspace.rules.names import Mismatch
+from grader.ros.workspace.rules.reading import read_agreement
 
 
 class NamePlaces:

@@ -18,8 +18,8 @@ if TYPE_CHECKING:
     from grader.base.reuse import Memory
     from grader.ros.launch.launch_model import ParameterValue
     from grader.ros.package.mesh_loading import Around, MeshLoader
-    from grader.ros.workspace.all_names import WorkspaceNames
     from grader.ros.workspace.extent import Extent
+    from grader.ros.workspace.index.all_names import WorkspaceNames
     from grader.ros.workspace.model.workspace import Workspace
 
 _NO_FILES = make_tree("", (), ())
@@ -120,8 +120,8 @@ class OpenedWorkspace:
     def package_problems(self) -> list[Problem]:
         """Return what is wrong in its packages: in their files, then names that do not agree."""
         # Late: most commands list no problems of a workspace.
-        from grader.ros.workspace.file_problems import listed_problems, ros1_problem
-        from grader.ros.workspace.release_problems import compared_names
+        from grader.ros.workspace.rules.file_problems import listed_problems, ros1_problem
+        from grader.ros.workspace.rules.release_problems import compared_names
 
         found = [ros1_problem(package) for package in self.ros1_packages]
         found += listed_problems(self.workspace)
@@ -138,14 +138,16 @@ class OpenedWorkspace:
         """Return the meshes whose sizes surely are in another unit: `grader inspect` alone warns of
         them.
         """
-        from grader.ros.workspace.mesh_sizes import mesh_size_problems  # late: as above
+        from grader.ros.workspace.rules.mesh_sizes import mesh_size_problems  # late: as above
 
         return mesh_size_problems(self.workspace)
 
     def names(self) -> "WorkspaceNames":
         """Return the names that its files define and use, each where it is written."""
-        from grader.ros.workspace.all_names import read_names  # late: only editors ask for them
-        from grader.ros.workspace.reading import facts_once
+        from grader.ros.workspace.index.all_names import (
+            read_names,  # late: only editors ask for them
+        )
+        from grader.ros.workspace.rules.reading import facts_once
 
         return read_names(self.workspace, facts_once(self.workspace).facts)
 
@@ -153,7 +155,7 @@ class OpenedWorkspace:
         """Return it for a release of ROS 2 that an option or a setting gives; without one, for
         those that its files state.
         """
-        from grader.ros.workspace.stated_releases import stated_releases  # late: as above
+        from grader.ros.workspace.model.stated_releases import stated_releases  # late: as above
 
         if distro is not None:
             return replace(self, stated=StatedReleases((distro,), (place,)))

@@ -5,7 +5,7 @@ from typing import Literal, NamedTuple, get_args
 
 from grader.base.source import Location
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.package.node_facts import Endpoint, EndpointKind, NamePart, NodeFacts, NodeFrame
+from grader.ros.nodes.node_facts import Endpoint, EndpointKind, NamePart, NodeFacts, NodeFrame
 from grader.ros.python.values import Value
 from grader.ros.workspace.model.workspace import Workspace
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from grader.ros.known.package_rows import CommandRow, ProgramRow, program_row
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.package.node_facts import Endpoint, EndpointKind
+from grader.ros.nodes.node_facts import Endpoint, EndpointKind
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TypeVar
 
-from grader.ros.package.node_facts import EndpointKind
+from grader.ros.nodes.node_facts import EndpointKind
 from grader.ros.workspace.graph.endpoints import End, EndSource
 from grader.ros.workspace.graph.ends import ends_of
 from grader.ros.workspace.graph.transform_edges import Edge, edges_in

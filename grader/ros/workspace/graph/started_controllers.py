@@ -12,7 +12,7 @@ from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.package_rows import controller_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import controllers_of
-from grader.ros.package.node_facts import Endpoint, EndpointKind
+from grader.ros.nodes.node_facts import Endpoint, EndpointKind
 from grader.ros.workspace.model.launches import MANAGER, SPAWNERS
 from grader.ros.workspace.model.workspace import Workspace
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.package.node_facts import EndpointKind
+from grader.ros.nodes.node_facts import EndpointKind
 from grader.ros.package.package import Package
 from grader.ros.workspace.graph.bridge_rows import BRIDGE
 from grader.ros.workspace.graph.endpoints import opened_by

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property, partial
 
-from grader.ros.build.places import PREFIX, share_parts
+from grader.ros.installation.places import PREFIX, share_parts
 from grader.ros.launch.launch_model import GivenParameters, StartedNode
 from grader.ros.launch.node_parameters import (
     FileTables,

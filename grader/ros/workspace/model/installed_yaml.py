@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 from grader.base.source import Location
-from grader.ros.build.places import PREFIX
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import sections_in, values_in
+from grader.ros.installation.places import PREFIX
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import value_in_file
 from grader.ros.workspace.model.launches import Launches

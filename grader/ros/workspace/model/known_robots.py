@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from grader.base.source import LazyLocation, Location, Source
-from grader.ros.build.places import SHARE, share_parts
+from grader.ros.installation.places import SHARE, share_parts
 from grader.ros.launch.launch_model import GivenParameters
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.model import Robot

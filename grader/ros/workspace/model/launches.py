@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 
-from grader.ros.build.places import LaunchKind, launch_kind
+from grader.ros.installation.places import LaunchKind, launch_kind
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.package.package import Package

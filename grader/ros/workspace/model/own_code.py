@@ -8,10 +8,10 @@ from functools import cached_property
 
 from grader.ros.known.package_rows import children_by_node, program_row
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.package.node_facts import NodeFacts, PackageNodes
+from grader.ros.nodes.node_facts import NodeFacts, PackageNodes
+from grader.ros.nodes.python.python_nodes import read_nodes
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.package_interfaces import PackageInterfaces, read_interfaces
-from grader.ros.package.python_nodes import read_nodes
 from grader.ros.workspace.model.installed_yaml import InstalledFiles
 from grader.ros.workspace.model.launches import MANAGER
 from grader.ros.workspace.model.text_files import MAX_YAML
@@ -122,7 +122,7 @@ def _nodes_of(package: Package) -> PackageNodes:
     setup = package.installation
     if setup is None or not any(target.sources for target in setup.targets):
         return found
-    from grader.ros.package.cpp_nodes import read_cpp_nodes  # late: few workspaces have C++
+    from grader.ros.nodes.cpp.cpp_nodes import read_cpp_nodes  # late: few workspaces have C++
 
     compiled = read_cpp_nodes(package)
     return found._replace(

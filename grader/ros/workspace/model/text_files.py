@@ -12,7 +12,7 @@ from functools import cache, cached_property
 from grader.base.errors import InputError
 from grader.base.source import Source
 from grader.files.tree import parents
-from grader.ros.build.places import is_launch_file
+from grader.ros.installation.places import is_launch_file
 from grader.ros.package.package import Package
 from grader.ros.workspace.model.workspace_folder import WorkspaceFolder
 from grader.ros.xml.parsing import XmlFault, XmlFile

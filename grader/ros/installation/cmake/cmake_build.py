@@ -1,0 +1,578 @@
+"""The targets and the installed files of a CMakeLists.txt, and what stops its build."""
+
+import posixpath
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
+from fnmatch import translate
+from itertools import pairwise, takewhile
+
+from grader.base.names import MAX_GUESSES, closest, did_you_mean, near
+from grader.base.source import Source
+from grader.files.limits import ignored_part
+from grader.ros.installation.cmake.cmake_targets import CmakeTargets
+from grader.ros.installation.cmake.cmake_values import ROOT, Text, Values
+from grader.ros.installation.cmake.language import Command
+from grader.ros.installation.file_search import EmptyGlob, PackageListing
+from grader.ros.installation.installation import (
+    CmakeComponent,
+    GeneratedInterfaces,
+    Installation,
+    InstalledFile,
+    InstallError,
+)
+from grader.ros.installation.places import PREFIX
+from grader.ros.known.cmake_words import cmake_words
+from grader.ros.python.parse import START, Position
+from grader.ros.python.values import Undetermined, Unknown
+
+_MANIFEST = "package.xml"
+_Options = Mapping[str, list[str]]
+_Groups = Sequence[tuple[str, list[str]]]  # arguments by the keyword before them
+
+
+class Build:
+    """What a build makes and installs, as far as the file was evaluated."""
+
+    def __init__(self, listing: PackageListing, values: Values, name: str) -> None:
+        """`name` is the one in package.xml."""
+        self.listing, self.values, self.name = listing, values, name
+        self.targets: dict[str, str] = {}  # executable, library, interfaces or unknown
+        self.made = CmakeTargets(listing)
+        self.copies: dict[str, InstalledFile] = {}  # by the path below the prefix
+        self.programs: set[str] = set()  # paths below the prefix
+        self.scripts: set[str] = set()  # likewise, of files
+        self.modules: list[str] = []  # Python packages
+        self.interfaces: list[GeneratedInterfaces] = []
+        self.stops: list[InstallError] = []
+        self.unknown: list[Unknown] = []
+        self.doubts: list[Unknown] = []
+        self.last = START
+        self._package_at: Position | None = None  # where ament_package() is called
+        self._automatic: list[str] = []  # targets that ament_auto_package() installs
+        self._guesses = 0
+
+    def result(self, source: Source) -> Installation:
+        """Return what is known at the end."""
+        if self._package_at is None and not self.doubts:
+            self.stop(
+                "CMakeLists.txt does not call ament_package(), so ROS 2 does not find the package",
+                self.last,
+            )
+        project = self.values.variables.get("PROJECT_NAME")
+        return Installation(
+            source,
+            name=project if isinstance(project, str) else None,
+            copies=tuple(self.copies.values()),
+            programs=tuple(sorted(self.programs)),
+            scripts=tuple(sorted(self.scripts)),
+            stops=tuple(self.stops),
+            empty=tuple(self.listing.empty),
+            unknown=tuple(dict.fromkeys([*self.doubts, *self.unknown])),
+            doubt=self.doubts[0] if self.doubts else None,
+            called_at=self._package_at or self.last,
+            files_at=self._package_at or self.last,
+            packages=tuple(self.modules),
+            interfaces=tuple(self.interfaces),
+            targets=self.made.all({it: self.inside(it) for it in self.made.written_sources}),
+        )
+
+    def give_up(self, reason: str, at: Position) -> None:
+        """Note that something is not evaluated that may set variables, install files or stop the
+        build.
+        """
+        self.doubts.append(self.values.uncertain or Unknown(reason, at))
+        self.values.is_opaque = True
+
+    def stop(self, reason: str, at: Position, path: str = "", hint: str = "") -> None:
+        """Note an error that stops the build."""
+        if self.values.uncertain is not None:
+            self.doubts.append(self.values.uncertain)
+        else:
+            self.stops.append(InstallError(path, reason, at, hint, by="install()"))
+
+    def _guess(self, name: str, known: Collection[str]) -> str:
+        """Return which name may be meant, for the end of a message; of the first missing names
+        only, because comparing names takes long.
+        """
+        self._guesses += 1
+        return did_you_mean(name, known) if self._guesses <= MAX_GUESSES else ""
+
+    # --- Files
+    # ----------------------------------------------------------------------
+
+    def inside(self, text: str) -> str | None:
+        """Return a path as one in the package, without dots; None for one outside of it."""
+        path = posixpath.normpath("" if text == ROOT else text.removeprefix(f"{ROOT}/"))
+        if path == ".":
+            return ""
+        return None if path.startswith(("/", "..")) else path
+
+    def _has(self, path: str) -> bool | None:
+        """Return whether the package has a file or folder at a path; None where that is not
+        known.
+        """
+        try:
+            is_there = not path or self.listing.real(path) is not None
+        except Undetermined:
+            return None
+        if not is_there and ignored_part(path):
+            return None
+        return is_there
+
+    def exists(self, text: str) -> bool | None:
+        """Return whether a file or folder of the package exists; None where that is not known, as
+        below an empty folder, which may be a submodule.
+        """
+        path = self.inside(text)
+        if path is None:
+            return None
+        folder = posixpath.dirname(path)
+        is_there = self._has(path)
+        if not is_there and folder and self._has(folder) and not self.listing.names(folder):
+            return None
+        return is_there
+
+    def searched(self, texts: Sequence[Text], at: Position, *, recursive: bool) -> Text:
+        """Return the list that file(GLOB) makes."""
+        start = f"{ROOT}/"
+        words = [text for text in texts if text not in ("CONFIGURE_DEPENDS", "FOLLOW_SYMLINKS")]
+        if words[:1] == ["RELATIVE"]:
+            if words[1:2] != [ROOT]:
+                return Unknown("a search relative to another folder is not evaluated", at)
+            words, start = words[2:], ""
+        found: set[str] = set()
+        for word in words:
+            pattern = self.inside(word) if isinstance(word, str) else None
+            if pattern is None or words[0] == "LIST_DIRECTORIES":
+                return Unknown("a search is not evaluated", at)
+            paths = self._matching(pattern, recursive=recursive)
+            if not paths:
+                self.listing.empty[EmptyGlob(pattern, at)] = None
+            found.update(paths)
+        text = ";".join(f"{start}{path}" for path in sorted(found))
+        self.listing.budget.charge(1, len(text))
+        return text
+
+    def _matching(self, pattern: str, *, recursive: bool) -> list[str]:
+        """Return the files that a pattern of CMake matches; without `recursive` the folders,
+        too.
+        """
+        if not recursive:
+            with suppress(Undetermined):
+                return self.listing.glob(pattern)
+            return []
+        folder, _, name = pattern.rpartition("/")
+        matches = re.compile(translate(name)).match
+        below = self.listing.files_below(folder)
+        return [path for path in below if matches(posixpath.basename(path))]
+
+    # --- Targets
+    # ----------------------------------------------------------------------
+
+    def add_target(self, command: Command) -> None:
+        """Add an executable or a library, whose sources must exist."""
+        texts = self.values.texts(command.arguments)
+        name = (texts or [""])[0]
+        if isinstance(name, Unknown):
+            self.give_up("the name of a target is not known", command.at)
+            return
+        kind = "executable" if command.name.endswith("executable") else "library"
+        self.targets[name] = kind if self.values.uncertain is None else "unknown"
+        is_certain = self.values.uncertain is None
+        self.made.add(name, kind, command.at, is_certain=is_certain, texts=texts[1:])
+        if command.name.startswith("ament_auto"):
+            self._automatic.append(name)
+            self.made.install(name)
+        words = [text for text in texts[1:] if isinstance(text, str)]
+        if {"IMPORTED", "ALIAS", "DIRECTORY"}.isdisjoint(words):
+            self._require_sources(words, command)
+
+    def _require_sources(self, sources: Sequence[str], command: Command) -> None:
+        for source in sources:
+            path = self.inside(source) or ""
+            is_file = source not in cmake_words().target_keywords and posixpath.splitext(path)[1]
+            if is_file and self._has(path) is False:
+                self._stop_missing(command, path)
+
+    def _stop_missing(self, command: Command, path: str) -> None:
+        hint = self._guess(path, self.listing.files)
+        self.stop(
+            f"{command.name}() lists {path!r}, but there is no such file", command.at, hint=hint
+        )
+
+    def use_target(self, command: Command) -> None:
+        """Note a target that is not defined, and a package that was not found."""
+        name, *rest = self.values.texts(command.arguments) or [""]
+        if isinstance(name, Unknown):
+            return
+        if command.name == "ament_target_dependencies":
+            self.made.depend(name, rest)
+        else:
+            self.made.link(name, rest)
+        if self.values.is_opaque:
+            return
+        if name not in self.targets:
+            self._stop_target(command, name)
+        found = self.values.packages
+        reached = self.values.reached_packages()
+        for text in rest if command.name == "ament_target_dependencies" else ():
+            if not isinstance(text, str) or not text.islower() or text in (reached or found):
+                continue
+            self.listing.budget.charge(len(found))
+            # What is found may export the package, unless it is surely misspelt.
+            if reached is not None or near(text, found) is not None:
+                self.stop(
+                    f"{command.name}() names the package {text!r}, without find_package({text})",
+                    command.at,
+                )
+
+    def _stop_target(self, command: Command, name: str) -> None:
+        hint = self._guess(name, self.targets)
+        self.stop(
+            f"{command.name}() names the target {name!r}, which is not defined",
+            command.at,
+            hint=hint,
+        )
+
+    def register_component(self, command: Command) -> None:
+        """Install the program that rclcpp_components_register_node() makes, which its EXECUTABLE
+        names.
+        """
+        texts = self.values.texts(command.arguments)
+        after = dict(pairwise(texts))
+        name, library, plugin = after.get("EXECUTABLE", ""), texts[:1], after.get("PLUGIN")
+        if isinstance(plugin, str) and library and isinstance(library[0], str):
+            component = CmakeComponent(plugin, command.at, name if isinstance(name, str) else "")
+            self.made.register(library[0], component)
+        if isinstance(name, Unknown):
+            self.give_up("the name of a program is not known", command.at)
+        elif name and self.values.uncertain is None:
+            self.programs.add(f"lib/{self._project()}/{name}")
+        elif name:
+            self._leave_open(Unknown(f"the program {name} is not known", command.at))
+
+    def register_components(self, command: Command) -> None:
+        """Note the classes that rclcpp_components_register_nodes() registers."""
+        library, *plugins = self.values.texts(command.arguments) or [""]
+        for plugin in plugins:
+            if isinstance(library, str) and isinstance(plugin, str):
+                self.made.register(library, CmakeComponent(plugin, command.at))
+
+    def add_sources(self, command: Command) -> None:
+        """Add sources to a target."""
+        name, *texts = self.values.texts(command.arguments) or [""]
+        if isinstance(name, str):
+            doubt = self.values.uncertain
+            self.made.add_sources(name, [*texts, *([doubt] if doubt is not None else [])])
+
+    def generate_interfaces(self, command: Command) -> None:
+        """Install the message, service and action files of a package."""
+        texts = self.values.texts(command.arguments)
+        keywords = cmake_words().interface_keywords
+        words = [*takewhile(lambda text: text not in keywords, texts)]
+        known = [text for text in words if isinstance(text, str)]
+        if not words or len(known) < len(words):
+            self.interfaces.append(GeneratedInterfaces(command.at, is_certain=False))
+            self.give_up("the arguments of rosidl_generate_interfaces() are not known", command.at)
+            return
+        name, *files = known
+        self.targets[name] = "interfaces"
+        made = []
+        for text in files:
+            path = self.inside(text.replace(f"{ROOT}:", f"{ROOT}/"))
+            if path is None:
+                self.give_up(f"{text} is not in the package", command.at)
+                continue
+            if self._has(path) is False:
+                self._stop_missing(command, path)
+                self.listing.budget.charge(len(self.listing.files))
+                meant = closest(path, self.listing.files)
+                if meant is None or not meant.endswith(posixpath.splitext(path)[1]):
+                    continue
+                path = meant  # as which the rest is read
+            made.append(path)
+            self._copy(path, f"{self._share()}/{'/'.join(path.split('/')[-2:])}", command.at)
+        rest = texts[len(words) :]
+        groups: dict[str, list[str]] = {}
+        for keyword, items in _groups([str(text) for text in rest], keywords):
+            groups.setdefault(keyword, []).extend(items)
+        is_known = len(made) == len(files) and all(isinstance(text, str) for text in rest)
+        found = GeneratedInterfaces(
+            command.at,
+            tuple(made),
+            tuple(groups.get("DEPENDENCIES", ())),
+            is_certain=is_known and self.values.uncertain is None,
+            needs_group=groups.keys().isdisjoint(("SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK")),
+        )
+        self.interfaces.append(found)
+
+    # --- Installed files
+    # ----------------------------------------------------------------------
+
+    def package(self, command: Command) -> None:
+        """End the package, as ament_package() does; the name of the project must be that in
+        package.xml.
+        """
+        if self.values.uncertain is not None:
+            self.give_up("it is not known whether ament_package() is called", command.at)
+            return
+        self._package_at = command.at
+        project = self.values.variables.get("PROJECT_NAME", "")
+        if isinstance(project, str) and self.name and project != self.name:
+            self.stop(
+                f"project() names the package {project!r}, package.xml names it {self.name!r}",
+                command.at,
+            )
+        if _MANIFEST in self.listing.files:
+            self._copy(_MANIFEST, f"{self._share()}/{_MANIFEST}", command.at)
+
+    def auto_package(self, command: Command) -> None:
+        """Install the targets of ament_cmake_auto and whole folders, and end the package."""
+        texts = self.values.known(command)
+        if texts is None:
+            self.give_up("the arguments of ament_auto_package() are not known", command.at)
+            return
+        executables = (name for name in self._automatic if self.targets[name] == "executable")
+        self.programs.update(f"lib/{self._project()}/{name}" for name in executables)
+        groups = _groups(texts, cmake_words().auto_keywords)
+        for keyword, folders in groups[1:]:
+            target = self._share() if keyword == "INSTALL_TO_SHARE" else "bin"
+            for folder in folders:
+                self._copy_folder(folder, target, command, groups[:1])
+        self.package(command)
+
+    def python_package(self, command: Command) -> None:
+        """Install a Python package, whose folder must have an __init__.py."""
+        texts = self.values.known(command)
+        if not texts:
+            self.give_up(
+                "the arguments of ament_python_install_package() are not known", command.at
+            )
+            return
+        options = dict(_groups(texts, cmake_words().python_keywords))
+        folder = self.inside((options.get("PACKAGE_DIR") or texts)[0])
+        self.modules.append(texts[0])
+        if "SCRIPTS_DESTINATION" in options or "setup.cfg" in self.listing.files:
+            self.unknown.append(
+                Unknown("the programs of a setup.cfg are not evaluated", command.at)
+            )
+        if folder is not None and self._has(f"{folder}/__init__.py") is False:
+            what = "has no __init__.py" if self._has(folder) else "does not exist"
+            self.stop(
+                f"ament_python_install_package() needs the folder {folder!r}, which {what}",
+                command.at,
+            )
+
+    def plugin_description(self, command: Command) -> None:
+        """Install the description of plugins in the package's share folder."""
+        texts = self.values.known(command) or []
+        self._copy_files(texts[1:2], self._share(), command, {})
+
+    def install(self, command: Command) -> None:
+        """Install files, folders, programs or targets."""
+        texts = self.values.texts(command.arguments)
+        kind = (texts or [""])[0]
+        words = [text for text in texts[1:] if isinstance(text, str)]
+        unknown = next((text for text in texts if isinstance(text, Unknown)), None)
+        if kind in ("EXPORT", "RUNTIME_DEPENDENCY_SET"):
+            return
+        if not texts:
+            self.stop("install() has no arguments", command.at)
+            return
+        if unknown is not None or kind not in ("DIRECTORY", "FILES", "PROGRAMS", "TARGETS"):
+            self._leave_open(
+                unknown or Unknown(f"install({kind} ...) is not evaluated", command.at)
+            )
+            return
+        groups = _groups(words, cmake_words().install_keywords)
+        if kind == "TARGETS":
+            self._install_targets(groups, command)
+            return
+        options = dict(groups[1:])
+        if not groups[0][1]:
+            return  # CMake does not look at the rest then
+        target, before = self._destination(options, command), set(self.copies)
+        for text in groups[0][1] if target is not None and kind == "DIRECTORY" else ():
+            self._copy_folder(text, target or "", command, groups)
+        if target is not None and kind != "DIRECTORY":
+            self._copy_files(groups[0][1], target, command, options)
+        if kind == "PROGRAMS" or any("PERMISSIONS" in key for key in options):
+            self.scripts.update(self.copies.keys() - before)
+
+    def _leave_open(self, reason: Unknown) -> None:
+        """Note that more may be installed."""
+        self.unknown.append(self.values.uncertain or reason)
+
+    def _destination(self, options: _Options, command: Command) -> str | None:
+        """Return the path below the prefix where files go; None where it is not known, or there is
+        none.
+        """
+        values = options.get("DESTINATION", [])
+        if len(values) != 1:
+            if "TYPE" in options:
+                self._leave_open(Unknown("install(... TYPE ...) is not evaluated", command.at))
+            else:
+                self.stop("install() has no DESTINATION", command.at)
+            return None
+        target = posixpath.normpath(values[0].removeprefix(f"{PREFIX}/"))
+        if target.startswith(("/", "..")):
+            self._leave_open(Unknown(f"{target} is outside of the prefix", command.at))
+            return None
+        return target
+
+    def _install_targets(self, groups: _Groups, command: Command) -> None:
+        """Install executables; where libraries go is not needed."""
+        kind, places = "", dict[str, str]()
+        for keyword, values in groups[1:]:
+            if keyword in cmake_words().artifacts:
+                kind = keyword
+            elif keyword == "DESTINATION" and values:
+                places.setdefault(kind, posixpath.normpath(values[0].removeprefix(f"{PREFIX}/")))
+        target = places.get("RUNTIME") or places.get("") or "bin"
+        for name in groups[0][1]:
+            known = self.targets.get(name)
+            self.made.install(name)
+            if known is None and not self.values.is_opaque:
+                self._stop_target(command, name)
+            elif known in (None, "unknown") or self.values.uncertain is not None:
+                self._leave_open(Unknown(f"the target {name} is not known", command.at))
+            elif known == "executable":
+                self.programs.add(f"{target}/{name}")
+
+    def _copy_files(
+        self, texts: Sequence[str], target: str, command: Command, options: _Options
+    ) -> None:
+        names = options.get("RENAME", [])
+        if names and len(texts) > 1:
+            self.stop("install() gives several files one name with RENAME", command.at)
+            return
+        for text in texts:
+            path = self.inside(text)
+            state = self._has(path) if path is not None else None
+            if path in self.listing.files:
+                name = names[0] if names else posixpath.basename(path or "")
+                self._copy(path or "", posixpath.normpath(posixpath.join(target, name)), command.at)
+            elif state is None:
+                self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
+            elif state or "OPTIONAL" not in options:
+                if state:
+                    reason = "it is a folder: write install(DIRECTORY ...)"
+                else:
+                    reason = "there is no such file"
+                hint = "" if state else self._guess(path or "", self.listing.files)
+                self.stop(reason, command.at, path or text, hint)
+
+    def _copy_folder(self, text: str, target: str, command: Command, groups: _Groups) -> None:
+        """Install the files of a folder; with a slash at its end without its own name."""
+        options, patterns = dict(groups), _Patterns(groups)
+        path = self.inside(text)
+        state = self._has(path) if path is not None else None
+        if path is None or state is None or patterns.has_regex or text == ".":
+            self._leave_open(
+                Unknown(f"which files of {text} are installed is not known", command.at)
+            )
+        elif path in self.listing.files:
+            self.stop("it is a file: write install(FILES ...)", command.at, path)
+        elif not state and patterns.is_limited:
+            pass  # CMake takes it for a file that no pattern matches
+        elif not state and "OPTIONAL" not in options:
+            self.stop(
+                "there is no such folder",
+                command.at,
+                path,
+                self._guess(path, self.listing.folders),
+            )
+        else:
+            if text.endswith("/"):
+                above = target
+            else:
+                above = posixpath.join(target, posixpath.basename(path))
+            for file in self._below(path, patterns):
+                self._copy(
+                    posixpath.join(path, file),
+                    posixpath.normpath(posixpath.join(above, file)),
+                    command.at,
+                )
+
+    def _below(self, folder: str, patterns: "_Patterns") -> Iterator[str]:
+        """Yield the paths of the files below a folder, as seen from it."""
+        start = f"{folder}/" if folder else ""
+        for file in self.listing.files_below(folder):
+            self.listing.budget.charge(patterns.count * (1 + file.count("/")), len(file))
+            if patterns.include(folder, file[len(start) :]):
+                yield file[len(start) :]
+
+    def _copy(self, path: str, target: str, at: Position) -> None:
+        if self.values.uncertain is not None:
+            self.unknown.append(self.values.uncertain)
+        else:
+            self.copies[target] = InstalledFile(path, target, at)
+
+    def _project(self) -> str:
+        name = self.values.variables.get("PROJECT_NAME", "")
+        return name if isinstance(name, str) else self.name
+
+    def _share(self) -> str:
+        return f"share/{self._project()}"
+
+
+class _Patterns:
+    """The options PATTERN of install(DIRECTORY ...): what they match is excluded, or with
+    FILES_MATCHING included.
+    """
+
+    def __init__(self, groups: _Groups) -> None:
+        keywords = [keyword for keyword, _ in groups]
+        self.has_regex = "REGEX" in keywords
+        self.is_limited = "FILES_MATCHING" in keywords
+        self._excluded: list[re.Pattern[str]] = []
+        self._included: list[re.Pattern[str]] = []
+        self.count = sum(keyword == "PATTERN" for keyword in keywords)
+        for (keyword, values), after in zip(groups, [*keywords[1:], ""], strict=True):
+            if keyword == "PATTERN" and values:
+                glob = translate(values[0]).replace(".*", "[^/]*")
+                (self._excluded if after == "EXCLUDE" else self._included).append(
+                    re.compile(f"(?:.*/)?{glob}")
+                )
+
+    def include(self, folder: str, path: str) -> bool:
+        """Return whether a file at a path below an installed folder is installed; the folder itself
+        may be excluded.
+        """
+        parts = f"{folder}/{path}".split("/")
+        above = len(parts) - path.count("/") - 1
+        reached = ["/".join(parts[:count]) for count in range(above, len(parts) + 1)]
+        if any(pattern.match(end) for pattern in self._excluded for end in reached):
+            return False
+        return not self.is_limited or any(pattern.match(reached[-1]) for pattern in self._included)
+
+
+def _groups(texts: Sequence[str], keywords: frozenset[str]) -> list[tuple[str, list[str]]]:
+    """Return arguments by the keyword before them; the first ones have none."""
+    groups: list[tuple[str, list[str]]] = [("", [])]
+    for text in texts:
+        if text in keywords:
+            groups.append((text, []))
+        else:
+            groups[-1][1].append(text)
+    return groups
+
+
+BUILD_COMMANDS: dict[str, Callable[[Build, Command], None]] = {
+    **dict.fromkeys(
+        ("add_executable", "add_library", "ament_auto_add_executable", "ament_auto_add_library"),
+        Build.add_target,
+    ),
+    **dict.fromkeys(("target_link_libraries", "ament_target_dependencies"), Build.use_target),
+    "generate_parameter_library": Build.add_target,  # its YAML file is a source
+    "rclcpp_components_register_node": Build.register_component,
+    "rclcpp_components_register_nodes": Build.register_components,
+    "target_sources": Build.add_sources,
+    "rosidl_generate_interfaces": Build.generate_interfaces,
+    "ament_package": Build.package,
+    "ament_auto_package": Build.auto_package,
+    "ament_python_install_package": Build.python_package,
+    "pluginlib_export_plugin_description_file": Build.plugin_description,
+    "install": Build.install,
+}

@@ -1,0 +1,118 @@
+"""The executables and libraries of a CMakeLists.txt: what they are made of."""
+
+import posixpath
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+from grader.ros.installation.cmake.cmake_values import ROOT, Text
+from grader.ros.installation.file_search import PackageListing
+from grader.ros.installation.installation import CmakeComponent, CmakeTarget
+from grader.ros.python.parse import Position
+from grader.ros.python.values import Unknown
+
+_SCOPES = ("PUBLIC", "PRIVATE", "INTERFACE")
+_CPP = (".cpp", ".cc", ".cxx", ".c++", ".c")
+
+
+@dataclass
+class _Made:
+    """A target, as far as the commands before have made it."""
+
+    kind: str
+    at: Position
+    is_certain: bool
+    sources: list[str] = field(default_factory=list)
+    links: list[str] = field(default_factory=list)
+    packages: list[str] = field(default_factory=list)
+    components: list[CmakeComponent] = field(default_factory=list)
+    is_installed: bool = False
+
+
+class CmakeTargets:
+    """The targets that commands make, by their names."""
+
+    def __init__(self, listing: PackageListing) -> None:
+        self._listing = listing
+        self._made: dict[str, _Made] = {}
+
+    def add(
+        self, name: str, kind: str, at: Position, *, is_certain: bool, texts: Sequence[Text]
+    ) -> None:
+        """Add an executable or a library with its sources, as they are written."""
+        self._made[name] = _Made(kind, at, is_certain)
+        self.add_sources(name, texts)
+
+    def add_sources(self, name: str, texts: Sequence[Text]) -> None:
+        """Add sources to a target. One that is not known leaves open which there are."""
+        made = self._made.get(name)
+        if made is None:
+            return
+        for before, text in pairwise(("", *texts)):
+            if isinstance(text, Unknown):
+                made.is_certain = False
+            elif before == "DIRECTORY":
+                made.sources += self._in_folder(text)
+            else:
+                made.sources.append(text)
+
+    def _in_folder(self, folder: str) -> list[str]:
+        """Return the sources in a folder, as ament_auto_add_library(... DIRECTORY) lists them."""
+        path = posixpath.normpath(folder.removeprefix(f"{ROOT}/"))
+        files = self._listing.files
+        self._listing.budget.charge(1 + len(files))
+        found = [it for it in files if posixpath.dirname(it) == path]
+        return sorted(it for it in found if it.endswith(_CPP))
+
+    def link(self, name: str, texts: Sequence[Text]) -> None:
+        """Add what target_link_libraries() names."""
+        made = self._made.get(name)
+        if made is not None:
+            known = [text for text in texts if isinstance(text, str)]
+            made.links += [text for text in known if text not in _SCOPES]
+            made.is_certain = made.is_certain and len(known) == len(texts)
+
+    def depend(self, name: str, packages: Sequence[Text]) -> None:
+        """Add what ament_target_dependencies() names."""
+        made = self._made.get(name)
+        if made is not None:
+            made.packages += [text for text in packages if isinstance(text, str)]
+
+    def register(self, name: str, component: CmakeComponent) -> None:
+        """Add a component that rclcpp_components registers for a library."""
+        if name in self._made:
+            self._made[name].components.append(component)
+
+    def install(self, name: str) -> None:
+        """Note a target that is installed."""
+        if name in self._made:
+            self._made[name].is_installed = True
+
+    def all(self, inside: Mapping[str, str | None]) -> tuple[CmakeTarget, ...]:
+        """Return the targets; `inside` has the path in the package of each source."""
+        targets = []
+        for name, made in self._made.items():
+            paths = []
+            for source in made.sources:
+                path = inside.get(source)
+                if path is not None and path in self._listing.files:
+                    paths.append(path)
+            targets.append(
+                CmakeTarget(
+                    name=name,
+                    kind=made.kind,
+                    sources=tuple(dict.fromkeys(paths)),
+                    links=tuple(dict.fromkeys(made.links)),
+                    packages=tuple(made.packages),
+                    components=tuple(made.components),
+                    at=made.at,
+                    is_installed=made.is_installed,
+                    is_certain=made.is_certain,
+                )
+            )
+        return tuple(targets)
+
+    @property
+    def written_sources(self) -> set[str]:
+        """The sources of all targets, as they are written."""
+        return {source for made in self._made.values() for source in made.sources}

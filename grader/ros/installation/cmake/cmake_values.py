@@ -1,0 +1,168 @@
+"""The variables of a CMakeLists.txt, and the texts that its arguments stand for."""
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+
+from grader.ros.installation.cmake.language import Argument, Command
+from grader.ros.installation.places import PREFIX
+from grader.ros.known.cmake_words import cmake_words
+from grader.ros.python.budget import Budget
+from grader.ros.python.library import PACKAGE_FOLDER
+from grader.ros.python.parse import Position
+from grader.ros.python.values import Unknown
+
+Text = str | Unknown
+ROOT, _BUILD = f"/{PACKAGE_FOLDER}", "/<build>"  # the folders of the package, and of what is built
+_FOLDERS = {
+    **dict.fromkeys(("CMAKE_SOURCE_DIR", "CMAKE_CURRENT_SOURCE_DIR", "PROJECT_SOURCE_DIR"), ROOT),
+    "CMAKE_CURRENT_LIST_DIR": ROOT,
+    **dict.fromkeys(("CMAKE_BINARY_DIR", "CMAKE_CURRENT_BINARY_DIR", "PROJECT_BINARY_DIR"), _BUILD),
+    "CMAKE_INSTALL_PREFIX": PREFIX,
+}
+_PIECES = re.compile(r"\\(.)|(\$\{)|(\})|\$(?:ENV|CACHE)\{[^}]*\}?|\$<|[^\\$}]+|.", re.DOTALL)
+_ESCAPES = {"n": "\n", "t": "\t", "r": "\r", ";": "\\;"}
+_SEPARATOR = re.compile(r"(?<!\\);")
+_MAX_TEXT = 64 * 1024  # characters of a value
+
+
+class Values:
+    """The variables of a file while it is evaluated."""
+
+    def __init__(self, budget: Budget) -> None:
+        self.budget = budget
+        self.variables: dict[str, Text] = {**cmake_words().variables, **_FOLDERS}
+        self.packages: set[str] = set()  # that were found, in lower case
+        # why it is not known whether the current command is run
+        self.uncertain: Unknown | None = None
+        self.is_opaque = False  # whether something that is not evaluated may have set any variable
+        # What variables were outside of the functions that are called; None for unset ones.
+        self._outside: list[dict[str, Text | None]] = []
+        self._reached: tuple[tuple[int, str], set[str] | None] | None = None
+
+    def reached_packages(self) -> set[str] | None:
+        """Return the packages that were found, with those that they export; None where it is not
+        known which these are.
+        """
+        if self.is_opaque:
+            return None
+        key = (len(self.packages), str(self.variables.get("PROJECT_NAME")).lower())
+        if self._reached is None or self._reached[0] != key:
+            self._reached = (key, self._reach(self.packages - {key[1]}))
+        return self._reached[1]
+
+    def _reach(self, found: set[str]) -> set[str] | None:
+        exports = cmake_words().exports
+        self.budget.charge(len(found))
+        if not found.issubset(exports):
+            return None
+        pending, reached = [*found], set[str]()
+        while pending:
+            package = pending.pop()
+            if package not in reached:
+                reached.add(package)
+                pending += exports.get(package, "").split()
+        return reached
+
+    def texts(self, arguments: Sequence[Argument]) -> list[Text]:
+        """Return what arguments stand for; a list is several texts."""
+        return [text for argument in arguments for text in self.expanded(argument)]
+
+    def known(self, command: Command) -> list[str] | None:
+        """Return what the arguments of a command stand for; None if one is not known."""
+        texts = self.texts(command.arguments)
+        known = [text for text in texts if isinstance(text, str)]
+        if len(known) == len(texts):
+            return known
+        return None
+
+    def first(self, command: Command) -> Text:
+        """Return what the first argument of a command stands for; an empty text without any."""
+        return next(iter(self.texts(command.arguments[:1])), "")
+
+    def expanded(self, argument: Argument) -> list[Text]:
+        """Return what an argument stands for."""
+        if argument.kind in ("bracket", "paren"):
+            return [argument.text]
+        text = self._value(argument.text, argument.at)
+        if isinstance(text, Unknown) or argument.kind == "quoted":
+            return [text]
+        return [*split_list(text)]
+
+    def _value(self, text: str, at: Position) -> Text:
+        """Return a text with the values of variables, whose names may be made of variables."""
+        stack: list[list[Text]] = [[]]
+        for piece in _PIECES.finditer(text):
+            escaped, opening, closing = piece.groups()
+            if opening:
+                stack.append([])
+            elif closing and len(stack) > 1:
+                name = joined(stack.pop())
+                stack[-1].append(name if isinstance(name, Unknown) else self.lookup(name, at))
+            elif escaped:
+                stack[-1].append(_ESCAPES.get(escaped, escaped))
+            elif piece[0].startswith("$") and len(piece[0]) > 1:
+                stack[-1].append(Unknown(f"{piece[0]} is not known", at))
+            else:
+                stack[-1].append(piece[0])
+        found = joined(part for parts in stack for part in parts)
+        self.budget.charge(1, len(text) if isinstance(found, Unknown) else len(found))
+        if isinstance(found, str) and len(found) > _MAX_TEXT:
+            return Unknown("a value is too long", at)
+        return found
+
+    def lookup(self, name: str, at: Position) -> Text:
+        """Return the value of a variable: an empty text if it is certainly not set."""
+        if name in self.variables:
+            return self.variables[name]
+        lower = name.lower()
+        ends = [index for index, letter in enumerate(lower) if letter == "_"]
+        self.budget.charge(1, len(ends) * len(name))
+        is_of_package = any(lower[:end] in self.packages for end in ends)
+        is_foreign = lower.startswith((*cmake_words().foreign,))
+        if self.is_opaque or is_of_package or is_foreign:
+            return Unknown(f"the value of {name} is not known", at)
+        return ""
+
+    def assign(self, name: str, value: Text) -> None:
+        """Set a variable; to what is not known if the command may not run."""
+        self.assign_all({name: self.uncertain or value})
+
+    def assign_all(self, values: Mapping[str, Text]) -> None:
+        """Set variables, in the function that is called."""
+        if self._outside:
+            for name in values:
+                self._outside[-1].setdefault(name, self.variables.get(name))
+        self.variables |= values
+
+    def enter_function(self) -> None:
+        """Begin a function, whose variables are its own."""
+        self._outside.append({})
+
+    def leave_function(self, kept: Mapping[str, Text]) -> None:
+        """End a function, which sets these variables outside of it."""
+        for name, value in self._outside.pop().items():
+            if value is None:
+                self.variables.pop(name, None)
+            else:
+                self.variables[name] = value
+        self.assign_all(kept)
+
+    def forget(self, names: Iterable[Text], reason: str, at: Position) -> None:
+        """Set variables to a value that is not known."""
+        texts = [name for name in names if isinstance(name, str)]
+        self.assign_all(dict.fromkeys(texts, Unknown(reason, at)))
+
+
+def split_list(text: str) -> list[str]:
+    """Return the items of a list that are not empty."""
+    return [part.replace("\\;", ";") for part in _SEPARATOR.split(text) if part]
+
+
+def joined(parts: Iterable[Text], between: str = "") -> Text:
+    """Return one text; a part that is not known makes it unknown."""
+    known: list[str] = []
+    for part in parts:
+        if isinstance(part, Unknown):
+            return part
+        known.append(part)
+    return between.join(known)

@@ -1,0 +1,155 @@
+"""package.xml: name, build type and problems of a package (REP 127, 140 and 149)."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from grader.base.merge_conflicts import resolve_conflicts
+from grader.base.problems import Problem
+from grader.base.reuse import reuse
+from grader.base.source import Location, Source
+from grader.ros.installation import package_problems as kinds
+from grader.ros.installation.manifest_conditions import evaluate_condition
+from grader.ros.installation.manifest_rules import email_of, find_refusals, tag_of, text_of
+from grader.ros.xml.parsing import Element, XmlFault, XmlFile, recover_xml
+
+_MAX_MISPLACED = 100  # dependencies in <export>
+
+
+class Manifest(NamedTuple):
+    """The content of a package.xml. `name` is None where it cannot be read; `build_type` is by
+    default colcon's.
+
+    Of a file that is not well-formed XML, both are what can still be read; the build type may then
+    be empty.
+    """
+
+    source: Source
+    name: str | None
+    build_type: str
+    problems: tuple[Problem, ...]
+    name_location: Location
+    type_location: Location
+    unread: str = ""  # why the file was not read at all: too large, damaged
+    dependencies: frozenset[str] = frozenset()  # the packages that it depends on, in any way
+    groups: frozenset[str] = frozenset()  # of packages, of which it is a member
+    misplaced: Mapping[str, Location] = {}  # dependencies in <export>, which do not count
+
+    @property
+    def refusals(self) -> tuple[Problem, ...]:
+        """The problems for which the tools of ROS 2 do not take the package for one of ROS 2."""
+        return tuple(
+            it for it in self.problems if it.kind in (kinds.BAD_MANIFEST, kinds.REFUSED_MANIFEST)
+        )
+
+
+@reuse
+def read_manifest(data: bytes, path: str) -> Manifest:
+    """Read a package.xml. Never raises: errors are among the problems."""
+    resolved = resolve_conflicts(data)
+    if resolved is not None:
+        manifest = read_manifest(resolved.data, path)
+        problem = Problem(
+            kinds.BAD_MANIFEST,
+            f"package.xml has {resolved.message}",
+            Location(path, resolved.line, 1),
+        )
+        return manifest._replace(problems=(problem, *manifest.problems))
+    source = Source(path, data.decode("utf-8", "replace"))
+    try:
+        file = XmlFile(data, source)
+    except XmlFault as fault:
+        problem = Problem(
+            kinds.BAD_MANIFEST, f"package.xml is not readable as XML: {fault}", fault.location
+        )
+        return _read_broken(data, source, problem)
+    root, start = file.root, Location(path, 1, 1)
+    if tag_of(root) != "package":
+        problem = Problem(
+            kinds.BAD_MANIFEST, f"the root of package.xml is <{root.tag}>, not <package>", start
+        )
+        return Manifest(source, None, "", (problem,), start, start)
+    name = next((it for it in root.iterchildren("*") if tag_of(it) == "name"), None)
+    build_types, exports = [], _exports(root)
+    for element in exports:
+        is_used = evaluate_condition(element.get("condition")) is not False
+        if tag_of(element) == "build_type" and is_used:
+            build_types.append(element)
+    exported = [it for it in exports if tag_of(it).endswith("depend")][:_MAX_MISPLACED]
+    dependencies, groups = set[str](), set[str]()
+    for element in root.iterchildren("*"):
+        if tag_of(element) == "member_of_group":
+            groups.add(text_of(element))
+        if tag_of(element).endswith("depend"):
+            dependencies.add(text_of(element))
+    problems = [*_problems(file)]
+    try:
+        data.decode()
+    except UnicodeDecodeError:
+        problems.append(_refused("the file is not UTF-8 text; save it as UTF-8", start))
+    return Manifest(
+        source,
+        (text_of(name) or None) if name is not None else None,
+        " and ".join(map(text_of, build_types)) if build_types else "catkin",
+        (*problems, *_condition_problems(file, exports)),
+        file.location(name if name is not None else root),
+        file.location(build_types[0] if build_types else root),
+        dependencies=frozenset(dependencies),
+        groups=frozenset(groups),
+        misplaced={text_of(element): file.location(element) for element in exported},
+    )
+
+
+def _read_broken(data: bytes, source: Source, problem: Problem) -> Manifest:
+    """Return what can be read of a package.xml that is not XML: the first name, and the first build
+    type.
+    """
+    root, start = recover_xml(data), Location(source.path, 1, 1)
+    if root is None or tag_of(root) != "package":
+        return Manifest(source, None, "", (problem,), start, start)
+    name, build_type = root.findtext(".//{*}name") or "", root.findtext(".//{*}build_type") or ""
+    location = problem.location
+    return Manifest(
+        source, name.strip() or None, build_type.strip(), (problem,), location, location
+    )
+
+
+def _exports(root: Element) -> list[Element]:
+    found = (element for element in root.iterchildren("*") if tag_of(element) == "export")
+    return [element for export in found for element in export.iterchildren("*")]
+
+
+def _refused(words: str, location: Location) -> Problem:
+    return Problem(
+        kinds.REFUSED_MANIFEST, f"the tools of ROS 2 refuse package.xml: {words}", location
+    )
+
+
+def _problems(file: XmlFile) -> Iterator[Problem]:
+    root = file.root
+    for words, element in find_refusals(root):
+        yield _refused(words, file.location(element))
+    for element in root.iterchildren("*"):
+        tag, email = tag_of(element), element.get("email") or ""
+        is_text = tag in ("license", "maintainer", "description")
+        if is_text and "todo" in f"{element.text or ''} {email}".lower():
+            yield Problem(
+                kinds.STILL_TO_DO, f"<{tag}> of package.xml is still TODO", file.location(element)
+            )
+        if tag in ("maintainer", "author") and email_of(element) != email:
+            message = (
+                f"the email of <{tag}> in package.xml is in quotes, as git has it: delete the "
+                "inner quotes"
+            )
+            yield Problem(kinds.QUOTED_EMAIL, message, file.location(element))
+    version = root.get("format", "1")
+    if version not in ("2", "3"):
+        message = f"package.xml has format {version[:20]}; ROS 2 packages use format 3"
+        yield Problem(kinds.OLD_FORMAT, message, file.location(root))
+
+
+def _condition_problems(file: XmlFile, exports: Sequence[Element]) -> Iterator[Problem]:
+    for element in (*file.root.iterchildren("*"), *exports):
+        condition = element.get("condition")
+        if condition is not None and evaluate_condition(condition) is None:
+            words = f"condition '{condition[:100]}' failed to parse: write it as $ROS_VERSION == 2"
+            yield _refused(words, file.location(element))

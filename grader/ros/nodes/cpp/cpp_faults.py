@@ -1,0 +1,333 @@
+"""What keeps a node in C++ from doing anything: in the files that are compiled into one target.
+
+Each rule is about what certainly fails once it runs.
+"""
+
+import re
+from collections.abc import Collection, Iterator
+
+from grader.ros.cpp.declarations import CppFunction, declared_in, plain
+from grader.ros.cpp.objects import class_written
+from grader.ros.cpp.syntax import CppNode
+from grader.ros.cpp.unit import (
+    CppUnit,
+    arguments_of,
+    called_name,
+    is_conditional,
+)
+from grader.ros.nodes.node_facts import CodeFault
+
+_MAX_FAULTS = 20  # of one target and rule
+# What works as long as something keeps it, and how it is called.
+_KEPT = {
+    "create_wall_timer": "timer",
+    "create_timer": "timer",
+    "create_subscription": "subscription",
+    "create_service": "service",
+    "create_server": "action server",
+}
+_LISTENER, _BUFFER = "TransformListener", "Buffer"
+_LOOKING_UP = ("lookupTransform", "canTransform")
+# What may spin a node, or wait for its messages.
+_SPINNING = re.compile(r"spin|executor|wait|take|sleep|thread|async", re.IGNORECASE)
+_LOOPS = ("while_statement", "for_statement", "do_statement", "for_range_loop")
+# With one of these, a callback may wait for another one.
+_CONCURRENT = ("create_callback_group", "MultiThreadedExecutor", "thread", "async", "detach")
+_WAITING = ("wait", "get")
+_GIVEN_CALLBACKS = (*_KEPT, "create_client")
+_SENDING = ("sendTransform", "push_back", "emplace_back")
+_ROTATION = re.compile(r"(\w+(?:(?:\.|->)\w+)*)(?:\.|->)rotation\.([xyzw])")
+_ZERO = re.compile(r"-?0*\.?0+\.?0*f?")
+
+
+def cpp_faults(
+    unit: CppUnit, nodes: Collection[str], *, is_program: bool, is_read: bool
+) -> Iterator[CodeFault]:
+    """Yield what is wrong in the files of a target.
+
+    Args:
+        unit: The files.
+        nodes: The full names of the classes of nodes.
+        is_program: Whether they are all that a program is made of.
+        is_read: Whether all of them are read as a whole.
+    """
+    search = _CppSearch(unit, nodes)
+    rules = [search.destroyed(), search.without_rotation(), search.waiting()]
+    if is_read:
+        rules.append(search.without_listener())
+    if is_read and is_program:
+        rules.append(search.without_spin())
+    for rule in rules:
+        for number, fault in enumerate(rule):
+            if number < _MAX_FAULTS:
+                yield fault
+
+
+class _CppSearch:
+    """Searches faults in the files of a target."""
+
+    def __init__(self, unit: CppUnit, nodes: Collection[str]) -> None:
+        self._unit, self._nodes = unit, nodes
+        self._methods = [it for it in unit.functions if unit.owner_of(it) in nodes]
+
+    def _calls(self, function: CppFunction, *names: str) -> Iterator[CppNode]:
+        for call in self._unit.calls_in(function):
+            short = called_name(call).rpartition("::")[2]
+            if call.kind == "call_expression" and short in names:
+                yield call
+
+    def _uses(self, name: str, function: CppFunction) -> list[CppNode]:
+        """Return where a name is written in a function."""
+        node = function.node
+        uses = [it for it in self._unit.uses.get(name, ()) if it.file is node.file]
+        return [it for it in uses if node.start <= it.start < node.end]
+
+    def destroyed(self) -> Iterator[CodeFault]:
+        """Yield what a method makes and nothing keeps: it is destroyed when the method ends."""
+        for function in self._methods:
+            if function.is_conditional or _may_wait(function, self._unit):
+                continue
+            for call in self._calls(function, *_KEPT):
+                kind = _KEPT[called_name(call).rpartition("::")[2]]
+                if self._is_lost(call, function):
+                    message = (
+                        f"nothing keeps this {kind}: it is destroyed when {function.name}() ends"
+                    )
+                    yield CodeFault("destroyed at once", message, call.location)
+            if function.name == function.owner.rpartition("::")[2]:
+                yield from self._lost_listeners(function)
+
+    def _lost_listeners(self, constructor: CppFunction) -> Iterator[CodeFault]:
+        for node in self._unit.calls_in(constructor):
+            written = plain(class_written(node))
+            is_listener = written.rpartition("::")[2] == _LISTENER
+            if is_listener and self._is_lost(node, constructor):
+                message = "nothing keeps this TransformListener: the buffer stays empty"
+                yield CodeFault("destroyed at once", message, node.location)
+
+    def _is_lost(self, made: CppNode, function: CppFunction) -> bool:
+        """Return whether an object is not kept: it is a statement of its own, or of a local
+        variable that nothing else names.
+        """
+        parent = made.parent
+        if made.kind == "declaration":
+            names = [name for name, _ in declared_in(made)]
+        elif parent is None or is_conditional(made, function.node):
+            return False
+        elif parent.kind == "expression_statement":
+            return True
+        elif parent.kind == "init_declarator" and parent.parent is not None:
+            names = [name for name, _ in declared_in(parent.parent)]
+        else:
+            return False
+        declaration = made if made.kind == "declaration" else (parent and parent.parent)
+        if declaration is None or "static" in declaration.text.split("(")[0].split():
+            return False
+        return len(names) == 1 and len(self._uses(names[0].text, function)) == 1
+
+    def without_rotation(self) -> Iterator[CodeFault]:
+        """Yield transforms that are sent with a rotation whose four numbers are zeros."""
+        for function in self._unit.functions:
+            if function.body is None or not any(self._calls(function, "sendTransform")):
+                continue
+            found: dict[str, dict[str, list[CppNode]]] = {}
+            for node in function.node.walk():
+                if node.kind != "assignment_expression":
+                    continue
+                left, right = node.child("left"), node.child("right")
+                match = _ROTATION.fullmatch(left.text) if left is not None else None
+                if match is not None and right is not None:
+                    parts = found.setdefault(match[1], {})
+                    parts.setdefault(match[2], []).append(right)
+            for path, parts in found.items():
+                written = [it for values in parts.values() for it in values]
+                numbers = [it for it in written if it.kind == "number_literal"]
+                zeros = [it for it in numbers if _ZERO.fullmatch(it.text)]
+                is_zero = len(parts) == len(zeros) == len(written) == 4
+                if is_zero and self._is_only_sent(path, function):
+                    message = "the rotation 0 0 0 0 turns nothing: tf2 ignores the transform"
+                    yield CodeFault("no rotation", message, zeros[-1].location)
+
+    def _is_only_sent(self, path: str, function: CppFunction) -> bool:
+        """Return whether nothing but the statements that are read can set a transform."""
+        root = re.split(r"\.|->", path)[0]
+        for use in self._uses(root, function):
+            parent = use.parent
+            if parent is None:
+                return False
+            if parent.kind == "argument_list" and parent.parent is not None:
+                if called_name(parent.parent).rpartition("::")[2] not in _SENDING:
+                    return False
+            elif parent.kind == "field_expression":
+                whole = _outermost_member(parent)
+                if not _is_number_set(whole):
+                    return False
+            elif use.field != "declarator":
+                return False
+        return True
+
+    def without_listener(self) -> Iterator[CodeFault]:
+        """Yield where a buffer is asked for transforms that nothing puts into it."""
+        if self._is_made(_LISTENER) or "setTransform" in self._unit.uses:
+            return
+        for function in self._methods:
+            for call in self._calls(function, *_LOOKING_UP):
+                if self._is_own_buffer(call):
+                    message = "the buffer stays empty: nothing makes a TransformListener"
+                    yield CodeFault("no listener", message, call.location)
+                    return
+
+    def _is_made(self, name: str) -> bool:
+        """Return whether an object of a class may be made: it is named otherwise than as the type
+        of a pointer that is a member.
+        """
+        for file in self._unit.files:
+            for node in file.syntax.root.walk():
+                if node.kind != "type_identifier" or node.text != name:
+                    continue
+                kinds = [around.kind for around in node.ancestors()]
+                is_member = "field_declaration" in kinds and "template_argument_list" in kinds
+                if not is_member or "compound_statement" in kinds or "call_expression" in kinds:
+                    return True
+        return False
+
+    def _is_own_buffer(self, call: CppNode) -> bool:
+        """Return whether a call is a method of a member that is a buffer, which only such methods
+        are called of.
+        """
+        called = call.child("function")
+        owner = called.child("argument") if called is not None else None
+        if owner is None or owner.kind != "identifier":
+            return False
+        variables = [it for found in self._unit.variables.values() for it in found]
+        own = [it for it in variables if it.declarator.text == owner.text]
+        if len(own) != 1 or not re.search(rf"\b{_BUFFER}\b", own[0].type):
+            return False
+        return all(_is_plain_use(use) for use in self._unit.uses[owner.text])
+
+    def without_spin(self) -> Iterator[CodeFault]:
+        """Yield the end of a main() whose nodes nothing spins."""
+        mains = [it for it in self._unit.functions if it.name == "main" and not it.owner]
+        words = {word for file in self._unit.files for word in file.words}
+        if len(mains) != 1 or any(_SPINNING.search(word) for word in words):
+            return
+        callbacks = any(
+            any(self._calls(function, *_KEPT)) for function in (*self._methods, mains[0])
+        )
+        if callbacks and mains[0].body is not None:
+            message = "nothing spins the node: its callbacks are never called"
+            yield CodeFault("nothing spins", message, mains[0].node.location)
+
+    def waiting(self) -> Iterator[CodeFault]:
+        """Yield callbacks that wait for a response, which the same thread would have to receive."""
+        if any(name in self._unit.uses for name in _CONCURRENT):
+            return
+        words = {word for file in self._unit.files for word in file.words}
+        if not words.isdisjoint(_CONCURRENT):
+            return
+        for function in self._methods:
+            for call in self._calls(function, "spin_until_future_complete"):
+                if self._is_in_callback(call, function) and _is_given_itself(call):
+                    message = "a callback must not spin its own node: rclcpp throws an error"
+                    yield CodeFault("waits in a callback", message, call.location)
+            for call in self._calls(function, *_WAITING):
+                if self._is_in_callback(call, function) and self._is_of_request(call, function):
+                    message = (
+                        "this callback waits for a response that only the next callback can receive"
+                    )
+                    yield CodeFault("waits in a callback", message, call.location)
+
+    def _is_in_callback(self, node: CppNode, function: CppFunction) -> bool:
+        """Return whether a place is in a function that is given to a timer, a subscription or a
+        service.
+        """
+        for around in node.ancestors():
+            if around is function.node:
+                break
+            if around.kind == "lambda_expression":
+                return _is_callback_argument(around)
+        for use in self._unit.uses.get(function.name, ()):
+            pointed = next((it for it in use.ancestors() if it.kind == "pointer_expression"), None)
+            if pointed is not None and pointed.text.startswith("&"):
+                bound = next(
+                    (it for it in pointed.ancestors() if it.kind == "call_expression"), None
+                )
+                if bound is not None and called_name(bound) == "std::bind":
+                    return _is_callback_argument(bound)
+        return False
+
+    def _is_of_request(self, call: CppNode, function: CppFunction) -> bool:
+        """Return whether a call is a method of the future that async_send_request() returned."""
+        called = call.child("function")
+        owner = called.child("argument") if called is not None else None
+        if owner is None or arguments_of(call):
+            return False
+        if owner.kind == "call_expression":
+            return called_name(owner) == "async_send_request"
+        if owner.kind != "identifier":
+            return False
+        for use in self._uses(owner.text, function):
+            made = use.parent
+            if use.field == "declarator" and made is not None and made.kind == "init_declarator":
+                value = made.child("value")
+                if value is not None and value.kind == "call_expression":
+                    is_request = called_name(value) == "async_send_request"
+                    return is_request and len(arguments_of(value)) == 1
+        return False
+
+
+def _may_wait(function: CppFunction, unit: CppUnit) -> bool:
+    """Return whether a function may run for so long that what it makes does its work."""
+    if any(node.kind in _LOOPS for node in function.node.walk()):
+        return True
+    calls = [it for it in unit.calls_in(function) if it.kind == "call_expression"]
+    return any(_SPINNING.search(called_name(call).rpartition("::")[2]) for call in calls)
+
+
+def _outermost_member(node: CppNode) -> CppNode:
+    while node.parent is not None and node.parent.kind == "field_expression":
+        node = node.parent
+    return node
+
+
+def _is_number_set(member: CppNode) -> bool:
+    """Return whether a member of a transform is set that is no rotation as a whole, or is a number
+    of one.
+    """
+    parent = member.parent
+    if parent is None or parent.kind != "assignment_expression" or member.field != "left":
+        return parent is not None and parent.kind not in ("call_expression", "argument_list")
+    last = re.split(r"\.|->", member.text)[-1]
+    return last not in ("rotation", "transform")
+
+
+def _is_plain_use(use: CppNode) -> bool:
+    """Return whether a buffer is declared, made or asked for a transform where it is named."""
+    parent = use.parent
+    if parent is None:
+        return False
+    if parent.kind == "field_expression":
+        field = parent.child("field")
+        is_member = field is not None and field is not use and use.field == "argument"
+        return is_member and field is not None and field.text in (*_LOOKING_UP, "reset")
+    kinds = ("field_declaration", "assignment_expression", "field_initializer")
+    is_set = parent.kind in kinds
+    return is_set and use.field != "right"
+
+
+def _is_given_itself(call: CppNode) -> bool:
+    """Return whether a function is given the node that the callback belongs to."""
+    given = arguments_of(call)
+    text = given[0].text if given else ""
+    return "shared_from_this()" in text or "get_node_base_interface()" in text.removeprefix(
+        "this->"
+    )
+
+
+def _is_callback_argument(node: CppNode) -> bool:
+    """Return whether an expression is given to what makes a timer, subscription or service."""
+    given = node.parent
+    call = given.parent if given is not None and given.kind == "argument_list" else None
+    if call is None or call.kind != "call_expression":
+        return False
+    return called_name(call).rpartition("::")[2] in _GIVEN_CALLBACKS

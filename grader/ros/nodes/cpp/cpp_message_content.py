@@ -1,0 +1,454 @@
+"""What C++ code asks of the content of messages: a time in their header that a synchroniser
+compares, and the encoding of images that cv_bridge makes and converts.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.ros.cpp.cpp_evaluation import CppEvaluation, is_member_of_this
+from grader.ros.cpp.cpp_values import CppName
+from grader.ros.cpp.declarations import CppFunction, declared_in, name_in, plain
+from grader.ros.cpp.objects import class_written, variable_of
+from grader.ros.cpp.syntax import CppNode
+from grader.ros.cpp.unit import CppUnit, arguments_of, called_name, is_conditional
+from grader.ros.known.package_tables import colour_encodings
+from grader.ros.nodes.cpp.rclcpp_calls import message_type
+from grader.ros.nodes.node_facts import ImageEncoding, SynchronisedType
+from grader.ros.python.budget import Budget
+
+_SYNCHRONISERS = frozenset(
+    {
+        "message_filters::TimeSynchronizer",
+        "message_filters::sync_policies::ExactTime",
+        "message_filters::sync_policies::ApproximateTime",
+        "message_filters::sync_policies::ApproximateEpsilonTime",
+    }
+)
+_TRAITS = "message_traits"  # by which code gives a message a time of its own
+_STARTS = "registerCallback"  # without which a synchroniser does nothing
+_CONSTANT = re.compile(r"sensor_msgs::image_encodings::(?:TYPE_)?(\w+)")
+_DEPTH = re.compile(r"\d+[USF]C\d")
+_ANY_ENCODINGS = ("", "passthrough")
+_ENCODING = "encoding"
+_CONVERTING = ("toCvCopy", "toCvShare", "cvtColor")
+_IMAGE, _TO_MESSAGE = "CvImage", "toImageMsg"
+_CALLS = ("call_expression", "compound_literal_expression", "new_expression")
+_LISTS = ("argument_list", "initializer_list", "parameter_list")
+# Methods of a publisher that publish nothing.
+_HARMLESS_METHODS = frozenset(
+    {"get_subscription_count", "get_topic_name", "on_activate", "on_deactivate", "is_activated"}
+)
+_READING = ("condition_clause", "binary_expression", "unary_expression", "lambda_capture_specifier")
+_TAKERS = ("publish", "move", *_CONVERTING)  # that do not change an image
+_LEAVING = ("return_statement", "throw_statement")
+_MAX_DEPTH = 6  # of images that are made of others
+
+
+class _Writes(NamedTuple):
+    """What sets a variable with an image: to another value, and its encoding."""
+
+    values: Sequence[CppNode]
+    encodings: Sequence[CppNode]  # the assignments
+
+
+class CppContentReader:
+    """Reads what the functions of a target ask of messages."""
+
+    def __init__(self, unit: CppUnit, evaluation: CppEvaluation, budget: Budget) -> None:
+        self._unit, self._evaluation, self._budget = unit, evaluation, budget
+
+    def synchronised_types(self) -> Iterator[SynchronisedType]:
+        """Yield the types of the messages whose times are compared, each synchroniser once."""
+        words = {word for file in self._unit.files for word in file.words}
+        if _TRAITS in words or _STARTS not in words:
+            return
+        said: set[tuple[str | None, ...]] = set()
+        for file in self._unit.files:
+            for node in file.of_kind("template_type"):
+                scopes = self._scopes_at(node)
+                names = {*self._unit.meanings(_full_name(node), scopes)} & _SYNCHRONISERS
+                given = node.child("arguments")
+                if len(names) != 1 or given is None or is_conditional(node, file.syntax.root):
+                    continue
+                [by] = names
+                written = [it for it in given.children if it.kind == "type_descriptor"]
+                types = [message_type(it.text, self._unit, scopes) for it in written]
+                if (by, *types) not in said:
+                    said.add((by, *types))
+                    others = tuple(it for it in types if it is not None)
+                    for each, at in zip(types, written, strict=True):
+                        if each is not None:
+                            yield SynchronisedType(each, by, at.location, others)
+
+    def _scopes_at(self, node: CppNode) -> Sequence[str]:
+        """Return the namespaces and classes around a place."""
+        function = self._unit.function_around(node)
+        if function is not None:
+            return self._unit.scopes_of(function)
+        kinds = ("namespace_definition", "class_specifier", "struct_specifier")
+        scopes: list[str] = []
+        for around in node.ancestors():
+            name = around.child("name")
+            if around.kind in kinds and name is not None:
+                scopes = [*plain(name.text).split("::"), *scopes]
+        return scopes
+
+    def encodings(self) -> Mapping[Location, tuple[ImageEncoding, ...]]:
+        """Return the encodings of images that publishers send, and to which callbacks convert what
+        they get, by the places where these are made; none where one is not known.
+        """
+        if not any(name in self._unit.uses for name in (_ENCODING, *_CONVERTING, _TO_MESSAGE)):
+            return {}
+        found = {}
+        for function in self._unit.functions:
+            for call in self._unit.calls_in(function):
+                name = called_name(call) if call.kind == "call_expression" else ""
+                if name == "create_publisher":
+                    found[call.location] = self._sent_by(call)
+                elif name == "create_subscription":
+                    found[call.location] = self._asked_by(call, function)
+        return found
+
+    # --- What is sent
+    # ----------------------------------------------------------------------
+
+    def _sent_by(self, made: CppNode) -> tuple[ImageEncoding, ...]:
+        """Return the encodings of the images that a publisher sends."""
+        variable = _variable_of(made)
+        calls = self._published(variable, made) if variable is not None else None
+        sent = []
+        for call in calls or ():
+            given = arguments_of(call)
+            encoding = self._encoding_of(given[0], _MAX_DEPTH) if given else None
+            if encoding is None:
+                return ()
+            sent.append(encoding)
+        return tuple(sent)
+
+    def _published(self, variable: CppNode, made: CppNode) -> Sequence[CppNode] | None:
+        """Return the calls of publish() of a publisher; None where it may publish elsewhere."""
+        calls = []
+        for use in self._evaluation.uses_of(variable) or ():
+            node = _whole(use)
+            parent = node.parent
+            if parent is None:
+                return None
+            call, field = parent.parent, parent.child("field")
+            is_method = parent.kind == "field_expression" and node.field == "argument"
+            if is_method and field is not None and call is not None:
+                if call.kind != "call_expression":
+                    return None
+                if field.text == "publish":
+                    calls.append(call)
+                elif field.text not in _HARMLESS_METHODS:
+                    return None
+            elif node.field in ("declarator", "left") or parent.kind == "field_initializer":
+                is_here = parent.start <= made.start < parent.end
+                if not is_here and parent.kind not in ("declaration", "field_declaration"):
+                    return None
+            elif parent.kind not in _READING:
+                return None
+        return calls
+
+    def _encoding_of(self, node: CppNode, depth: int) -> ImageEncoding | None:
+        """Return the encoding of an image, a message or one of cv_bridge; None where it is not
+        known.
+        """
+        node = _unwrapped(node)
+        if depth == 0:
+            return None
+        if node.kind in ("identifier", "field_expression"):
+            return self._encoding_of_variable(node, depth)
+        return self._encoding_made(node, depth) if node.kind in _CALLS else None
+
+    def _encoding_made(self, node: CppNode, depth: int) -> ImageEncoding | None:
+        """Return the encoding of the image that a call makes; None where it is not known."""
+        name = called_name(node).rpartition("::")[2] if node.kind == "call_expression" else ""
+        if name == _TO_MESSAGE and not arguments_of(node):
+            function = node.child("function")
+            owner = function.child("argument") if function is not None else None
+            return self._encoding_of(owner, depth - 1) if owner is not None else None
+        if name in _CONVERTING:
+            return self._converted_to(node)
+        written = node.child("type") if node.kind == "compound_literal_expression" else None
+        kind = written.text if written is not None else class_written(node) or name
+        if plain(kind).rpartition("::")[2] == _IMAGE:
+            return self._encoding_in(arguments_of(node), 1)
+        return None
+
+    def _converted_to(self, call: CppNode) -> ImageEncoding | None:
+        """Return the encoding to which cv_bridge converts an image."""
+        given = arguments_of(call)
+        is_tracked = called_name(call).endswith("toCvShare") and len(given) == 3
+        return self._encoding_in(given, 2 if is_tracked else 1)
+
+    def _encoding_in(self, given: Sequence[CppNode], position: int) -> ImageEncoding | None:
+        """Return the encoding that an argument is; None where it is missing or not known."""
+        if position >= len(given):
+            return None
+        node = given[position]
+        value, text = self._evaluation.value_of(node), None
+        if isinstance(value, str):
+            text = value
+        elif isinstance(value, CppName):
+            text = self._constant(value.name, node)
+        return ImageEncoding(text, node.location) if text not in (None, *_ANY_ENCODINGS) else None
+
+    def _constant(self, name: str, node: CppNode) -> str | None:
+        """Return the encoding that a constant of sensor_msgs is; None for another name."""
+        for meaning in self._unit.meanings(name, self._scopes_at(node)):
+            match = _CONSTANT.fullmatch(meaning)
+            if match is not None and _DEPTH.fullmatch(match[1]):
+                return match[1]
+            if match is not None and match[1].lower() in colour_encodings():
+                return match[1].lower()
+        return None
+
+    def _encoding_of_variable(self, node: CppNode, depth: int) -> ImageEncoding | None:
+        """Return the encoding of the image that a variable has where it is published."""
+        name = node.child("field") if node.kind == "field_expression" else node
+        if name is None or _whole(name) is not node:
+            return None
+        writes = self._writes_of(name)
+        if writes is None:
+            return None
+        if writes.encodings:
+            [assignment, *more] = writes.encodings
+            value = assignment.child("right")
+            is_last = not more and all(
+                it.file is assignment.file and it.start < assignment.start for it in writes.values
+            )
+            is_set = value is not None and is_last and self._reaches(assignment, node)
+            return self._encoding_in([value], 0) if is_set and value is not None else None
+        if len(writes.values) != 1:
+            return None
+        [value] = writes.values
+        if value.kind in _LISTS:
+            return self._encoding_in([it for it in value.children if it.kind != "comment"], 1)
+        return self._encoding_of(value, depth - 1)
+
+    def _writes_of(self, name: CppNode) -> _Writes | None:
+        """Return what sets an image; None where something that is not known may set it."""
+        uses = self._evaluation.uses_of(name)
+        if uses is None:
+            return None
+        values, encodings = [], []
+        for use in uses:
+            node = _whole(use)
+            while node.parent is not None and _is_same(node.parent):
+                node = node.parent
+            parent = node.parent
+            if parent is None:
+                return None
+            if parent.kind == "field_expression" and node.field == "argument":
+                encoding = _encoding_set(parent)
+                if encoding is None:
+                    return None
+                encodings += encoding
+            elif node.field == "declarator":
+                value = _value_declared(use)
+                values += [value] if value is not None else []
+            elif parent.kind == "assignment_expression" and node.field == "left":
+                value = parent.child("right")
+                values += [value] if value is not None else []
+            elif not _is_given_to(node, _TAKERS) and parent.kind not in _READING:
+                return None
+        return _Writes(values, encodings)
+
+    def _reaches(self, assignment: CppNode, use: CppNode) -> bool:
+        """Return whether an assignment certainly precedes a place."""
+        statement = assignment.parent
+        block = statement.parent if statement is not None else None
+        # Not in an `if` without braces, nor below a `case`.
+        if block is None or block.kind != "compound_statement":
+            return False
+        if is_conditional(assignment, assignment.file.root):
+            return False
+        if use.file is assignment.file and block.start <= use.start < block.end:
+            return assignment.start < use.start
+        function = self._unit.function_around(assignment)
+        if function is None or function is self._unit.function_around(use):
+            return False
+        return block is function.body and function.name == function.owner.rpartition("::")[2]
+
+    # --- What is asked
+    # ----------------------------------------------------------------------
+
+    def _asked_by(self, call: CppNode, function: CppFunction) -> tuple[ImageEncoding, ...]:
+        """Return the encodings to which the callback of a subscription converts its image."""
+        for callback in arguments_of(call)[2:3]:
+            body, message = self._function_given(callback, function)
+            inner = _only_call(body, message) if body is not None else None
+            if inner is not None:
+                body, message = self._method(called_name(inner), function)
+            if body is not None and message is not None:
+                return self._asked_in(body, message)
+        return ()
+
+    def _function_given(
+        self, callback: CppNode, function: CppFunction
+    ) -> tuple[CppNode | None, CppNode | None]:
+        """Return the body of a callback and the name of what it is given, as far as known."""
+        if callback.kind == "identifier":
+            declared = [it for it in self._evaluation.uses_of(callback) or () if it is not callback]
+            values = [_value_declared(it) for it in declared if it.field == "declarator"]
+            if len(declared) == 1 and len(values) == 1 and values[0] is not None:
+                callback = values[0]
+        if callback.kind == "lambda_expression":
+            declarator = callback.child("declarator")
+            parameters = declarator.child("parameters") if declarator is not None else None
+            given = parameters.children if parameters is not None else []
+            return callback.child("body"), _parameter_name(given)
+        if callback.kind == "call_expression" and called_name(callback) in ("std::bind", "bind"):
+            pointed = arguments_of(callback)[0] if arguments_of(callback) else callback
+            method = pointed.child("argument") if pointed.kind == "pointer_expression" else None
+            if method is not None:
+                return self._method(plain(method.text), function)
+        return None, None
+
+    def _method(self, name: str, function: CppFunction) -> tuple[CppNode | None, CppNode | None]:
+        """Return the body and the first parameter of a method of the class of a function."""
+        class_name, _, short = name.rpartition("::")
+        owner = self._unit.owner_of(function)
+        if class_name and class_name.rpartition("::")[2] != owner.rpartition("::")[2]:
+            return None, None
+        methods = self._methods.get((owner, short), ()) if owner else ()
+        if len(methods) != 1 or methods[0].is_conditional or methods[0].is_template:
+            return None, None
+        return methods[0].body, _parameter_name(methods[0].parameters)
+
+    @cached_property
+    def _methods(self) -> Mapping[tuple[str, str], Sequence[CppFunction]]:
+        """The functions by their classes and names."""
+        found: dict[tuple[str, str], list[CppFunction]] = {}
+        for function in self._unit.functions:
+            owner = self._unit.owner_of(function)
+            found.setdefault((owner, function.name), []).append(function)
+        return found
+
+    def _asked_in(self, body: CppNode, message: CppNode) -> tuple[ImageEncoding, ...]:
+        """Return the encodings to which a function converts a message; none where one is not
+        known, or it reads what the encoding is.
+        """
+        asked = []
+        self._budget.charge(1, body.end - body.start)
+        for node in body.walk():
+            if node.kind in ("identifier", "field_identifier"):
+                is_set = node.field == "left" and node.text == message.text
+                if is_set or node.text == _ENCODING:
+                    return ()
+            if node.kind in _LEAVING:
+                break  # what follows may never be executed
+            if node.kind != "call_expression":
+                continue
+            given = arguments_of(node)
+            is_converted = called_name(node).rpartition("::")[2] in _CONVERTING[:2] and given
+            if not is_converted or _unwrapped(given[0]).text != message.text:
+                continue
+            encoding = self._converted_to(node)
+            if encoding is None or is_conditional(node, body):
+                return ()
+            asked.append(encoding)
+        return tuple(asked)
+
+
+def _variable_of(made: CppNode) -> CppNode | None:
+    """Return the name of the variable that a publisher is made for; None without one."""
+    given = made.parent
+    initializer = given.parent if given is not None else None
+    if initializer is not None and initializer.kind == "field_initializer":
+        return initializer.children[0]
+    return variable_of(made)
+
+
+def _full_name(node: CppNode) -> str:
+    """Return the name of a type that is a template, with its namespaces."""
+    whole = node
+    while whole.field == "name" and whole.parent is not None:
+        if whole.parent.kind != "qualified_identifier":
+            break
+        whole = whole.parent
+    return plain(whole.text)
+
+
+def _whole(use: CppNode) -> CppNode:
+    """Return the expression that a name is part of: `this->name`, or the name."""
+    return use.parent if is_member_of_this(use) and use.parent is not None else use
+
+
+def _is_same(node: CppNode) -> bool:
+    """Return whether an expression is what it contains: in parentheses, or where it points to."""
+    if node.kind == "pointer_expression":
+        return node.text.startswith("*")
+    return node.kind == "parenthesized_expression"
+
+
+def _unwrapped(node: CppNode) -> CppNode:
+    """Return an expression without `*`, parentheses and std::move()."""
+    while True:
+        given = arguments_of(node) if node.kind == "call_expression" else []
+        if _is_same(node) and node.children:
+            node = node.child("argument") or node.children[0]
+        elif len(given) == 1 and called_name(node) in ("std::move", "move"):
+            node = given[0]
+        else:
+            return node
+
+
+def _encoding_set(member: CppNode) -> list[CppNode] | None:
+    """Return the assignment of an encoding where a member of an image is named; none for another
+    member, None where the encoding may be set in another way.
+    """
+    parent, field = member.parent, member.child("field")
+    if parent is None or field is None:
+        return None
+    if parent.kind == "call_expression":
+        return [] if field.text == _TO_MESSAGE else None
+    if field.text != _ENCODING:
+        return []
+    is_set = parent.kind == "assignment_expression" and member.field == "left"
+    return [parent] if is_set else None
+
+
+def _value_declared(name: CppNode) -> CppNode | None:
+    """Return the value that a variable is declared with; None without one."""
+    for around in name.ancestors():
+        if around.kind.endswith("declarator"):
+            continue
+        for declared, value in declared_in(around):
+            if declared is name:
+                return value
+    return None
+
+
+def _is_given_to(node: CppNode, takers: Sequence[str]) -> bool:
+    """Return whether an expression is an argument of a function with one of these names."""
+    given = node.parent
+    call = given.parent if given is not None and given.kind == "argument_list" else None
+    if call is None or call.kind != "call_expression":
+        return False
+    return called_name(call).rpartition("::")[2] in takers
+
+
+def _parameter_name(parameters: Sequence[CppNode]) -> CppNode | None:
+    """Return the name of the first parameter."""
+    declarator = parameters[0].child("declarator") if parameters else None
+    return name_in(declarator) if declarator is not None else None
+
+
+def _only_call(body: CppNode, message: CppNode | None) -> CppNode | None:
+    """Return the call of a method that is all that a function does with what it is given."""
+    statements = [it for it in body.children if it.kind != "comment"]
+    if message is None or len(statements) != 1 or not statements[0].children:
+        return None
+    call = statements[0].children[0]
+    given = arguments_of(call) if call.kind == "call_expression" else []
+    if not given or _unwrapped(given[0]).text != message.text:
+        return None
+    function = call.child("function")
+    owner = function.child("argument") if function is not None else None
+    is_own = owner is None or owner.kind == "this"
+    return call if is_own and "::" not in called_name(call) else None

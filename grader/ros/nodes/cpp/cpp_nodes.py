@@ -1,0 +1,616 @@
+"""The nodes of a package that are written in C++: what they declare and open, read from the text
+and never compiled.
+
+Only what is written as a text, number or constant is known. What is opened under a condition is
+listed as well. Macros, templates and code behind `#if` leave open what a node does.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+from grader.base.names import closest
+from grader.base.source import Location
+from grader.ros.cpp.cpp_evaluation import CppEvaluation, LibraryCalls
+from grader.ros.cpp.cpp_values import CppCall, CppName, CppValue
+from grader.ros.cpp.declarations import (
+    CppClass,
+    CppFunction,
+    declared_in,
+    name_in,
+    plain,
+)
+from grader.ros.cpp.objects import class_written, made_in, self_of, taker_of, variable_of
+from grader.ros.cpp.syntax import CppNode
+from grader.ros.cpp.unit import (
+    arguments_of,
+    called_name,
+    is_conditional,
+)
+from grader.ros.known.package_tables import cpp_table
+from grader.ros.nodes.cpp.cpp_faults import cpp_faults
+from grader.ros.nodes.cpp.cpp_files import CompiledTarget, CppFiles
+from grader.ros.nodes.cpp.cpp_frames import frames_in
+from grader.ros.nodes.cpp.cpp_message_content import CppContentReader
+from grader.ros.nodes.cpp.cpp_message_uses import cpp_field_uses
+from grader.ros.nodes.cpp.rclcpp_calls import (
+    ACTIONS,
+    DECLARES,
+    METHODS,
+    endpoint_of,
+    facts_of_method,
+    filter_subscription,
+    message_type,
+)
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    Doubt,
+    Endpoint,
+    FieldUse,
+    ImageEncoding,
+    NodeFacts,
+    NodeFrame,
+    NodeParameter,
+    NodeProgram,
+    PackageNodes,
+    SynchronisedType,
+    Timer,
+)
+from grader.ros.package.package import Package
+from grader.ros.python.budget import Budget, OutOfBudget
+
+_SETTING = {"get_parameter": 1, "get_parameter_or": 1}
+_REGISTERED = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(\s*([\w:]+)\s*\)")
+_SUBSCRIBER = "message_filters::Subscriber"
+_FILTER = re.compile(r"(?P<class>[\w:]*\bSubscriber)\s*<\s*(?P<type>[\w:]+)\s*[,>]")
+_LISTS = ("argument_list", "initializer_list")
+_OF_NODE = 20  # parts of a class that may be that of a node
+_SELF = ("shared_from_this", "weak_from_this", "get_node_base_interface")
+
+
+class _Created(NamedTuple):
+    """Where an object of a class of nodes is made: the class, and the arguments."""
+
+    class_name: str
+    arguments: tuple[CppNode, ...]
+    node: CppNode
+
+
+class _Parameter(NamedTuple):
+    """That a class gives its node the name that its constructor gets."""
+
+    position: int
+    default: CppValue
+
+
+_Name = str | _Parameter | None
+_Fact = Endpoint | NodeParameter | Timer | Doubt | NodeFrame
+
+
+def read_cpp_nodes(package: Package) -> PackageNodes:
+    """Return the nodes in the C++ files that a build of a package compiles. Never raises."""
+    nodes: dict[Location, NodeFacts] = {}
+    programs: list[NodeProgram] = []
+    doubts: dict[Doubt, None] = {}
+    faults: dict[CodeFault, None] = {}
+    loose_frames: dict[NodeFrame, None] = {}
+    field_uses: dict[FieldUse, None] = {}
+    synchronised: dict[SynchronisedType, None] = {}
+    is_loose, files = False, CppFiles(package)
+    try:
+        for compiled in files.compiled:
+            target = _Target(compiled, package.work)
+            for node in target.nodes:
+                nodes.setdefault(node.location, node)
+            programs += target.programs(package)
+            doubts |= dict.fromkeys(target.doubts)
+            faults |= dict.fromkeys((*target.faults(), *target.unregistered(package)))
+            loose_frames |= dict.fromkeys(target.loose_frames)
+            field_uses |= dict.fromkeys(target.field_uses)
+            synchronised |= dict.fromkeys(target.content.synchronised_types())
+            is_loose = is_loose or target.has_loose_declarations
+    except OutOfBudget:
+        start = Location(package.path("CMakeLists.txt"), 1, 1)
+        doubts[Doubt("the C++ files are too long to evaluate", start)] = None
+        programs = [program._replace(nodes=()) for program in programs]
+    return PackageNodes(
+        nodes=tuple(nodes.values()),
+        programs=tuple(programs),
+        doubts=tuple(doubts),
+        has_loose_declarations=is_loose,
+        faults=tuple(faults),
+        loose_frames=tuple(loose_frames),
+        field_uses=tuple(field_uses),
+        synchronised=tuple(synchronised),
+        texts=files.texts_with("package://"),
+        cpp_files=files.read_paths,
+    )
+
+
+class _Target:
+    """The nodes in the files that are compiled into one target."""
+
+    def __init__(self, compiled: CompiledTarget, budget: Budget) -> None:
+        self._compiled, self._unit, self._budget = compiled, compiled.unit, budget
+        interface = LibraryCalls(cpp_table().reading, _SETTING)
+        self._evaluation = CppEvaluation(self._unit, interface, budget)
+        self.content = CppContentReader(self._unit, self._evaluation, budget)
+        self.has_loose_declarations = False
+        self.doubts: list[Doubt] = []
+        self.loose_frames: list[NodeFrame] = []
+        self.field_uses: list[FieldUse] = []
+        for unread in compiled.unread:
+            self.doubts.append(
+                Doubt(f"C++ is not read as a whole: {unread.reason}", unread.location)
+            )
+        if not compiled.target.is_certain:
+            self.doubts.append(Doubt("its sources are not known", self._start))
+        self._facts: dict[str | CppNode, list[_Fact]] = {name: [] for name in self._node_classes}
+        self._created = [*self._find_created()]
+        self._created_at = {created.node: created for created in self._created}
+        self._nodes: dict[str | CppNode, NodeFacts] = {}
+        for created in self._created:
+            if created.class_name in cpp_table().nodes:
+                self._facts[created.node] = []
+        for function in self._unit.functions:
+            self._read_function(function)
+        for created in self._created:
+            key = created.node if created.node in self._facts else created.class_name
+            self._facts[key] += self._doubts_of_object(created)
+        self._add_doubts()
+
+    @property
+    def _start(self) -> Location:
+        """The place of the target itself."""
+        return self._compiled.at
+
+    # --- Classes
+    # ----------------------------------------------------------------------
+
+    @cached_property
+    def _node_classes(self) -> Mapping[str, CppClass]:
+        """The classes of nodes by their full names: those that are derived from one of rclcpp's."""
+        kinds = set(cpp_table().nodes)
+        found: dict[str, CppClass] = {}
+        is_growing = True
+        while is_growing:
+            is_growing = False
+            for name, classes in self._unit.classes.items():
+                self._budget.charge(_OF_NODE)
+                if name not in found and self._is_node(classes[0], kinds):
+                    found[name] = classes[0]
+                    kinds.add(name)
+                    is_growing = True
+        return found
+
+    def _is_node(self, each: CppClass, kinds: set[str]) -> bool:
+        scopes = each.name.split("::")[:-1]
+        return any(not kinds.isdisjoint(self._unit.meanings(it, scopes)) for it in each.bases)
+
+    def _doubts_of_class(self, each: CppClass) -> Iterator[Doubt]:
+        """Yield why a class may declare or open more than its own methods do."""
+        at, scopes = each.node.location, each.name.split("::")[:-1]
+        harmless = cpp_table().nodes | cpp_table().other_bases
+        for base in each.bases:
+            if harmless.isdisjoint(self._unit.meanings(base, scopes)):
+                yield Doubt("what another base class does is not added", at)
+        if each.is_template or each.is_conditional or len(self._unit.classes[each.name]) > 1:
+            yield Doubt("the class is a template, or has several definitions", at)
+
+    def _add_doubts(self) -> None:
+        """Add what leaves open what each node does."""
+        common = [*self.doubts]
+        for word in sorted(cpp_table().options):
+            for use in self._unit.uses.get(word, ())[:1]:
+                common.append(Doubt(f"{word} of its NodeOptions", use.location))
+        for key, facts in self._facts.items():
+            facts.extend(common)
+            if isinstance(key, str):
+                facts.extend(self._doubts_of_class(self._node_classes[key]))
+
+    # --- Objects
+    # ----------------------------------------------------------------------
+
+    def _find_created(self) -> Iterator[_Created]:
+        """Yield where nodes are made, in the functions of the target."""
+        for file in self._unit.files:
+            for node in file.calls:
+                name = self._class_made_by(node)
+                if name is not None:
+                    yield _Created(name, self._given_to(node), node)
+
+    def _class_made_by(self, node: CppNode) -> str | None:
+        """Return the class of nodes of which something makes an object; None for something else."""
+        written = class_written(node)
+        if written and self._unit.function_around(node) is not None:
+            return self._class_named(written, node)
+        return None
+
+    def _given_to(self, node: CppNode) -> tuple[CppNode, ...]:
+        if node.kind != "declaration":
+            return tuple(arguments_of(node))
+        for _, value in declared_in(node):
+            return tuple(value.children) if value is not None else ()
+        return ()
+
+    def _class_named(self, written: str, node: CppNode) -> str | None:
+        """Return the full name of the class of nodes that a name means; None for another class."""
+        function = self._unit.function_around(node)
+        scopes = self._unit.scopes_of(function) if function is not None else ()
+        for meaning in self._unit.meanings(plain(written), scopes):
+            if meaning in self._node_classes or meaning in cpp_table().nodes:
+                return meaning
+        return None
+
+    def _receiver(self, call: CppNode, function: CppFunction) -> "str | CppNode | None":
+        """Return the node whose method a call is: a class, or where an object of rclcpp's own
+        class is made; None where that is not known.
+        """
+        called = call.child("function")
+        owner = called.child("argument") if called is not None else None
+        if called is None or called.kind != "field_expression" or owner is None:
+            name = self._unit.owner_of(function)
+            return name if name in self._facts else None
+        if owner.kind == "this":
+            name = self._unit.owner_of(function)
+            return name if name in self._facts else None
+        made = self._object_of(owner, function)
+        created = self._created_at.get(made) if made is not None else None
+        if made is None or created is None:
+            return None
+        return made if made in self._facts else created.class_name
+
+    def _object_of(self, node: CppNode, function: CppFunction) -> CppNode | None:
+        """Return what makes the object that a local variable, which is set once, has."""
+        if node.kind != "identifier":
+            return None
+        inside = function.node
+        uses = [it for it in self._unit.uses.get(node.text, ()) if it.file is node.file]
+        uses = [it for it in uses if inside.start <= it.start < inside.end]
+        self._budget.charge(1 + len(uses))
+        made: list[CppNode] = []
+        for use in uses:
+            parent = use.parent
+            if parent is not None and parent.kind == "assignment_expression":
+                if use.field == "left":
+                    return None
+            elif use.field == "declarator" and parent is not None:
+                made.append(made_in(parent))
+        return made[0] if len(made) == 1 else None
+
+    def _doubts_of_object(self, created: _Created) -> Iterator[Doubt]:
+        """Yield that something is given a node that is made, which may declare or open more."""
+        function = self._unit.function_around(created.node)
+        variable = variable_of(created.node)
+        uses = [created.node]
+        if variable is not None and function is not None:
+            uses = [*self._unit.uses.get(variable.text, ())]
+            if variable.kind == "identifier" and variable.field == "declarator":
+                inside = [it for it in uses if it.file is function.node.file]
+                start, end = function.node.start, function.node.end
+                uses = [it for it in inside if start <= it.start < end]
+        self._budget.charge(1 + len(uses))
+        for use in uses:
+            taker = taker_of(self_of(use, _SELF))
+            if taker is not None and not _is_harmless(taker):
+                yield Doubt(f"{taker} is given the node", use.location)
+
+    # --- Functions
+    # ----------------------------------------------------------------------
+
+    def _read_function(self, function: CppFunction) -> None:
+        """Add what the calls in a function declare and open to the facts of its node."""
+        scopes = self._unit.scopes_of(function)
+        owner = self._unit.owner_of(function)
+        for node in self._unit.calls_in(function):
+            if node.kind == "this":
+                self._read_this(node, owner)
+            elif node.kind == "call_expression":
+                self._read_call(node, function, scopes, owner)
+        self.field_uses += cpp_field_uses(function, self._unit)
+        frames = frames_in(function, self._unit, self._evaluation)
+        if owner in self._facts:
+            self._facts[owner] += frames
+        else:
+            self.loose_frames += [it for it in frames if it.use == "publishes"]
+
+    def _read_call(
+        self, call: CppNode, function: CppFunction, scopes: Sequence[str], owner: str
+    ) -> None:
+        name = called_name(call)
+        short = name.rpartition("::")[2]
+        if name in ACTIONS or f"rclcpp_action::{name}" in ACTIONS:
+            self._read_action(call, name, scopes, owner)
+        elif short in METHODS and name == short:
+            self._read_method(call, function, scopes)
+        elif short in METHODS:
+            self._read_function_of_library(call, owner)
+        elif owner in self._facts and short.isupper() and len(short) > 3:
+            if not short.startswith(tuple(cpp_table().macros)):
+                reason = f"the macro {short} is not evaluated"
+                self._facts[owner].append(Doubt(reason, call.location))
+        elif owner in self._facts and short in _SELF:
+            self._read_this(call, owner)
+
+    def _read_method(self, call: CppNode, function: CppFunction, scopes: Sequence[str]) -> None:
+        key = self._receiver(call, function)
+        name = called_name(call)
+        if key is None:
+            if self._is_own_function(call, name, function):
+                return
+            self.has_loose_declarations |= name in DECLARES
+            reason = f"the node of this {name}() is not known"
+            self.doubts.append(Doubt(reason, call.location))
+            return
+        value = self._evaluation.value_of(call)
+        facts = self._facts[key]
+        if isinstance(value, CppCall):
+            facts += facts_of_method(value, self._unit, scopes)
+        if function.is_template or is_conditional(call, function.node) or function.is_conditional:
+            facts.append(Doubt("it depends on the preprocessor or on a template", call.location))
+
+    def _is_own_function(self, call: CppNode, name: str, function: CppFunction) -> bool:
+        """Return whether a call certainly is one of a function of the files themselves."""
+        called = call.child("function")
+        if called is None or called.kind == "field_expression":
+            return False
+        owner = self._unit.owner_of(function)
+        return any(
+            it.name == name and self._unit.owner_of(it) in ("", owner)
+            for it in self._unit.functions
+        )
+
+    def _read_function_of_library(self, call: CppNode, owner: str) -> None:
+        """Add that a function such as rclcpp::create_timer() is given a node, which may be open."""
+        name = called_name(call)
+        is_timer = name.rpartition("::")[2] in ("create_timer", "create_wall_timer")
+        if is_timer:
+            return
+        reason = f"what {name}() opens is not evaluated"
+        if owner in self._facts:
+            self._facts[owner].append(Doubt(reason, call.location))
+        else:
+            self.doubts.append(Doubt(reason, call.location))
+
+    def _read_action(self, call: CppNode, name: str, scopes: Sequence[str], owner: str) -> None:
+        """Add the action that rclcpp_action::create_server() or create_client() opens."""
+        full = name if name in ACTIONS else f"rclcpp_action::{name}"
+        value = self._evaluation.value_of(call)
+        is_of_action = name in ACTIONS or "rclcpp_action" in self._unit.opened
+        if not isinstance(value, CppCall) or not is_of_action:
+            self._read_plain_action(call)
+            return
+        first = value.argument(0)
+        is_own = isinstance(first, CppName) and first.name == "this"
+        if is_own and owner in self._facts:
+            self._facts[owner].append(endpoint_of(ACTIONS[full], value, self._unit, scopes))
+        else:
+            self.doubts.append(Doubt(f"the node of this {name}() is not known", call.location))
+
+    def _read_plain_action(self, call: CppNode) -> None:
+        """Add a client of a service, whose function has the name of that of actions."""
+        function = self._unit.function_around(call)
+        if function is not None and called_name(call) in METHODS:
+            self._read_method(call, function, self._unit.scopes_of(function))
+
+    def _read_this(self, node: CppNode, owner: str) -> None:
+        """Add that something is given the node itself, which may declare or open more."""
+        if owner not in self._facts:
+            return
+        subscription = self._subscription_of_filter(node)
+        if subscription is not None:
+            self._facts[owner].append(subscription)
+            return
+        name = taker_of(node)
+        if name is not None and not _is_harmless(name):
+            self._facts[owner].append(Doubt(f"{name} is given the node", node.location))
+
+    def _subscription_of_filter(self, node: CppNode) -> Endpoint | None:
+        """Return the subscription of a filter of message_filters that is given a node; None where
+        something else is.
+        """
+        given = node.parent
+        taker = given.parent if given is not None and given.kind in _LISTS else None
+        function = self._unit.function_around(node)
+        if given is None or taker is None or function is None:
+            return None
+        scopes = self._unit.scopes_of(function)
+        match = _FILTER.search(self._type_given(taker, scopes))
+        arguments = [it for it in given.children if it.kind != "comment"]
+        if match is None or arguments[:1] != [node]:
+            return None
+        if _SUBSCRIBER not in self._unit.meanings(match["class"], scopes):
+            return None
+        type_name = message_type(match["type"], self._unit, scopes)
+        values = [self._evaluation.value_of(it) for it in arguments]
+        return filter_subscription(type_name, values, taker.location)
+
+    def _type_given(self, taker: CppNode, scopes: Sequence[str]) -> str:
+        """Return the type, as it is written, of what gets the arguments of a call, of an
+        initializer or of a declaration; empty where it is not known.
+        """
+        name: CppNode | None = None
+        if taker.kind == "call_expression" and called_name(taker) == "subscribe":
+            called = taker.child("function")
+            owner = called.child("argument") if called is not None else None
+            is_member = owner is not None and owner.kind == "field_expression"
+            name = owner.child("field") if owner is not None and is_member else owner
+        elif taker.kind == "field_initializer":
+            name = taker.children[0]
+        elif taker.kind == "init_declarator" and taker.parent is not None:
+            kind = taker.parent.child("type")
+            return kind.text if kind is not None else ""
+        else:
+            return class_written(taker)
+        variables = self._unit.variables_named(name.text, scopes) if name is not None else ()
+        return variables[0].type if len(variables) == 1 else ""
+
+    # --- Results
+    # ----------------------------------------------------------------------
+
+    @cached_property
+    def nodes(self) -> tuple[NodeFacts, ...]:
+        """The nodes of the target: its classes, and what is made of rclcpp's own."""
+        return tuple(self._node(key) for key in self._facts)
+
+    def _node(self, key: "str | CppNode") -> NodeFacts:
+        """Return the facts of a node, once all functions are read."""
+        if key not in self._nodes:
+            self._nodes[key] = self._make_node(key)
+        return self._nodes[key]
+
+    def _make_node(self, key: "str | CppNode") -> NodeFacts:
+        endpoints: list[Endpoint] = []
+        parameters: list[NodeParameter] = []
+        timers: list[Timer] = []
+        doubts: list[Doubt] = []
+        frames: list[NodeFrame] = []
+        for fact in self._facts[key]:
+            match fact:
+                case Endpoint():
+                    known = self._encodings.get(fact.location, ())
+                    endpoints.append(fact._replace(encodings=known))
+                case NodeParameter():
+                    parameters.append(fact)
+                case Timer():
+                    timers.append(fact)
+                case Doubt():
+                    doubts.append(fact)
+                case NodeFrame():
+                    frames.append(fact)
+        if isinstance(key, str):
+            name, at = self._names[key], self._node_classes[key].node.location
+        else:
+            name, at = self._name_of_object(key), key.location
+        is_certain = isinstance(name, str)
+        return NodeFacts(
+            class_name=key if isinstance(key, str) else "",
+            name=str(name) if is_certain else None,
+            location=at,
+            endpoints=tuple(endpoints),
+            parameters=tuple(parameters),
+            timers=tuple(timers),
+            doubts=tuple(dict.fromkeys(doubts)),
+            frames=tuple(frames),
+        )
+
+    @cached_property
+    def _encodings(self) -> Mapping[Location, tuple[ImageEncoding, ...]]:
+        """The encodings of images, by the places of the endpoints that send or get them."""
+        return self.content.encodings()
+
+    def _name_of_object(self, node: CppNode) -> str | None:
+        """Return the name that a node of rclcpp's own class is given."""
+        arguments = self._created_at[node].arguments
+        name = self._evaluation.value_of(arguments[0]) if arguments else None
+        return name if isinstance(name, str) else None
+
+    @cached_property
+    def _names(self) -> Mapping[str, _Name]:
+        """The name that each class gives its node."""
+        found: dict[str, set[_Name]] = {name: set() for name in self._node_classes}
+        for function in self._unit.functions:
+            owner = self._unit.owner_of(function)
+            if owner in found and function.name == owner.rpartition("::")[2]:
+                found[owner] |= set(self._names_in(function))
+        return {name: names.pop() if len(names) == 1 else None for name, names in found.items()}
+
+    def _names_in(self, constructor: CppFunction) -> Iterator[_Name]:
+        """Yield the name that a constructor gives its base class, if that is rclcpp's own."""
+        scopes = self._unit.scopes_of(constructor)
+        for initializers in constructor.node.of_kind("field_initializer_list"):
+            for each in initializers.of_kind("field_initializer"):
+                written = each.children[0].text if each.children else ""
+                meanings = {*self._unit.meanings(plain(written), scopes)}
+                is_base = bool(meanings & cpp_table().nodes)
+                is_short = any(it.endswith(f"::{written}") for it in cpp_table().nodes)
+                if is_base or is_short:
+                    given = arguments_of(each)
+                    yield self._name_given(given[0], constructor) if given else None
+                    self._note_namespace(given, constructor)
+
+    def _name_given(self, node: CppNode, constructor: CppFunction) -> _Name:
+        value = self._evaluation.value_of(node)
+        if isinstance(value, str):
+            return value
+        if isinstance(value, CppName):
+            for position, parameter in enumerate(constructor.parameters):
+                declarator = parameter.child("declarator")
+                name = name_in(declarator) if declarator is not None else None
+                if name is not None and name.text == value.name:
+                    default = parameter.child("default_value")
+                    return _Parameter(position, self._evaluation.value_of(default))
+        return None
+
+    def _note_namespace(self, given: Sequence[CppNode], constructor: CppFunction) -> None:
+        """Add that a node is given a namespace."""
+        second = self._evaluation.value_of(given[1]) if len(given) > 1 else None
+        if isinstance(second, str) and second not in ("", "/"):
+            self._facts[self._unit.owner_of(constructor)].append(
+                Doubt("its program gives it a namespace", given[1].location)
+            )
+
+    def faults(self) -> Iterator[CodeFault]:
+        """Yield what keeps the nodes of the target from doing anything."""
+        created = [it.node if it.node in self._facts else it.class_name for it in self._created]
+        is_known = not any(isinstance(it, Doubt) for key in created for it in self._facts[key])
+        is_read = not self._compiled.unread and self._compiled.target.is_certain
+        is_program = self._compiled.target.kind == "executable" and bool(created) and is_known
+        yield from cpp_faults(
+            self._unit, self._node_classes, is_program=is_program, is_read=is_read
+        )
+
+    def unregistered(self, package: Package) -> Iterator[CodeFault]:
+        """Yield the components that CMakeLists.txt registers and no source does."""
+        target, setup = self._compiled.target, package.installation
+        is_read = target.is_certain and not self._compiled.unread
+        if setup is None or not is_read or "CLASS_LOADER_REGISTER_CLASS" in self._unit.uses:
+            return
+        registered: dict[str, Location] = {}
+        for file in self._unit.files:
+            registered |= file.found(_REGISTERED)
+        for component in target.components:
+            if component.plugin in registered:
+                continue
+            meant = closest(component.plugin, registered)
+            guess = f"; did you mean {meant!r}?" if meant is not None else ""
+            message = f"no source registers the component {component.plugin!r}{guess}"
+            related = registered[meant] if meant is not None else None
+            at, is_started = setup.location(component.at), bool(component.executable)
+            yield CodeFault("not registered", message, at, related, is_certain=is_started)
+
+    def programs(self, package: Package) -> Iterator[NodeProgram]:
+        """Yield the programs that the target is, and those of its components."""
+        target = self._compiled.target
+        setup = package.installation
+        if target.kind == "executable":
+            mains = [it for it in self._unit.functions if it.name == "main" and not it.owner]
+            nodes = tuple(self._started_by(it) for it in self._created)
+            at = mains[0].node.location if mains else self._start
+            path = at.path.removeprefix(package.path(""))
+            yield NodeProgram(target.name, nodes if mains else (), at, path, "main")
+        for component in target.components:
+            if component.executable and setup is not None:
+                name = component.plugin.removeprefix("::")
+                found = [self._node(name)] if name in self._facts else []
+                at = setup.location(component.at)
+                yield NodeProgram(component.executable, tuple(found), at, "", "")
+
+    def _started_by(self, created: _Created) -> NodeFacts:
+        """Return the node that an object is, with the name that its constructor is given."""
+        if created.node in self._facts:
+            return self._node(created.node)
+        node, name = self._node(created.class_name), self._names[created.class_name]
+        if not isinstance(name, _Parameter):
+            return node
+        given: CppValue = name.default
+        if name.position < len(created.arguments):
+            given = self._evaluation.value_of(created.arguments[name.position])
+        return node._replace(name=given if isinstance(given, str) else None)
+
+
+def _is_harmless(taker: str) -> bool:
+    """Return whether what is given a node declares and opens nothing that is not listed."""
+    short = taker.rpartition("::")[2]
+    return taker in ACTIONS or short in METHODS or short in cpp_table().harmless

@@ -1,0 +1,343 @@
+"""The types of messages, services and actions that Python code imports, and the fields that it uses
+of values whose type is certain.
+
+A value is certain where its name is bound once: what a typed callback is given, T(), and a field of
+these. What is under a condition on its type, or caught, does not count.
+"""
+
+import ast
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+from typing import NamedTuple
+
+from grader.base.source import Location, Source
+from grader.ros.nodes.node_facts import FieldUse, TypeImport
+from grader.ros.python.constants import dotted, last_name, offset_of
+from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
+from grader.ros.python.values import SCALARS, QualifiedName, Scope, Value
+
+_SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+_KINDS = ("msg", "srv", "action")
+_CAUGHT = frozenset({"AttributeError", "ImportError", "ModuleNotFoundError", "Exception", ""})
+# Functions that ask what a value is, or has.
+_ASKING = frozenset({"isinstance", "hasattr", "getattr", "setattr", "type"})
+_MAX_PATH = 12
+ITEM = "[]"  # in a path: an item of a list
+
+
+class _Typed(NamedTuple):
+    """A value: a field of what has a type, or this itself. The type has the name of its section:
+    chat_msgs.srv.Ask.Request.
+    """
+
+    type: str
+    path: tuple[str, ...] = ()
+
+
+class CodePart(NamedTuple):
+    """A function or method, or the module without these: its calls, its scope and the place of its
+    class.
+    """
+
+    name: str
+    node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Module
+    calls: Sequence[ast.Call]
+    scope: Scope
+    of: Location | None = None
+
+
+_Evaluate = Callable[[ast.expr], Value]
+
+
+def _interface_name(value: Value) -> str | None:
+    """Return the full name of a type of a message, service or action, or of a section of one; None
+    for what is none.
+    """
+    if not isinstance(value, QualifiedName):
+        return None
+    parts = value.name.split(".")
+    is_type = len(parts) in (3, 4) and parts[1] in _KINDS and parts[2][:1].isupper()
+    is_type = is_type and parts[0] != "rclpy"  # whose module action has other classes
+    return value.name if is_type else None
+
+
+def type_imports(tree: ast.Module, source: Source) -> Iterator[TypeImport]:
+    """Yield the types that a file certainly imports: not in a try, nor under a condition."""
+    pending: list[ast.stmt] = [*tree.body]
+    while pending:
+        statement = pending.pop()
+        match statement:
+            case ast.ImportFrom(module=str(module), names=names, level=0):
+                _, _, kind = module.partition(".")
+                for alias in names if kind in _KINDS and module != "rclpy.action" else ():
+                    if alias.name != "*":
+                        at = location_in(source, position_of(alias))
+                        yield TypeImport(f"{module}.{alias.name}", at)
+            case ast.FunctionDef(body=body) | ast.AsyncFunctionDef(body=body):
+                pending += body
+            case ast.ClassDef(body=body) | ast.With(body=body) | ast.For(body=body):
+                pending += body
+
+
+class _Callback(NamedTuple):
+    """Which arguments of a function are the type and the callback, and what the callback is given:
+    sections of the type.
+    """
+
+    type_at: int
+    type_name: str
+    callback_at: int
+    callback_name: str
+    sections: tuple[str, ...]
+
+
+_CALLBACKS = {
+    "create_subscription": _Callback(0, "msg_type", 2, "callback", ("",)),
+    "create_service": _Callback(0, "srv_type", 2, "callback", (".Request", ".Response")),
+    "ActionServer": _Callback(1, "action_type", 3, "execute_callback", (".GoalHandle",)),
+}
+
+
+def field_uses(
+    code: Code, parts: Sequence[CodePart], value_of: Callable[[ast.expr, Scope], Value]
+) -> Iterator[FieldUse]:
+    """Yield the fields that the functions of a module use."""
+    nodes = every_node(code.tree)
+    stored = Counter[str]()  # names and attributes that are bound, wherever it is
+    for node in nodes:
+        match node:
+            case ast.Attribute(attr=name, ctx=ast.Store() | ast.Del()):
+                stored[name] += 1
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+                stored[name] += 1
+    given = _types_given(parts, nodes, value_of)
+    functions = []
+    for part in parts:
+        evaluate = partial(_value_in, part.scope, value_of)
+        key = f"self.{part.name}" if part.of is not None else part.name
+        functions.append((part, _FunctionUses(part.node, evaluate, given.get((part.of, key), ()))))
+    shared: dict[Location | None, dict[str, _Typed]] = {None: {}}
+    for part, function in functions:
+        for name, typed in function.kept(is_module=isinstance(part.node, ast.Module)):
+            if stored[name.removeprefix("self.")] == 1:
+                of = part.of if name.startswith("self.") else None
+                shared.setdefault(of, {})[name] = typed
+    for part, function in functions:
+        function.know({**shared[None], **shared.get(part.of, {})})
+        for use in function.uses():
+            yield use.placed(code.source)
+
+
+def _value_in(scope: Scope, value_of: Callable[[ast.expr, Scope], Value], node: ast.expr) -> Value:
+    return value_of(node, scope)
+
+
+def _types_given(
+    parts: Sequence[CodePart],
+    nodes: Sequence[ast.AST],
+    value_of: Callable[[ast.expr, Scope], Value],
+) -> dict[tuple[Location | None, str], tuple[str, ...]]:
+    """Return what functions are called with that are named only where they become callbacks, by the
+    places of their classes and their names.
+    """
+    named = Counter(
+        dotted(node)
+        for node in nodes
+        if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
+    )
+    found: dict[tuple[Location | None, str], list[tuple[str, ...]]] = {}
+    for part in parts:
+        for call in part.calls:
+            row = _CALLBACKS.get(last_name(call.func))
+            callback = given_argument(call, row.callback_at, row.callback_name) if row else None
+            made = given_argument(call, row.type_at, row.type_name) if row else None
+            if row is None or callback is None or made is None:
+                continue
+            name, kind = dotted(callback), _interface_name(value_of(made, part.scope))
+            types = tuple(f"{kind}{section}" for section in row.sections) if kind else ()
+            of = part.of if name.startswith("self.") else None
+            found.setdefault((of, name), []).append(types)
+    given = {}
+    for key, types_of_each in found.items():
+        if len({*types_of_each}) == 1 and named[key[1]] == len(types_of_each):
+            given[key] = types_of_each[0]
+    return given
+
+
+def given_argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
+    """Return the expression of an argument; None where it is missing, or may be unpacked."""
+    for keyword in call.keywords:
+        if keyword.arg == name:
+            return keyword.value
+    if position < len(call.args) and not any(isinstance(it, ast.Starred) for it in call.args):
+        return call.args[position]
+    return None
+
+
+class _PlacedUse(NamedTuple):
+    """The use of a field, at the name of the field in a file that is given later."""
+
+    type: str
+    path: tuple[str, ...]
+    at: Position
+    literal: tuple[Value, ...] = ()
+
+    def placed(self, source: Source) -> FieldUse:
+        return FieldUse(self.type, self.path, location_in(source, self.at), self.literal)
+
+
+class _FunctionUses:
+    """The fields that one function uses of values whose type is certain."""
+
+    def __init__(
+        self,
+        function: ast.FunctionDef | ast.AsyncFunctionDef | ast.Module,
+        evaluate: _Evaluate,
+        given: Sequence[str],
+    ) -> None:
+        """`given` are the types of the arguments after self."""
+        self._evaluate = evaluate
+        self._nodes = sorted(certain_nodes(function), key=offset_of)
+        self._counts = Counter[str]()
+        for node in ast.walk(function):
+            match node:
+                case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+                    self._counts[name] += 1
+                case ast.Attribute(ctx=ast.Store() | ast.Del()):
+                    self._counts[dotted(node)] += 1
+                case ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name)):
+                    self._counts[name] += 1
+                case ast.Global(names=names) | ast.Nonlocal(names=names):
+                    self._counts.update([*names, *names])
+        self._types: dict[str, _Typed] = {}
+        self._asked = {*_asked(self._nodes)}
+        self._bind_arguments(function, given)
+        self._bind_assigned()
+
+    def _bind_arguments(self, function: ast.AST, given: Sequence[str]) -> None:
+        if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
+            names = [node.arg for node in function.args.args]
+            names = names[1:] if names[:1] == ["self"] else names
+            for name, kind in zip(names, given, strict=False):
+                if kind and self._counts[name] == 1 and name not in self._asked:
+                    self._types[name] = _Typed(kind)
+
+    def _bind_assigned(self) -> None:
+        """Bind the names that are assigned once, in the order of the lines."""
+        for node in self._nodes:
+            match node:
+                case (
+                    ast.Assign(targets=[target], value=value)
+                    | ast.AnnAssign(target=target, value=ast.expr() as value)
+                ):
+                    typed = self._type_of(value)
+                case ast.For(target=target, iter=items):
+                    listed = self._type_of(items)
+                    typed = listed and listed._replace(path=(*listed.path, ITEM))
+                case _:
+                    continue
+            name = dotted(target)
+            is_bound = name.count(".") < 2 and self._counts[name] == 1
+            if typed is not None and name and is_bound and name not in self._asked:
+                self._types[name] = typed
+
+    def kept(self, *, is_module: bool) -> Iterator[tuple[str, _Typed]]:
+        """Yield what other functions can use: attributes of self, and the names of a module."""
+        for name, typed in self._types.items():
+            if name.startswith("self.") or is_module:
+                yield name, typed
+
+    def know(self, shared: Mapping[str, _Typed]) -> None:
+        """Add names that other functions bind."""
+        for name, typed in shared.items():
+            if self._counts[name] == 0 and name not in self._asked:
+                self._types[name] = typed
+
+    def _type_of(self, node: ast.expr) -> _Typed | None:
+        """Return what an expression is; None where this is not certain."""
+        path: list[str] = []
+        while len(path) < _MAX_PATH:
+            name = dotted(node)
+            if name in self._types:
+                typed = self._types[name]
+                return typed._replace(path=(*typed.path, *reversed(path)))
+            match node:
+                case ast.Attribute(value=inner, attr=attribute):
+                    path.append(attribute)
+                    node = inner
+                case ast.Subscript(value=inner, slice=index) if not isinstance(index, ast.Slice):
+                    path.append(ITEM)
+                    node = inner
+                case ast.Call(func=made):
+                    kind = _interface_name(self._evaluate(made)) if dotted(made) else None
+                    return _Typed(kind, tuple(reversed(path))) if kind is not None else None
+                case _:
+                    return None
+        return None
+
+    def uses(self) -> Iterator[_PlacedUse]:
+        """Yield the fields that are used, each with the literal that it is set to."""
+        literals: dict[ast.AST, tuple[Value, ...]] = {}
+        for node in self._nodes:
+            match node:
+                case ast.Assign(targets=[ast.Attribute() as target], value=value):
+                    literals[target] = self._literal(value)
+                case ast.Attribute(value=owner):
+                    typed = self._type_of(owner)
+                    if typed is None and node.attr.isupper() and dotted(owner):
+                        kind = _interface_name(self._evaluate(owner))  # a constant of a type
+                        typed = _Typed(kind) if kind is not None else None
+                    if typed is not None:
+                        end = (node.end_col_offset or 0) - len(node.attr) + 1
+                        at = Position(node.end_lineno or node.lineno, end)
+                        path = (*typed.path, node.attr)
+                        yield _PlacedUse(typed.type, path, at, literals.get(node, ()))
+                case ast.Call(func=made, keywords=keywords) if keywords and dotted(made):
+                    kind = _interface_name(self._evaluate(made))
+                    for keyword in keywords if kind is not None else ():
+                        if keyword.arg not in (None, "check_fields"):
+                            at, literal = position_of(keyword), self._literal(keyword.value)
+                            yield _PlacedUse(kind or "", (keyword.arg or "",), at, literal)
+
+    def _literal(self, node: ast.expr) -> tuple[Value, ...]:
+        value = self._evaluate(node)
+        if value is None or isinstance(value, SCALARS):
+            return (value,)
+        return ()
+
+
+def _asked(nodes: Sequence[ast.AST]) -> Iterator[str]:
+    """Yield the names of values whose type or attributes a function asks for."""
+    for node in nodes:
+        match node:
+            case ast.Call(func=ast.Name(id=name), args=[first, *_]) if name in _ASKING:
+                yield dotted(first)
+            case ast.Match(subject=subject):
+                yield dotted(subject)
+
+
+def certain_nodes(function: ast.AST) -> Iterator[ast.AST]:
+    """Yield the nodes of a function, or of a module without its functions and classes, but for
+    those of which errors are caught.
+    """
+    pending = [function]
+    while pending:
+        node = pending.pop()
+        yield node
+        match node:
+            case ast.Try(handlers=handlers, orelse=orelse, finalbody=final) if _catches(handlers):
+                pending += [*handlers, *orelse, *final]
+            case ast.Module(body=body):
+                pending += [it for it in body if not isinstance(it, _SCOPES)]
+            case _:
+                pending += ast.iter_child_nodes(node)
+
+
+def _catches(handlers: Sequence[ast.ExceptHandler]) -> bool:
+    """Return whether a handler may catch that a field or type does not exist."""
+    for handler in handlers:
+        kinds = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
+        if any(kind is None or dotted(kind).rpartition(".")[2] in _CAUGHT for kind in kinds):
+            return True
+    return False

@@ -1,0 +1,516 @@
+"""What stops a node in Python, or keeps it from doing anything, in one module.
+
+Each rule is about what certainly fails once it runs. A callback is a function that is given to
+create_timer(), create_subscription(), create_service() or ActionServer.
+"""
+
+import ast
+import sys
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from grader.base.names import closest, near
+from grader.base.source import Location
+from grader.ros.known.package_tables import python_table
+from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
+from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.python.constants import binds_unseen, dotted, last_name
+from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
+
+_MAX_FAULTS = 20  # of one module and rule
+_CALLBACKS = {
+    "create_timer": (1, "callback"),
+    "create_subscription": (2, "callback"),
+    "create_service": (2, "callback"),
+    "ActionServer": (3, "execute_callback"),
+}
+_ANSWERING = ("create_service", "ActionServer")
+# Messages of pyflakes about what certainly fails when it runs.
+_CERTAIN = frozenset(
+    {
+        "UndefinedName",
+        "UndefinedLocal",
+        "StringDotFormatMissingArgument",
+        "PercentFormatPositionalCountMismatch",
+        "PercentFormatMissingArgument",
+        "PercentFormatExpectedMapping",
+        "PercentFormatExpectedSequence",
+    }
+)
+# Names that newer versions of Python define, so that each version finds the same.
+_LATER_BUILTINS = ("PythonFinalizationError", "EncodingWarning", "WindowsError")
+# Names of groups and executors with which a callback may wait for another one.
+_CONCURRENT = ("MultiThreadedExecutor", "ReentrantCallbackGroup", "MutuallyExclusiveCallbackGroup")
+_CONCURRENT_MODULES = frozenset({"threading", "multiprocessing", "concurrent", "asyncio"})
+# Packages that neither initialise rclpy nor spin a node, besides those of messages and the standard
+# library.
+_PASSIVE = frozenset(
+    {"rclpy", "numpy", "cv2", "cv_bridge", "tf2_ros", "tf_transformations", "transforms3d"}
+    | {"ament_index_python", "yaml", "scipy", "std_srvs", "message_filters"}
+)
+_MESSAGES = ("_msgs", "_interfaces", "_srvs", "_actions")
+_ENDING = frozenset({"sys.exit", "exit", "quit", "os._exit"})
+
+
+class ModuleText(NamedTuple):
+    """A module of which faults are searched: its full name, its code and its parts; `imports` are
+    the full names of what it imports.
+    """
+
+    name: str
+    code: Code
+    parts: Sequence[CodePart]
+    imports: Collection[str]
+    nodes: Mapping[Location, ast.ClassDef]  # the classes whose only bases are those of rclpy
+
+
+class _PackageAttributes(NamedTuple):
+    """The attributes that the modules of a package set, and the texts in them, which hasattr() or
+    getattr() may ask for; not all of them if names may be bound in ways that are not seen.
+    """
+
+    stored: Collection[str]
+    texts: Collection[str]
+    may_be_more: bool
+
+
+def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
+    """Return the attributes of the modules of a package."""
+    stored, texts = set[str](), set[str]()
+    may_be_more = False
+    for module in modules:
+        nodes = every_node(module.code.tree)
+        may_be_more = may_be_more or binds_unseen(nodes)
+        for node in nodes:
+            match node:
+                case ast.Attribute(attr=name, ctx=ast.Store()):
+                    stored.add(name)
+                case ast.Constant(value=str(text)):
+                    texts.add(text)
+    return _PackageAttributes(stored, texts, may_be_more)
+
+
+def code_faults(
+    module: ModuleText, others: Mapping[str, ModuleText], attributes: _PackageAttributes
+) -> Iterator[CodeFault]:
+    """Yield what is wrong in a module; `others` are all modules of the package, by their names,
+    and `attributes` those of all of them.
+    """
+    search = _Search(module, others)
+    yield from _undefined_names(module.code)
+    yield from search.undefined_attributes(attributes)
+    yield from search.called_callbacks()
+    yield from search.without_response()
+    yield from search.waiting_callbacks()
+    yield from search.of_programs()
+
+
+def _undefined_names(code: Code) -> Iterator[CodeFault]:
+    """Yield the names that are not defined, and texts that are formatted with too little."""
+    from pyflakes.checker import Checker  # late: few commands read the code of nodes
+
+    if binds_unseen(every_node(code.tree)):
+        return
+    try:
+        checker = Checker(code.tree, builtins=_LATER_BUILTINS)
+    except RecursionError:
+        return
+    unevaluated = _unevaluated(code.tree)
+    said = set[str]()
+    for message in sorted(checker.messages, key=lambda it: (it.lineno, it.col)):
+        text = message.message % message.message_args
+        at = Position(message.lineno, message.col + 1)
+        if type(message).__name__ in _CERTAIN and at not in unevaluated and text not in said:
+            said.add(text)
+            if len(said) <= _MAX_FAULTS:
+                yield CodeFault("undefined name", text, location_in(code.source, at))
+
+
+def _unevaluated(tree: ast.Module) -> set[Position]:
+    """Return the places in annotations, which Python does not always evaluate."""
+    places = set[Position]()
+    for node in every_node(tree):
+        match node:
+            case ast.AnnAssign(annotation=annotation):
+                inside: ast.expr | None = annotation
+            case ast.arg(annotation=inside):
+                pass
+            case ast.FunctionDef(returns=inside) | ast.AsyncFunctionDef(returns=inside):
+                pass
+            case _:
+                continue
+        for part in ast.walk(inside) if inside is not None else ():
+            if isinstance(part, ast.expr):
+                places.add(position_of(part))
+    return places
+
+
+class _Registered(NamedTuple):
+    """A function that is given as a callback: the call that is given it, and what it is given."""
+
+    by: str  # create_timer
+    call: ast.Call
+    given: ast.expr
+    part: CodePart
+
+
+class _Search:
+    """The search for the faults of one module."""
+
+    def __init__(self, module: ModuleText, others: Mapping[str, ModuleText]) -> None:
+        self._module, self._others = module, others
+        self._code = module.code
+        self._functions = {
+            (part.of, part.name): part.node
+            for part in module.parts
+            if not isinstance(part.node, ast.Module)
+        }
+        self._registered = [*self._find_registered()]
+
+    def _find_registered(self) -> Iterator[_Registered]:
+        for part in self._module.parts:
+            for call in part.calls:
+                name = last_name(call.func)
+                if name in _CALLBACKS:
+                    given = given_argument(call, *_CALLBACKS[name])
+                    if given is not None:
+                        yield _Registered(name, call, given, part)
+
+    def _at(self, node: ast.expr | ast.stmt) -> Location:
+        return location_in(self._code.source, position_of(node))
+
+    def _function(
+        self, node: ast.expr, part: CodePart
+    ) -> ast.FunctionDef | ast.AsyncFunctionDef | None:
+        """Return the function or own method that an expression names."""
+        name = dotted(node)
+        if name.startswith("self."):
+            return self._functions.get((part.of, name[5:]))
+        return self._functions.get((None, name))
+
+    def undefined_attributes(self, attributes: _PackageAttributes) -> Iterator[CodeFault]:
+        """Yield the attributes of self that a class of nodes reads, and nothing sets or defines."""
+        if attributes.may_be_more:
+            return
+        known, asked = {*python_table().node_attributes, *attributes.stored}, {*attributes.texts}
+        for part in self._module.parts:
+            owner = self._module.nodes.get(part.of) if part.of is not None else None
+            if owner is not None and not owner.decorator_list and not owner.keywords:
+                yield from self._undefined_in(part, owner, known, asked)
+
+    def _undefined_in(
+        self, part: CodePart, owner: ast.ClassDef, known: Collection[str], asked: set[str]
+    ) -> Iterator[CodeFault]:
+        """Yield those of a method; what is said is added to what the module asks for."""
+        own = {name for node in owner.body for name in _defined_by(node)}
+        for node in certain_nodes(part.node):
+            match node:
+                case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Load()):
+                    pass
+                case _:
+                    continue
+            if name in own or name in known or name in asked or name.startswith("_"):
+                continue
+            asked.add(name)
+            meant = near(name, own.union(known)) or closest(name, own)
+            hint = f"; did you mean {meant}?" if meant is not None else ""
+            message = f"{owner.name} has no attribute {name}{hint}"
+            at = Position(
+                node.end_lineno or node.lineno, (node.end_col_offset or 0) - len(name) + 1
+            )
+            yield CodeFault("undefined name", message, location_in(self._code.source, at))
+
+    # --- Callbacks
+
+    def called_callbacks(self) -> Iterator[CodeFault]:
+        """Yield callbacks that are called in place of passed."""
+        for found in self._registered:
+            if not isinstance(found.given, ast.Call):
+                continue
+            function = self._function(found.given.func, found.part)
+            if function is None or function.decorator_list:
+                continue
+            name = dotted(found.given.func)
+            if _lacks_arguments(found.given, function, is_method=name.startswith("self.")):
+                what = f"calls {name}() without its arguments"
+            elif not _gives_value(function):
+                what = f"is given what {name}() returns, which is None"
+            else:
+                continue
+            message = f"{found.by}() {what}; write {name} without the parentheses"
+            yield CodeFault("callback is called", message, self._at(found.given))
+
+    def without_response(self) -> Iterator[CodeFault]:
+        """Yield callbacks of services and actions that return nothing."""
+        said = set[ast.AST]()
+        for found in self._registered:
+            function = self._function(found.given, found.part)
+            if found.by not in _ANSWERING or function is None or function in said:
+                continue
+            said.add(function)
+            if function.decorator_list or _is_generator(function):
+                continue
+            what = "response" if found.by == "create_service" else "result"
+            for node, is_certain in _ends_without_value(function):
+                message = f"{function.name}() ends without returning its {what} here"
+                if node is function:
+                    message = f"{function.name}() does not return its {what}"
+                    if not is_certain:
+                        message = f"{message} on every path"
+                at = self._at(node)
+                yield CodeFault("no response", message, at, self._at(found.call), is_certain)
+
+    def waiting_callbacks(self) -> Iterator[CodeFault]:
+        """Yield what callbacks wait for while nothing else can run: with one thread, and one
+        group of callbacks.
+        """
+        if self._is_concurrent():
+            return
+        clients = {
+            dotted(node.targets[0])
+            for node in every_node(self._code.tree)
+            if isinstance(node, ast.Assign)
+            and isinstance(node.value, ast.Call)
+            and dotted(node.value.func) == "self.create_client"
+        }
+        for function in self._reached():
+            for call in _calls_in(function):
+                yield from self._waiting(call, function.name, clients)
+
+    def _waiting(self, call: ast.Call, name: str, clients: Collection[str]) -> Iterator[CodeFault]:
+        called = dotted(call.func)
+        owner, _, method = called.rpartition(".")
+        has_timeout = any(it.arg == "timeout_sec" for it in call.keywords) or len(call.args) > 2
+        if method == "call" and owner in clients and not has_timeout:
+            message = (
+                f"{called}() in the callback {name}() waits for ever: the answer is only read "
+                "when the callback has ended; use call_async()"
+            )
+            yield CodeFault("waits in a callback", message, self._at(call))
+        elif method == "spin_until_future_complete" and owner == "rclpy" and not has_timeout:
+            if call.args and dotted(call.args[0]) == "self":
+                message = (
+                    f"spin_until_future_complete() in the callback {name}() waits for ever: the "
+                    "answer is only read when the callback has ended; use add_done_callback()"
+                )
+                yield CodeFault("waits in a callback", message, self._at(call))
+        elif called == "time.sleep" and "time" in self._module.imports:
+            message = f"while time.sleep() in the callback {name}() waits, no other callback runs"
+            yield CodeFault("sleeps in a callback", message, self._at(call), is_certain=False)
+
+    def _reached(self) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
+        """Yield the callbacks of timers, subscriptions and services, and the own methods that they
+        call.
+        """
+        seen = set[ast.AST]()
+        pending = [it for it in self._registered if it.by != "ActionServer"]
+        reached = [(self._function(it.given, it.part), it.part) for it in pending]
+        while reached:
+            function, part = reached.pop(0)
+            if function is None or function in seen:
+                continue
+            seen.add(function)
+            yield function
+            for call in _calls_in(function):
+                if dotted(call.func).startswith("self."):
+                    reached.append((self._function(call.func, part), part))
+
+    def _is_concurrent(self) -> bool:
+        """Return whether this module, one that it imports or one that imports it may run callbacks
+        at the same time.
+        """
+        name = self._module.name
+        for module in self._others.values():
+            is_user = any(f"{it}.".startswith(f"{name}.") for it in module.imports)
+            is_used = any(f"{it}.".startswith(f"{module.name}.") for it in self._module.imports)
+            if module.name != name and not is_user and not is_used:
+                continue
+            text = module.code.source.text
+            if any(word in text for word in _CONCURRENT):
+                return True
+            if not _CONCURRENT_MODULES.isdisjoint(it.partition(".")[0] for it in module.imports):
+                return True
+        return False
+
+    # --- Programs
+
+    def of_programs(self) -> Iterator[CodeFault]:
+        """Yield that a module makes a node without rclpy.init(), or, with it, a node with callbacks
+        that never run, because nothing spins it.
+        """
+        reached = self._reached_modules()
+        if reached is None:
+            return
+        names, loops = set[str](), 0
+        for module in reached:
+            for node in ast.walk(module.code.tree):
+                names.add(getattr(node, "attr", "") or getattr(node, "id", ""))
+                loops += isinstance(node, ast.While)
+        calls = [call for part in self._module.parts if part.of is None for call in part.calls]
+        by_name = {dotted(call.func): call for call in reversed(calls)}
+        has_spin = any("spin" in name or "WaitSet" in name or "wait_for" in name for name in names)
+        if "rclpy.init" in by_name and self._registered and not has_spin:
+            message = (
+                "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
+            )
+            at = self._at(by_name["rclpy.init"])
+            yield CodeFault("nothing spins", message, at, is_certain=not loops)
+        is_initialised = "init" in names or "context" in self._code.source.text.lower()
+        if "rclpy.spin" in by_name and not is_initialised and not self._is_imported():
+            message = "rclpy.init() is missing, so rclpy makes no node"
+            yield CodeFault("no rclpy.init", message, self._at(by_name["rclpy.spin"]))
+
+    def _is_imported(self) -> bool:
+        name = self._module.name
+        others = [it for it in self._others.values() if it.name != name]
+        return any(f"{it}.".startswith(f"{name}.") for other in others for it in other.imports)
+
+    def _reached_modules(self) -> list[ModuleText] | None:
+        """Return the module and the own ones that it imports; None if others may spin a node."""
+        reached = {self._module.name: self._module}
+        pending = [self._module]
+        while pending:
+            for full in pending.pop().imports:
+                top = full.partition(".")[0]
+                names = [full, full.rpartition(".")[0]]
+                own = next((self._others[it] for it in names if it in self._others), None)
+                if own is not None:
+                    if own.name not in reached:
+                        reached[own.name] = own
+                        pending.append(own)
+                elif not (
+                    top in _PASSIVE or top in sys.stdlib_module_names or top.endswith(_MESSAGES)
+                ):
+                    return None
+        return [*reached.values()]
+
+
+def _defined_by(node: ast.stmt) -> Iterator[str]:
+    """Yield the names that a statement in the body of a class defines."""
+    if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        yield node.name
+        return
+    for part in ast.walk(node):
+        match part:
+            case ast.Name(id=name, ctx=ast.Store()) | ast.FunctionDef(name=name):
+                yield name
+            case ast.alias(name=full, asname=asname):
+                yield asname or full.partition(".")[0]
+
+
+def _calls_in(function: ast.AST) -> Iterator[ast.Call]:
+    """Yield the calls in a function, without those of functions in it."""
+    pending = [*ast.iter_child_nodes(function)]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            continue
+        if isinstance(node, ast.Call):
+            yield node
+        pending += ast.iter_child_nodes(node)
+
+
+def _own_statements(body: Sequence[ast.stmt]) -> Iterator[ast.stmt]:
+    """Yield the statements of a function, also in blocks, without those of functions in it."""
+    pending: list[ast.AST] = [*reversed(body)]
+    while pending:
+        node = pending.pop()
+        if isinstance(node, ast.stmt):
+            yield node
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            continue
+        for inner in reversed([*ast.iter_child_nodes(node)]):
+            if isinstance(inner, ast.stmt | ast.ExceptHandler | ast.match_case):
+                pending.append(inner)
+
+
+def _lacks_arguments(
+    call: ast.Call, function: ast.FunctionDef | ast.AsyncFunctionDef, *, is_method: bool
+) -> bool:
+    """Return whether a call certainly gives a function too few arguments."""
+    if any(isinstance(it, ast.Starred) for it in call.args) or any(
+        keyword.arg is None for keyword in call.keywords
+    ):
+        return False
+    parameters = function.args
+    needed = len(parameters.posonlyargs) + len(parameters.args) - len(parameters.defaults)
+    return len(call.args) + len(call.keywords) < needed - is_method
+
+
+def _is_generator(function: ast.AST) -> bool:
+    return any(isinstance(it, ast.Yield | ast.YieldFrom) for it in ast.walk(function))
+
+
+def _gives_value(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    if isinstance(function, ast.AsyncFunctionDef) or _is_generator(function):
+        return True
+    returns = [it for it in _own_statements(function.body) if isinstance(it, ast.Return)]
+    return any(it.value is not None for it in returns)
+
+
+def _ends_without_value(
+    function: ast.FunctionDef | ast.AsyncFunctionDef,
+) -> Iterator[tuple[ast.FunctionDef | ast.AsyncFunctionDef | ast.Return, bool]]:
+    """Yield where a function ends without a value: a return, or the function itself for its end.
+    With each whether it certainly gets there on some path.
+    """
+    for statement in _own_statements(function.body):
+        if isinstance(statement, ast.Return) and _is_none(statement.value):
+            yield statement, True
+            return
+    end = _falls_off(function.body)
+    if end != "no":
+        yield function, end == "yes"
+
+
+def _is_none(node: ast.expr | None) -> bool:
+    return node is None or (isinstance(node, ast.Constant) and node.value is None)
+
+
+def _falls_off(body: Sequence[ast.stmt]) -> str:
+    """Return whether statements may come to their end: yes, no, or maybe, where it depends on a
+    condition that may always hold.
+    """
+    last = body[-1]
+    match last:
+        case ast.If(body=first, orelse=second) if second:
+            return _either(_falls_off(first), _falls_off(second))
+        case ast.If(body=first):
+            return "yes" if _falls_off(first) != "no" else "maybe"
+        case ast.With(body=inner) | ast.AsyncWith(body=inner):
+            return _falls_off(inner)
+        case ast.Try():
+            return _falls_off_try(last)
+    return _falls_off_plain(last)
+
+
+def _falls_off_plain(statement: ast.stmt) -> str:
+    """Return the same for a statement that is a loop, or has no blocks."""
+    found = "yes"
+    match statement:
+        case ast.Return() | ast.Raise() | ast.Continue() | ast.Break():
+            found = "no"
+        case ast.Expr(value=ast.Call(func=made)) if dotted(made) in _ENDING:
+            found = "no"
+        case ast.While(test=ast.Constant(value=value)) if value:
+            has_break = any(isinstance(it, ast.Break) for it in ast.walk(statement))
+            found = "maybe" if has_break else "no"
+        case ast.While() | ast.For() | ast.AsyncFor() | ast.Match():
+            found = "maybe"
+    return found
+
+
+def _falls_off_try(statement: ast.Try) -> str:
+    if statement.finalbody and _falls_off(statement.finalbody) == "no":
+        return "no"
+    found = _falls_off(statement.orelse or statement.body)
+    for handler in statement.handlers:
+        found = _either(found, _falls_off(handler.body))
+    return found
+
+
+def _either(one: str, other: str) -> str:
+    for answer in ("yes", "maybe"):
+        if answer in (one, other):
+            return answer
+    return "no"

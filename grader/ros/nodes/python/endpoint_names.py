@@ -1,0 +1,283 @@
+"""The names of topics, services and actions that Python code makes of what depends on the node as
+it is started: its name, its namespace, and the values of its parameters.
+"""
+
+import ast
+import re
+import sys
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from typing import NamedTuple, TypeVar
+
+from grader.ros.nodes.node_facts import NamePart
+from grader.ros.python.constants import dotted, offset_of
+from grader.ros.python.values import Call, Value
+
+_MAX_DEPTH = 12  # of names that are bound to expressions with names
+_MAX_ITEMS = 20  # of a list that a loop goes through
+_MAX_PARTS = 20
+_UNKNOWN = NamePart("unknown")
+_FIELD = re.compile(r"\{(\d*)\}|\{\{|\}\}|\{[^{}]*\}")
+_PERCENT = re.compile(r"%([sdi%])|%")
+_OF_NODE: dict[str, NamePart] = {
+    "get_name": NamePart("node name"),
+    "get_namespace": NamePart("namespace"),
+}
+_METHODS = ("get_parameter", "declare_parameter")
+_VALUES = ("value", "string_value", "string_array_value", "integer_value")
+_Parts = tuple[NamePart, ...]
+
+
+_Found = TypeVar("_Found")
+
+
+class _Loop(NamedTuple):
+    """A loop through a list; its name is not bound to one item outside of these lines."""
+
+    items: ast.expr
+    first: int
+    last: int
+
+
+class Bindings(NamedTuple):
+    """What names are bound to once: the expressions, and those of lists that loops go through."""
+
+    values: Mapping[str, ast.expr]
+    loops: Mapping[str, _Loop]
+
+    def within(self, inner: "Bindings") -> "Bindings":
+        """Return these names with those of a scope inside of theirs, which hide them."""
+        return Bindings({**self.values, **inner.values}, {**self.loops, **inner.loops})
+
+
+def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
+    """Return what the names in a function are bound to once, or the attributes of self in a
+    class.
+    """
+    ordered = sorted(nodes, key=offset_of)
+    counts = Counter[str]()
+    for node in ordered:
+        match node:
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+                counts[name] += 1
+            case ast.Attribute(ctx=ast.Store() | ast.Del()):
+                counts[dotted(node)] += 1
+    values, loops = dict[str, ast.expr](), dict[str, _Loop]()
+    for node in ordered:
+        match node:
+            case (
+                ast.Assign(targets=[target], value=value)
+                | ast.AnnAssign(target=target, value=ast.expr() as value)
+            ):
+                values[dotted(target)] = value
+            case ast.For() | ast.comprehension():
+                name, loop = _looped(node)
+                loops[name] = loop
+    once = {name for name, count in counts.items() if count == 1}
+    if of_self:
+        once = {name for name in once if name.startswith("self.")}
+    return Bindings(_only(values, once), _only(loops, once))
+
+
+def _only(found: Mapping[str, _Found], names: Collection[str]) -> dict[str, _Found]:
+    return {name: value for name, value in found.items() if name in names}
+
+
+def _looped(node: ast.For | ast.comprehension) -> tuple[str, _Loop]:
+    """Return the name that a loop gives each item of a list; of enumerate() that of the item."""
+    first, last = 0, sys.maxsize
+    if isinstance(node, ast.For):
+        first, last = node.lineno, max(it.end_lineno or it.lineno for it in node.body)
+    match node.target, node.iter:
+        case ast.Tuple(elts=[_, named]), ast.Call(func=ast.Name(id="enumerate"), args=[items]):
+            return dotted(named), _Loop(items, first, last)
+    return dotted(node.target), _Loop(node.iter, first, last)
+
+
+class EndpointNames:
+    """Reads names in one function."""
+
+    def __init__(self, known: Bindings, evaluate: Callable[[ast.expr], Value]) -> None:
+        self._known, self._evaluate = known, evaluate
+
+    def read(self, node: ast.expr) -> Iterator[_Parts]:
+        """Yield the parts of a name, once for each item of a list in the code that a loop goes
+        through.
+        """
+        names = {name.id for name in ast.walk(node) if isinstance(name, ast.Name)}
+        for name in sorted(names):
+            loop = self._loop(name, node)
+            items = self._items(loop.items if loop is not None else None)
+            if items is not None:
+                for item in items[:_MAX_ITEMS]:
+                    yield self._joined(self._parts(node, {name: item}))
+                return
+        yield self._joined(self._parts(node, {}))
+
+    def _loop(self, name: str, node: ast.expr) -> _Loop | None:
+        """Return the loop that an expression is in and that binds a name."""
+        loop = self._known.loops.get(name)
+        if loop is not None and loop.first <= node.lineno <= loop.last:
+            return loop
+        return None
+
+    def _items(self, node: ast.expr | None) -> list[ast.expr] | None:
+        """Return the items of a list that is written in the code; None for any other list."""
+        for _ in range(_MAX_DEPTH):
+            match node:
+                case ast.List(elts=items) | ast.Tuple(elts=items):
+                    return items
+                case ast.Dict(keys=keys):
+                    return [key for key in keys if key is not None]
+                case ast.Name() | ast.Attribute():
+                    node = self._known.values.get(dotted(node))
+                case _:
+                    return None
+        return None
+
+    def _joined(self, parts: Iterable[NamePart]) -> _Parts:
+        """Return parts, of which no two texts follow each other."""
+        found: list[NamePart] = []
+        for part in parts:
+            if found and found[-1].kind == part.kind == "text":
+                found[-1] = NamePart("text", found[-1].text + part.text)
+            elif len(found) < _MAX_PARTS:
+                found.append(part)
+            else:
+                found[-1] = _UNKNOWN
+        return tuple(found)
+
+    def _parts(
+        self, node: ast.expr, items: Mapping[str, ast.expr], depth: int = 0
+    ) -> Iterator[NamePart]:
+        """Yield the parts of an expression; `items` are what the names of loops are."""
+        value = self._evaluate(node)
+        if isinstance(value, str | int) and not isinstance(value, bool):
+            yield NamePart("text", str(value))
+            return
+        if depth > _MAX_DEPTH:
+            yield _UNKNOWN
+            return
+        match node:
+            case ast.JoinedStr(values=values):
+                for each in values:
+                    yield from self._parts(each, items, depth + 1)
+            case ast.FormattedValue(value=inner, conversion=-1, format_spec=None):
+                yield from self._parts(inner, items, depth + 1)
+            case ast.BinOp(left=left, op=ast.Add(), right=right):
+                yield from self._parts(left, items, depth + 1)
+                yield from self._parts(right, items, depth + 1)
+            case ast.BinOp(left=ast.Constant(value=str(text)), op=ast.Mod(), right=right):
+                given = right.elts if isinstance(right, ast.Tuple) else [right]
+                yield from self._formatted(_PERCENT, text, given, items, depth)
+            case ast.Name() | ast.Attribute():
+                yield from self._of_name(node, items, depth)
+            case ast.Call():
+                yield from self._of_call(node, items, depth)
+            case _:
+                yield _UNKNOWN
+
+    def _of_name(
+        self, node: ast.Name | ast.Attribute, items: Mapping[str, ast.expr], depth: int
+    ) -> Iterator[NamePart]:
+        name = dotted(node)
+        parameter = self._parameter(node)
+        if name in items:
+            yield from self._parts(items[name], {}, depth + 1)
+        elif parameter is not None:
+            yield self._of_parameter("parameter", parameter)
+        elif name in self._known.values:
+            yield from self._parts(self._known.values[name], items, depth + 1)
+        elif (loop := self._loop(name, node)) is not None:
+            yield self._item_of(loop.items)
+        else:
+            yield _UNKNOWN
+
+    def _item_of(self, node: ast.expr) -> NamePart:
+        """Return the part that an item of a list is: of a parameter, or not known."""
+        for _ in range(_MAX_DEPTH):
+            parameter = self._parameter(node)
+            if parameter is not None:
+                return self._of_parameter("item", parameter)
+            if dotted(node) not in self._known.values:
+                break
+            node = self._known.values[dotted(node)]
+        return _UNKNOWN
+
+    def _of_parameter(self, kind: str, name: ast.expr) -> NamePart:
+        value = self._evaluate(name)
+        if not isinstance(value, str):
+            return _UNKNOWN
+        return NamePart("item" if kind == "item" else "parameter", value)
+
+    def _of_call(
+        self, node: ast.Call, items: Mapping[str, ast.expr], depth: int
+    ) -> Iterator[NamePart]:
+        match node:
+            case ast.Call(func=ast.Name(id="str"), args=[inner], keywords=[]):
+                yield from self._parts(inner, items, depth + 1)
+            case ast.Call(
+                func=ast.Attribute(value=ast.Constant(value=str(text)), attr="format"),
+                args=given,
+                keywords=[],
+            ):
+                yield from self._formatted(_FIELD, text, given, items, depth)
+            case ast.Call(func=ast.Attribute(value=owner, attr=method), args=[]) if (
+                method in _OF_NODE and self._is_node(owner)
+            ):
+                yield _OF_NODE[method]
+            case _:
+                yield _UNKNOWN
+
+    def _is_node(self, node: ast.expr) -> bool:
+        """Return whether an expression is the node: self, or what rclpy.create_node() makes."""
+        value = self._evaluate(node) if dotted(node) else None
+        is_made = isinstance(value, Call) and value.name.startswith("rclpy.")
+        return dotted(node) == "self" or is_made
+
+    def _formatted(
+        self,
+        pattern: re.Pattern[str],
+        text: str,
+        given: list[ast.expr],
+        items: Mapping[str, ast.expr],
+        depth: int,
+    ) -> Iterator[NamePart]:
+        """Yield the parts of a text with places for what is given."""
+        start = number = 0
+        for place in pattern.finditer(text):
+            yield NamePart("text", text[start : place.start()])
+            start = place.end()
+            if place[0] in ("{{", "}}", "%%"):
+                yield NamePart("text", place[0][0])
+                continue
+            at = int(place[1]) if (place[1] or "").isdigit() else number
+            number += 1
+            if place[1] is not None and at < len(given):
+                yield from self._parts(given[at], items, depth + 1)
+            else:
+                yield _UNKNOWN
+        yield NamePart("text", text[start:])
+
+    def _parameter(self, node: ast.expr) -> ast.expr | None:
+        """Return the name of the parameter whose value an expression is; None if it is no
+        parameter's.
+        """
+        match node:
+            case ast.Attribute(value=ast.Call(func=made, args=[name, *_]), attr="value"):
+                method = made
+            case ast.Attribute(
+                value=ast.Call(
+                    func=ast.Attribute(
+                        value=ast.Call(func=made, args=[name, *_]), attr="get_parameter_value"
+                    )
+                ),
+                attr=attribute,
+            ) if attribute in _VALUES:
+                method = made
+            case _:
+                return None
+        is_method = isinstance(method, ast.Attribute) and method.attr in _METHODS
+        if isinstance(method, ast.Attribute) and is_method and self._is_node(method.value):
+            return name
+        return None

@@ -1,0 +1,164 @@
+"""What Python code asks of the content of messages: a time in their header that a synchroniser
+compares, and the encoding of images that cv_bridge converts.
+"""
+
+import ast
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from grader.base.source import Location, Source
+from grader.ros.nodes.message_uses import CodePart, given_argument
+from grader.ros.nodes.node_facts import ImageEncoding, SynchronisedType
+from grader.ros.nodes.python.endpoint_names import Bindings
+from grader.ros.python.constants import dotted, last_name
+from grader.ros.python.parse import location_in, position_of
+from grader.ros.python.values import QualifiedName, Scope, Value
+
+SUBSCRIBER = "message_filters.Subscriber"
+_SYNCHRONISERS = (
+    "message_filters.TimeSynchronizer",
+    "message_filters.ApproximateTimeSynchronizer",
+)
+_HEADERLESS_AT, _HEADERLESS = 3, "allow_headerless"
+_MAX_DEPTH = 12  # of names that are bound to expressions with names
+_ANY_ENCODING = "passthrough"
+_PUBLISHES = "create_publisher"
+
+
+class _BoundFunction(NamedTuple):
+    """A function, and what the names in it and the attributes of its class are bound to."""
+
+    part: CodePart
+    values: Mapping[str, ast.expr]
+
+    def resolve(self, node: ast.expr | None) -> ast.expr | None:
+        """Return the expression that a name is bound to, or the expression itself."""
+        for _ in range(_MAX_DEPTH):
+            if not isinstance(node, ast.Name | ast.Attribute) or dotted(node) not in self.values:
+                break
+            node = self.values[dotted(node)]
+        return node
+
+
+class ContentReader:
+    """Reads what the functions of a module ask of messages."""
+
+    def __init__(
+        self,
+        parts: Sequence[CodePart],
+        source: Source,
+        value_of: Callable[[ast.expr | None, Scope], Value],
+        bindings_of: Callable[[CodePart], Bindings],
+    ) -> None:
+        """`bindings_of` returns the bindings in a function, with those of its class."""
+        self._functions = [_BoundFunction(part, bindings_of(part).values) for part in parts]
+        self._source, self._value_of = source, value_of
+
+    def synchronised_types(self) -> Iterator[SynchronisedType]:
+        """Yield the types of the messages that synchronisers get, unless these need no header."""
+        for function in self._functions:
+            for call in function.part.calls:
+                kind = self._called(function, call)
+                if kind not in _SYNCHRONISERS or _takes_any(call):
+                    continue
+                filters = function.resolve(given_argument(call, 0, "fs"))
+                for each in filters.elts if isinstance(filters, ast.List | ast.Tuple) else ():
+                    made = function.resolve(each)
+                    if not isinstance(made, ast.Call) or self._called(function, made) != SUBSCRIBER:
+                        continue
+                    written = given_argument(made, 1, "msg_type")
+                    type_name = self._value_of(written, function.part.scope)
+                    if isinstance(type_name, QualifiedName):
+                        by = kind.rpartition(".")[2]
+                        yield SynchronisedType(type_name.name, by, self._at(made))
+
+    def encodings(self) -> Mapping[Location, tuple[ImageEncoding, ...]]:
+        """Return the encodings of images that publishers send, and to which callbacks convert what
+        they get, by the places where these are made; none where one is not known.
+        """
+        asked = self._encodings_asked()
+        found: dict[Location, list[ImageEncoding | None]] = {}
+        for function in self._functions:
+            names_encoding = _names_encoding(function.part)
+            for call in function.part.calls:
+                match call.func:
+                    case ast.Attribute(attr="publish", value=owner):
+                        made = function.resolve(owner)
+                        if isinstance(made, ast.Call) and last_name(made.func) == _PUBLISHES:
+                            sent = None if names_encoding else self._sent(function, call)
+                            found.setdefault(self._at(made), []).append(sent)
+                    case ast.Attribute(attr="create_subscription"):
+                        name = dotted(given_argument(call, 2, "callback") or call)
+                        of = function.part.of if name.startswith("self.") else None
+                        found.setdefault(self._at(call), []).extend(asked.get((of, name), ()))
+        known = {}
+        for at, encodings in found.items():
+            if None not in encodings:
+                known[at] = tuple(each for each in encodings if each is not None)
+        return known
+
+    def _sent(self, function: _BoundFunction, call: ast.Call) -> ImageEncoding | None:
+        """Return the encoding of the image that is published."""
+        image = function.resolve(given_argument(call, 0, "msg"))
+        if isinstance(image, ast.Call) and last_name(image.func) == "cv2_to_imgmsg":
+            return self._encoding(function, image, "encoding")
+        return None
+
+    def _encodings_asked(self) -> Mapping[tuple[Location | None, str], list[ImageEncoding]]:
+        """Return the encodings to which functions convert what they are given, by their class and
+        name.
+        """
+        asked: dict[tuple[Location | None, str], list[ImageEncoding]] = {}
+        for function in self._functions:
+            part, message = function.part, _first_argument(function.part)
+            if not message or _names_encoding(part):
+                continue
+            key = (part.of, f"self.{part.name}" if part.of is not None else part.name)
+            for call in part.calls:
+                given = given_argument(call, 0, "img_msg")
+                if last_name(call.func) == "imgmsg_to_cv2" and dotted(given or call) == message:
+                    encoding = self._encoding(function, call, "desired_encoding")
+                    if encoding is not None:
+                        asked.setdefault(key, []).append(encoding)
+        return asked
+
+    def _encoding(
+        self, function: _BoundFunction, call: ast.Call, name: str
+    ) -> ImageEncoding | None:
+        text = self._value_of(given_argument(call, 1, name), function.part.scope)
+        if not isinstance(text, str) or text == _ANY_ENCODING:
+            return None
+        return ImageEncoding(text, self._at(call))
+
+    def _called(self, function: _BoundFunction, call: ast.Call) -> str:
+        value = self._value_of(call.func, function.part.scope) if dotted(call.func) else None
+        return value.name if isinstance(value, QualifiedName) else ""
+
+    def _at(self, node: ast.expr) -> Location:
+        return location_in(self._source, position_of(node))
+
+
+def _takes_any(call: ast.Call) -> bool:
+    """Return whether a synchroniser may take messages without a header."""
+    given = given_argument(call, _HEADERLESS_AT, _HEADERLESS)
+    is_off = isinstance(given, ast.Constant) and given.value is False
+    is_unpacked = any(keyword.arg is None for keyword in call.keywords)
+    return is_unpacked or not (given is None or is_off)
+
+
+def _names_encoding(part: CodePart) -> bool:
+    """Return whether a function reads or sets the encoding of an image itself."""
+    nodes = ast.walk(part.node)
+    return any(isinstance(node, ast.Attribute) and node.attr == "encoding" for node in nodes)
+
+
+def _first_argument(part: CodePart) -> str:
+    """Return the name of what a function is given, if nothing else is bound to it."""
+    if isinstance(part.node, ast.Module):
+        return ""
+    names = [argument.arg for argument in part.node.args.args]
+    names = names[1:] if names[:1] == ["self"] else names
+    for node in ast.walk(part.node):
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id in names:
+            return ""
+    return names[0] if names else ""

@@ -1,0 +1,114 @@
+"""The slips in the files of a package: what its build, its launch files, or what reads its YAML
+refuses, and what keeps its programs from running.
+"""
+
+import ast
+from collections.abc import Iterator
+
+from grader.base.slips import Slip
+from grader.ros.config.yaml_slips import yaml_slips
+from grader.ros.installation.installation import Installation
+from grader.ros.launch.launch_slips import launch_slips, name_slips
+from grader.ros.package.package import SETUP, Package
+from grader.ros.python.parse import Code, location_in, parse, position_of
+
+_LIMIT = 32 * 1024  # bytes of a file, because what may be meant is tried by reading it again
+_MAX_FILES = 20
+_YAML = (".yaml", ".yml", ".rviz")
+
+
+def package_slips(package: Package) -> Iterator[Slip]:
+    """Yield the slips in the files of a package: those of its build, of launch files, of YAML."""
+    installation = package.installation
+    if installation is not None:
+        yield from _build_slips(package, installation)
+    for path in package.launch_files[:_MAX_FILES]:
+        if not path.endswith((".xml", ".yaml", ".yml")):
+            yield from _python_file(package, path, is_launch_file=True)
+    if installation is not None and _has_programs(installation):
+        from grader.ros.nodes.python.python_nodes import (
+            program_slips,  # late: many have no programs
+        )
+
+        yield from program_slips(package)
+    paths = [path for path in package.tree.files if path.lower().endswith(_YAML)]
+    for path in paths[:_MAX_FILES]:
+        data = package.tree.read(path, _LIMIT)
+        if data is not None:
+            yield from yaml_slips(data, package.path(path))
+
+
+def _has_programs(installation: Installation) -> bool:
+    copies = (copy for copy in installation.copies if copy.target.startswith("lib/"))
+    return bool(installation.console_scripts) or any(copies)
+
+
+def _python_file(package: Package, path: str, *, is_launch_file: bool) -> Iterator[Slip]:
+    data = package.tree.read(path, _LIMIT)
+    if data is None:
+        return
+    parsed = parse(data, package.path(path))
+    if isinstance(parsed, Code):
+        yield from launch_slips(parsed) if is_launch_file else name_slips(parsed)
+    else:
+        from grader.ros.python.python_slips import python_slips  # late: most files are read
+
+        yield from python_slips(data, package.path(path))
+
+
+def _build_slips(package: Package, installation: Installation) -> Iterator[Slip]:
+    manifest = package.manifest
+    name = (manifest.name if manifest is not None else None) or ""
+    if package.is_cmake:
+        if len(installation.source.text) > _LIMIT:
+            return
+        from grader.ros.installation.cmake.cmake_slips import cmake_slips
+
+        needed = manifest.dependencies if manifest is not None else ()
+        yield from cmake_slips(installation.source, package.tree, name, needed)
+        return
+    yield from _python_file(package, SETUP, is_launch_file=False)
+    data = package.tree.read(SETUP, _LIMIT)
+    code = parse(data or b"", package.path(SETUP))
+    if isinstance(code, Code):
+        yield from _argument_slips(installation, code)
+        yield from _name_slips(package, installation, code, name)
+
+
+def _argument_slips(installation: Installation, code: Code) -> Iterator[Slip]:
+    """Yield the argument that setup() does not have, near one that it has."""
+    ignored = installation.misspelt
+    for node in ast.walk(code.tree) if ignored is not None and ignored.meant else ():
+        if isinstance(node, ast.keyword) and ignored is not None and node.arg == ignored.name:
+            yield _slip(
+                code,
+                node,
+                ignored.name,
+                ignored.meant or "",
+                f"setuptools ignores the argument {ignored.name}",
+            )
+
+
+def _name_slips(
+    package: Package, installation: Installation, code: Code, name: str
+) -> Iterator[Slip]:
+    """Yield where setup.py has another name than package.xml, whose name the files of the package
+    have.
+    """
+    written = installation.name
+    if not written or not name or written == name or f"resource/{name}" not in package.tree.files:
+        return
+    for node in ast.walk(code.tree):
+        if isinstance(node, ast.Constant) and node.value == written:
+            reaction = f"package.xml names the package {name!r}, setup.py {written!r}"
+            yield _slip(code, node, written, name, reaction)
+
+
+def _slip(
+    code: Code, node: ast.expr | ast.keyword, written: str, meant: str, reaction: str
+) -> Slip:
+    source = code.source
+    at = location_in(source, position_of(node))
+    start = source.text.find(written, source.offset(at.line, at.column))
+    edit = source.edit(start, start + len(written), meant)
+    return Slip((edit,), reaction, f"{written} is read as {meant}", source.at(start))

@@ -1,0 +1,791 @@
+"""The nodes of a package that are written in Python: what they declare and open, read from the text
+and never run.
+
+Only what is written as a text, number or constant is known.
+What is opened under a condition is listed as well; actions and the topics of tf2 are not.
+"""
+
+import ast
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from functools import cache, cached_property, partial
+from typing import NamedTuple
+
+from grader.base.errors import InputError
+from grader.base.slips import Slip
+from grader.base.source import Edits, Location
+from grader.ros.installation.installation import InstalledFile
+from grader.ros.nodes.message_uses import CodePart, field_uses, given_argument, type_imports
+from grader.ros.nodes.node_facts import (
+    CodeFault,
+    Doubt,
+    Endpoint,
+    EndpointKind,
+    FieldUse,
+    ImageEncoding,
+    NamePart,
+    NodeFacts,
+    NodeFrame,
+    NodeParameter,
+    NodeProgram,
+    PackageNodes,
+    Qos,
+    SynchronisedType,
+    Timer,
+    TypeImport,
+)
+from grader.ros.nodes.python.code_faults import ModuleText, attributes_in, code_faults
+from grader.ros.nodes.python.endpoint_names import Bindings, EndpointNames, bindings
+from grader.ros.nodes.python.message_content import SUBSCRIBER, ContentReader
+from grader.ros.nodes.python.node_slips import Program as StartedProgram
+from grader.ros.nodes.python.node_slips import node_slips
+from grader.ros.package.entry_points import (
+    entry_points,
+    module_path,
+    read_module,
+    unreadable_module,
+)
+from grader.ros.package.package import Package
+from grader.ros.python.budget import Budget
+from grader.ros.python.constants import Constants, constant_in, dotted, offset_of
+from grader.ros.python.evaluation import record
+from grader.ros.python.parse import (
+    START,
+    Code,
+    every_node,
+    location_in,
+    own_nodes,
+    parse,
+    position_of,
+)
+from grader.ros.python.python_slips import python_slips
+from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknown, Value
+
+_MAX_SEARCHED = 32 * 1024  # bytes of a program in which slips are searched
+_MAX_MODULES = 100
+_MAX_CODE = 512 * 1024  # characters of the modules of a package in which faults are searched
+_OF_CALL = 4  # parts of a call that leads to a node
+_BYTES_A_PART = 2  # of a program in which slips are searched, charged as one part
+_MAX_FIRST_LINE = 100  # bytes
+_DEPTH_OF_FILTERS = 10  # by message_filters of Jazzy
+_NODES = frozenset(
+    f"rclpy.{name}"
+    for name in (
+        "node.Node",
+        "Node",
+        "lifecycle.Node",
+        "lifecycle.LifecycleNode",
+        "lifecycle.node.Node",
+    )
+)
+_CREATES = frozenset({"rclpy.create_node", *_NODES})
+_KINDS: dict[str, EndpointKind] = {
+    "create_publisher": "publisher",
+    "create_lifecycle_publisher": "publisher",
+    "create_subscription": "subscription",
+    "create_service": "service",
+    "create_client": "client",
+}
+_ACTIONS: dict[str, EndpointKind] = {
+    "ActionClient": "action client",
+    "ActionServer": "action server",
+}
+_READS_IF_DECLARED = ("get_parameter_or", "has_parameter")
+_READS = ("get_parameter", *_READS_IF_DECLARED)
+_DECLARES = ("declare_parameter", "declare_parameters")
+# Of tf2_ros.Buffer of Jazzy, with the position of the source frame behind the target frame.
+_LOOKUPS = {
+    "lookup_transform": 1,
+    "lookup_transform_async": 1,
+    "lookup_transform_full": 2,
+    "lookup_transform_full_async": 2,
+}
+_METHODS = frozenset({*_KINDS, *_READS, *_DECLARES, "create_timer"})
+# What may be given a node, and declares and opens nothing but actions and the topics of tf2.
+_HARMLESS = frozenset(
+    {
+        "spin",
+        "spin_once",
+        "spin_until_future_complete",
+        "add_node",
+        "remove_node",
+        "super",
+        "isinstance",
+        "print",
+        "hasattr",
+        "getattr",
+        "TransformListener",
+        "TransformBroadcaster",
+        "StaticTransformBroadcaster",
+    }
+)
+# Makes a node in the same process by itself, for which launch gives parameters: moveit_py of
+# moveit2.
+_MAKES_A_NODE = ("moveit.planning.MoveItPy", "moveit.MoveItPy")
+# By rclpy/qos.py of Jazzy, as qos_profile_NAME and as QoSPresetProfiles.NAME.value: depth,
+# reliability, durability.
+_PROFILES = {
+    "sensor_data": (5, "best_effort", "volatile"),
+    "services_default": (10, "reliable", "volatile"),
+    "parameters": (1000, "reliable", "volatile"),
+    "system_default": (None, "system_default", "system_default"),
+}
+# The policies that are told apart, by the group that older names begin with.
+_GROUPS = {
+    "reliable": "reliability",
+    "best_effort": "reliability",
+    "transient_local": "durability",
+    "volatile": "durability",
+}
+# Arguments of Node that let it accept other parameters, or change its names; None is for **.
+_OPTIONS = (
+    None,
+    "namespace",
+    "cli_args",
+    "parameter_overrides",
+    "allow_undeclared_parameters",
+    "automatically_declare_parameters_from_overrides",
+)
+
+
+class _Name(NamedTuple):
+    """The name that a node is given."""
+
+    name: str | None
+
+
+_Fact = Endpoint | NodeParameter | NodeFrame | Timer | Doubt | _Name
+
+
+def read_nodes(package: Package) -> PackageNodes:
+    """Return the nodes in the Python modules that a build of a package installs. Never raises."""
+    modules: dict[str, _Module] = {}
+    doubts: list[Doubt] = []
+    unread: set[str] = set()
+    for name, path in _module_paths(package).items():
+        code = read_module(package, path)
+        if code is None:
+            unread.add(path)
+            doubts.append(Doubt("the file is not read", Location(package.path(path), 1, 1)))
+        else:
+            is_package = path.endswith("/__init__.py")
+            modules[name] = _Module(code, name, package.work, is_package=is_package)
+    bases = {full: found for module in modules.values() for full, found in module.bases.items()}
+    derived: dict[str | None, list[str]] = {}  # classes by each of their bases
+    for full, found in bases.items():
+        for base in found:
+            derived.setdefault(base, []).append(full)
+    kinds, reached = set(_NODES), [*_NODES]
+    while reached:
+        more = [full for full in derived.get(reached.pop(), ()) if full not in kinds]
+        kinds.update(more)
+        reached += more
+    nodes = [node for module in modules.values() for node in module.read_nodes(kinds)]
+    doubts += (doubt for module in modules.values() for doubt in module.doubts)
+    programs = []
+    for program in _programs(package, modules, nodes):
+        slips = _slips_of(package, program)
+        if slips is None:
+            doubts.append(Doubt("not all programs are read", program.location))
+            programs.append(program._replace(nodes=()))
+            continue
+        doubts += [Doubt(slip.reaction, slip.location) for slip in slips]
+        syntax = unreadable_module(package, program.path) if program.path in unread else None
+        programs.append(program._replace(nodes=() if slips else program.nodes, syntax=syntax))
+    is_loose = any(module.has_loose_declarations for module in modules.values())
+    imports = [found for module in modules.values() for found in module.type_imports()]
+    uses = [use for module in modules.values() for use in module.field_uses()]
+    synchronised = [it for module in modules.values() for it in module.synchronised_types()]
+    faults, is_searched = _faults_of([module.text() for module in modules.values()])
+    return PackageNodes(
+        nodes=tuple(nodes),
+        programs=tuple(programs),
+        doubts=tuple(doubts),
+        has_loose_declarations=is_loose,
+        imports=tuple(imports),
+        field_uses=tuple(uses),
+        faults=tuple(faults),
+        synchronised=tuple(synchronised),
+        has_more_faults=not is_searched,
+    )
+
+
+def _faults_of(modules: Sequence[ModuleText]) -> tuple[list[CodeFault], bool]:
+    """Return the faults in the code of modules, and whether all of them are searched."""
+    by_name = {module.name: module for module in modules}
+    attributes = attributes_in(modules)
+    faults: list[CodeFault] = []
+    left, is_searched = _MAX_CODE, True
+    for module in modules:
+        left -= len(module.code.source.text)
+        try:
+            if left >= 0:
+                faults += code_faults(module, by_name, attributes)
+        except RecursionError:
+            left = -1
+        is_searched = is_searched and left >= 0
+    return faults, is_searched
+
+
+def program_slips(package: Package) -> Iterator[Slip]:
+    """Yield the slips for which a program in Python stops, or does nothing."""
+    found: dict[Edits, Slip] = {}
+    for program in _programs(package, {}, ()):
+        for slip in _slips_of(package, program) or ():
+            found.setdefault(slip.edits, slip)
+    yield from found.values()
+
+
+def _slips_of(package: Package, program: NodeProgram) -> list[Slip] | None:
+    """Return the slips of a program; None where too many programs are in a file to search each."""
+    data = package.tree.read(program.path, _MAX_SEARCHED)
+    if not package.budget.take_of_whole(len(data or b"") // _BYTES_A_PART):
+        return None
+    code = parse(data or b"", package.path(program.path))
+    if isinstance(code, Code):
+        return node_slips(code, StartedProgram(program.name, program.function))
+    return python_slips(data or b"", package.path(program.path))
+
+
+def _module_paths(package: Package) -> dict[str, str]:
+    """Return the files of the installed modules by their full names; those of installed programs
+    by their paths.
+    """
+    setup = package.installation
+    if setup is None:
+        return {}
+    files = [path for path in package.tree.files if path.endswith(".py")]
+    folders = {path.rpartition("/")[0] for path in files if path.endswith("/__init__.py")}
+    packages = {name.replace(".", "/") for name in setup.packages} or folders
+    modules: dict[str, str] = {}
+    for path in files:
+        if path.rpartition("/")[0] in packages:
+            name = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+            modules[name] = path
+    rows = [*modules.items()]
+    rows += [(script.source, script.source) for script in _scripts(package)]
+    return dict(rows[:_MAX_MODULES])
+
+
+def _scripts(package: Package) -> list[InstalledFile]:
+    """Return the Python files that a build installs as programs."""
+    copies = package.installation.copies if package.installation is not None else ()
+    lib = f"lib/{package.name}/"
+    return [
+        copy for copy in copies if copy.target.startswith(lib) and _is_python(package, copy.source)
+    ]
+
+
+def _is_python(package: Package, path: str) -> bool:
+    """Return whether a file is a Python program, by its ending or its first line."""
+    try:
+        start = package.tree.files[path].read(_MAX_FIRST_LINE, first=True)
+    except InputError:
+        return False
+    return path.endswith(".py") or (
+        start.startswith(b"#!") and b"python" in start.partition(b"\n")[0]
+    )
+
+
+def _programs(
+    package: Package, modules: "dict[str, _Module]", nodes: Sequence[NodeFacts]
+) -> Iterator[NodeProgram]:
+    """Yield the entry points, and the files that are programs, with the nodes that they create."""
+    by_key: dict[object, list[NodeFacts]] = {}
+    for node in nodes:
+        by_key.setdefault(node.location, []).append(node)
+        by_key.setdefault(node.class_name, []).append(node)
+    created_by = partial(_created_by, package.budget, modules, by_key)
+    for entry in entry_points(package):
+        created = created_by(entry.module, entry.function)
+        path = module_path(package, entry.module) or ""
+        yield NodeProgram(entry.name, created, entry.location, path, entry.function)
+    for copy in _scripts(package):
+        at = Location(package.path(copy.source), 1, 1)
+        name = copy.target.rpartition("/")[2]
+        created = created_by(copy.source, "")
+        yield NodeProgram(name, created, at, copy.source, "")
+
+
+def _created_by(
+    budget: Budget,
+    modules: "dict[str, _Module]",
+    nodes: Mapping[object, Sequence[NodeFacts]],
+    module: str,
+    function: str,
+) -> tuple[NodeFacts, ...]:
+    """Return the nodes that a function creates, also in those that it calls; without a name, the
+    module's body. None are known where too many functions call others.
+
+    `nodes` are those at a place, and those of a class by its full name.
+    """
+    found: dict[Location, NodeFacts] = {}
+    pending, seen = [f"{module}.{function}"], set[str]()
+    while pending:
+        name = pending.pop(0)
+        owner = next((modules[it] for it in (name.rpartition(".")[0], name) if it in modules), None)
+        if name in seen or owner is None:
+            continue
+        seen.add(name)
+        calls = owner.calls_in(name.rpartition(".")[2])
+        if not budget.take_of_whole(_OF_CALL * (1 + len(calls))):
+            return ()
+        for called, at in calls:
+            found |= {it.location: it for it in (*nodes.get(at, ()), *nodes.get(called, ()))}
+            pending.append(called)
+    return tuple(found.values())
+
+
+def _find_calls(nodes: Sequence[ast.AST]) -> list[ast.Call]:
+    return sorted((it for it in nodes if isinstance(it, ast.Call)), key=offset_of)
+
+
+class _Module:
+    """A module: first its scopes and the bases of its classes, then, once all nodes are known,
+    their calls.
+    """
+
+    def __init__(self, code: Code, name: str, work: Budget, *, is_package: bool) -> None:
+        self._code, self._name = code, name
+        functions = dict.fromkeys(("rclpy.qos.QoSProfile", *_CREATES), record)
+        syntax = every_node(code.tree)
+        self._constants = Constants(syntax, name, functions, work, is_package=is_package)
+        # Of the classes, by full names; None for a base that is not known.
+        self.bases: dict[str, list[str | None]] = {}
+        self.doubts: list[Doubt] = []
+        self.has_loose_declarations = _has_alias(code.tree)
+        self._classes: dict[Location, str] = {}
+        self._class_nodes: dict[Location, ast.ClassDef] = {}
+        self._facts: dict[Location, list[_Fact]] = {}  # of each node
+        self._parts: list[CodePart] = []
+        body = own_nodes(code.tree)
+        scope = self._constants.bound(body, Scope({}))
+        for part in body:
+            if (
+                isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef)
+                and part.name in scope.names
+            ):
+                scope.names[part.name] = QualifiedName(f"{name}.{part.name}")
+        self._parts.append(CodePart("", code.tree, _find_calls(body), scope))
+        for part in body:
+            if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef):
+                inner = [*ast.walk(part)]
+                self._parts.append(
+                    CodePart(
+                        part.name,
+                        part,
+                        _find_calls(inner),
+                        self._constants.bound(inner, Scope({}, scope)),
+                    )
+                )
+            elif isinstance(part, ast.ClassDef):
+                self._add_class(part, scope)
+
+    def _at(self, node: ast.expr | ast.stmt) -> Location:
+        return location_in(self._code.source, position_of(node))
+
+    def _add_class(self, node: ast.ClassDef, scope: Scope) -> None:
+        """Keep a class and its methods, which reach its constants as attributes of self."""
+        at, full = self._at(node), f"{self._name}.{node.name}"
+        bases = [self._constants.value_of(base, scope) for base in node.bases]
+        self.bases[full] = [
+            base.name if isinstance(base, QualifiedName) else None for base in bases
+        ]
+        self._classes[at] = full
+        self._class_nodes[at] = node
+        own = own_nodes(node)
+        constants = self._constants.bound(own, Scope({}, scope)).names
+        attributes = Scope({f"self.{name}": value for name, value in constants.items()}, scope)
+        for method in own:
+            if not isinstance(method, ast.FunctionDef | ast.AsyncFunctionDef):
+                continue
+            nodes = [*ast.walk(method)]
+            local = self._constants.bound(nodes, Scope({}, attributes))
+            for name in [name for name in local.names if name.startswith("self.")]:
+                value = local.names.pop(name)
+                is_first = name not in attributes.names
+                attributes.names[name] = (
+                    value if is_first else Unknown("it is not bound once", START)
+                )
+            self._parts.append(CodePart(method.name, method, _find_calls(nodes), local, at))
+
+    def read_nodes(self, kinds: Collection[str]) -> list[NodeFacts]:
+        """Return the nodes, once the full names of all classes of nodes are known."""
+        for at, full in self._classes.items():
+            if full in kinds:
+                is_own = _NODES.issuperset(self.bases[full])
+                self._facts[at] = (
+                    [] if is_own else [Doubt("what another base class does is not added", at)]
+                )
+        calls = [(part, call) for part in self._parts for call in part.calls]
+        for part, call in calls:
+            if self._called(part, call) in _CREATES:
+                self._facts[self._at(call)] = [
+                    _Name(_text(self._argument(part, call, 0, "node_name")))
+                ]
+        for part, call in calls:
+            self._read_call(part, call)
+            if self._called(part, call) in _MAKES_A_NODE:
+                for facts in self._facts.values():
+                    facts.append(
+                        Doubt("another node takes the parameters of the process", self._at(call))
+                    )
+        if self._constants.budget.is_spent:
+            self.doubts.append(
+                Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
+            )
+        encodings = self._content.encodings() if self._uses("cv_bridge") else {}
+        return [self._node(at, facts, encodings) for at, facts in self._facts.items()]
+
+    def synchronised_types(self) -> Iterator[SynchronisedType]:
+        """Yield the types of the messages that synchronisers compare."""
+        if self._uses("message_filters"):
+            yield from self._content.synchronised_types()
+
+    def _uses(self, module: str) -> bool:
+        """Return whether the code imports another module, or something of it."""
+        return any(name.partition(".")[0] == module for name in self._constants.imported)
+
+    @cached_property
+    def _content(self) -> ContentReader:
+        return ContentReader(
+            self._parts, self._code.source, self._constants.value_of, self._bindings_around
+        )
+
+    def _bindings_around(self, part: CodePart) -> Bindings:
+        """Return what the names in a function, and the attributes of its class, are bound to."""
+        return self._bindings_in(part.of).within(self._bindings_of(part.node))
+
+    def text(self) -> ModuleText:
+        """Return the module as it is searched for faults."""
+        nodes = {
+            at: self._class_nodes[at]
+            for at, full in self._classes.items()
+            if self.bases[full] and _NODES.issuperset(self.bases[full])
+        }
+        return ModuleText(self._name, self._code, self._parts, self._constants.imported, nodes)
+
+    def type_imports(self) -> Iterator[TypeImport]:
+        """Yield the messages, services and actions that the module certainly imports."""
+        return type_imports(self._code.tree, self._code.source)
+
+    def field_uses(self) -> Iterator[FieldUse]:
+        """Yield the fields that the module uses of messages, services and actions."""
+        return field_uses(self._code, self._parts, self._constants.value_of)
+
+    def _node(
+        self,
+        at: Location,
+        facts: "Sequence[_Fact]",
+        encodings: Mapping[Location, tuple[ImageEncoding, ...]],
+    ) -> NodeFacts:
+        names: set[str | None] = set()
+        endpoints, parameters, frames, timers, doubts = [], [], [], [], []
+        for fact in facts:
+            match fact:
+                case _Name():
+                    names.add(fact.name)
+                case Endpoint():
+                    known = encodings.get(fact.location, ())
+                    endpoints.append(fact._replace(encodings=known))
+                case NodeParameter():
+                    parameters.append(fact)
+                case NodeFrame():
+                    frames.append(fact)
+                case Timer():
+                    timers.append(fact)
+                case Doubt():
+                    doubts.append(fact)
+        return NodeFacts(
+            class_name=self._classes.get(at, ""),
+            name=names.pop() if len(names) == 1 else None,
+            location=at,
+            endpoints=tuple(endpoints),
+            parameters=tuple(parameters),
+            timers=tuple(timers),
+            doubts=tuple(doubts),
+            frames=tuple(frames),
+        )
+
+    def calls_in(self, function: str) -> Sequence[tuple[str, Location]]:
+        """Return the full name and place of each call in a function of the module, or in its
+        body.
+        """
+        return self._calls_by_function.get(function, ())
+
+    @cached_property
+    def _calls_by_function(self) -> Mapping[str, Sequence[tuple[str, Location]]]:
+        calls: dict[str, list[tuple[str, Location]]] = {}
+        for part in self._parts:
+            if part.of is None:
+                of_part = [(self._called(part, call), self._at(call)) for call in part.calls]
+                calls.setdefault(part.name, []).extend(of_part)
+        return calls
+
+    def _called(self, part: CodePart, call: ast.Call) -> str:
+        first, dot, rest = dotted(call.func).partition(".")
+        found = constant_in(part.scope, first)
+        if isinstance(found, QualifiedName):
+            return f"{found.name}{dot}{rest}"
+        return ""
+
+    def _argument(self, part: CodePart, call: ast.Call, position: int, name: str) -> Value:
+        """Return an argument of a call; None where it is missing, Unknown where * or ** may give
+        it.
+        """
+        if any(isinstance(it, ast.Starred) for it in call.args[: position + 1]):
+            return Unknown("it is unpacked", position_of(call))
+        given = given_argument(call, position, name)
+        if given is None and any(it.arg is None for it in call.keywords):
+            return Unknown("it is unpacked", position_of(call))
+        return self._constants.value_of(given, part.scope)
+
+    def _endpoints(
+        self, part: CodePart, call: ast.Call, position: int, name: str, endpoint: Endpoint
+    ) -> Iterator[Endpoint]:
+        """Yield an endpoint for each name that an argument of a call gives it."""
+        for text, parts in self._names(part, call, position, name):
+            yield endpoint._replace(name=text, parts=parts)
+
+    def _names(
+        self, part: CodePart, call: ast.Call, position: int, name: str
+    ) -> Iterator[tuple[str | None, tuple[NamePart, ...]]]:
+        """Yield each name that an argument of a call is, as its text or its parts."""
+        value = self._argument(part, call, position, name)
+        given = given_argument(call, position, name)
+        if isinstance(value, str) or given is None:
+            yield _text(value), ()
+            return
+        names = EndpointNames(self._bindings_around(part), partial(self._value_in, part.scope))
+        for parts in names.read(given):
+            kinds = {it.kind for it in parts}
+            if kinds == {"text"}:
+                yield parts[0].text, ()
+            else:
+                yield None, parts if kinds != {"unknown"} else ()
+
+    def _value_in(self, scope: Scope, node: ast.expr) -> Value:
+        return self._constants.value_of(node, scope)
+
+    def _bindings_in(self, of: Location | None) -> Bindings:
+        """Return what the attributes of self in a class are bound to once."""
+        if of is None:
+            return Bindings({}, {})
+        return self._bindings_of(self._class_nodes[of])
+
+    @cached_property
+    def _bindings_of(self) -> Callable[[ast.AST], Bindings]:
+        """What the names in a function, or the attributes of self in a class, are bound to."""
+        return cache(_bindings_of)
+
+    def _receiver(self, part: CodePart, node: ast.expr) -> Location | None:
+        """Return the place of the node that an expression is; None where that is not known."""
+        name = dotted(node)
+        if name == "self":
+            if part.of in self._facts:
+                return part.of
+            return None
+        value = constant_in(part.scope, name)
+        if isinstance(value, Call) and value.name in _CREATES:
+            at = location_in(self._code.source, value.at)
+        else:
+            at = None
+        return at if at in self._facts else None
+
+    def _read_call(self, part: CodePart, call: ast.Call) -> None:
+        """Add what a call declares or opens to the facts of its node."""
+        match call.func:
+            case ast.Attribute(value=owner, attr="__init__") if (
+                part.name == "__init__" and part.of in self._facts
+            ):
+                self._facts[part.of] += self._read_init(part, call, owner)
+            case ast.Attribute(value=owner, attr=method) if method in _METHODS:
+                self._read_method_of(self._receiver(part, owner), part, call, method)
+            case ast.Attribute(value=owner, attr=method) if (
+                method in _LOOKUPS and part.of in self._facts and self._is_buffer(part, owner)
+            ):
+                self._facts[part.of] += self._looked_up(part, call, _LOOKUPS[method])
+            case function:
+                self._read_given_nodes(part, call, dotted(function) or "this call")
+
+    def _read_method_of(
+        self, at: Location | None, part: CodePart, call: ast.Call, method: str
+    ) -> None:
+        """Add what the call of a method declares or opens to the facts of the node at a place."""
+        facts = self._facts.get(at) if at is not None else None
+        if facts is not None:
+            facts += self._read_method(part, call, method)
+            return
+        self.has_loose_declarations |= method in _DECLARES
+        reason = f"the node of this {method}() is not known"
+        self.doubts.append(Doubt(reason, self._at(call)))
+
+    def _read_given_nodes(self, part: CodePart, call: ast.Call, function: str) -> None:
+        """Add what a call makes of the nodes that it is given."""
+        name = function.rpartition(".")[2]
+        arguments = [*call.args, *(keyword.value for keyword in call.keywords)]
+        for argument in arguments:
+            at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
+            if at is None:
+                continue
+            if self._called(part, call) == SUBSCRIBER:
+                self._facts[at] += self._filtered(part, call)
+            elif name in _ACTIONS:
+                self._facts[at] += self._action(part, call, _ACTIONS[name])
+            elif name not in _HARMLESS:
+                self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
+
+    def _is_buffer(self, part: CodePart, node: ast.expr) -> bool:
+        """Return whether an expression is a buffer of tf2."""
+        made = self._bindings_around(part).values.get(dotted(node))
+        return isinstance(made, ast.Call) and dotted(made.func).rpartition(".")[2] == "Buffer"
+
+    def _looked_up(self, part: CodePart, call: ast.Call, second: int) -> Iterator[NodeFrame]:
+        """Yield the frames between which a call looks up the transform."""
+        for position, name in ((0, "target_frame"), (second, "source_frame")):
+            given = given_argument(call, position, name)
+            at = self._at(given if given is not None else call)
+            for text, parts in self._names(part, call, position, name):
+                yield NodeFrame("looks up", text, at, parts, lookup=self._at(call))
+
+    def _filtered(self, part: CodePart, call: ast.Call) -> Iterator[Endpoint]:
+        """Yield the subscription of a filter: Subscriber(node, type, topic, qos_profile=...)."""
+        made = self._argument(part, call, 1, "msg_type")
+        qos = self._constants.value_of(
+            given_argument(call, len(call.args), "qos_profile"), part.scope
+        )
+        type_name = made.name if isinstance(made, QualifiedName) else None
+        quality = _qos(qos if qos is not None else _DEPTH_OF_FILTERS)
+        endpoint = Endpoint("subscription", type_name, None, self._at(call), quality)
+        yield from self._endpoints(part, call, 2, "topic", endpoint)
+
+    def _action(self, part: CodePart, call: ast.Call, kind: EndpointKind) -> Iterator[Endpoint]:
+        made = self._argument(part, call, 1, "action_type")
+        type_name = made.name if isinstance(made, QualifiedName) else None
+        endpoint = Endpoint(kind, type_name, None, self._at(call))
+        yield from self._endpoints(part, call, 2, "action_name", endpoint)
+
+    def _read_init(self, part: CodePart, call: ast.Call, owner: ast.expr) -> "Iterator[_Fact]":
+        """Yield the name that a class gives its node, if its base is rclpy's Node itself."""
+        assert part.of is not None
+        is_super = isinstance(owner, ast.Call) and dotted(owner.func) == "super"
+        base = self._constants.value_of(owner, part.scope)
+        is_base = isinstance(base, QualifiedName) and base.name in _NODES
+        if (is_super or is_base) and _NODES.intersection(self.bases[self._classes[part.of]]):
+            name = self._argument(part, call, 0 if is_super else 1, "node_name")
+            yield _Name(_text(name))
+            for keyword in call.keywords:
+                if keyword.arg in _OPTIONS:
+                    yield Doubt(f"{keyword.arg or 'more arguments'} of its Node", self._at(call))
+
+    def _read_method(self, part: CodePart, call: ast.Call, method: str) -> "Iterator[_Fact]":
+        """Yield what a method of a node declares, opens or reads."""
+        at, argument = self._at(call), partial(self._argument, part, call)
+        if method in _KINDS:
+            kind = _KINDS[method]
+            is_topic = kind in ("publisher", "subscription")
+            made = argument(0, "msg_type" if is_topic else "srv_type")
+            qos = None
+            if is_topic:
+                qos = argument(2 if kind == "publisher" else 3, "qos_profile")
+            type_name = made.name if isinstance(made, QualifiedName) else None
+            endpoint = Endpoint(kind, type_name, None, at, _qos(qos))
+            name = "topic" if is_topic else "srv_name"
+            yield from self._endpoints(part, call, 1, name, endpoint)
+        elif method == "create_timer":
+            period = argument(0, "timer_period_sec")
+            yield Timer(float(period) if isinstance(period, int | float) else None, at)
+        elif method == "declare_parameters":
+            yield from _declared(argument(0, "namespace"), argument(1, "parameters"), at)
+        else:
+            is_declared = method == "declare_parameter"
+            default = argument(1, "value") if is_declared else None
+            is_plain = argument(2, "descriptor") is None
+            yield NodeParameter(
+                _text(argument(0, "name")),
+                _default(default),
+                at,
+                is_declared,
+                is_plain,
+                is_needed=method not in _READS_IF_DECLARED,
+                is_unset=isinstance(default, QualifiedName) and _default(default) is None,
+            )
+
+
+def _has_alias(tree: ast.Module) -> bool:
+    """Return whether a method that declares parameters is named and not called, so that another
+    name may call it.
+    """
+    called = {node.func for node in every_node(tree) if isinstance(node, ast.Call)}
+    return any(
+        isinstance(node, ast.Attribute) and node.attr in _DECLARES and node not in called
+        for node in every_node(tree)
+    )
+
+
+def _bindings_of(node: ast.AST) -> Bindings:
+    return bindings(ast.walk(node), of_self=isinstance(node, ast.ClassDef))
+
+
+def _text(value: Value) -> str | None:
+    return value if isinstance(value, str) else None
+
+
+def _default(value: Value) -> Value:
+    """Return the default of a parameter; a type in its place, as Parameter.Type.DOUBLE, is none."""
+    is_rclpy = isinstance(value, QualifiedName) and value.name.startswith("rclpy.")
+    if is_rclpy and ".Parameter.Type." in value.name:
+        return None
+    items = value if isinstance(value, list | tuple) else [value]
+    is_known = all(isinstance(it, SCALARS) or it is None for it in items)
+    if is_known:
+        return value
+    return Unknown("the default is computed", getattr(value, "at", START))
+
+
+def _declared(namespace: Value, parameters: Value, at: Location) -> Iterator[NodeParameter]:
+    """Yield the parameters of declare_parameters: tuples of a name, a default and a descriptor."""
+    before = "" if namespace in (None, "") else f"{namespace}."
+    for item in parameters if isinstance(parameters, list | tuple) else (parameters,):
+        name, default = (*item, None)[:2] if isinstance(item, tuple) and item else (None, item)
+        is_known = isinstance(name, str) and isinstance(namespace, str | None)
+        is_plain = isinstance(item, tuple) and len(item) < 3
+        yield NodeParameter(
+            f"{before}{name}" if is_known else None, _default(default), at, is_plain=is_plain
+        )
+
+
+def _qos(value: Value) -> Qos:
+    """Return a quality of service: a depth, a QoSProfile, or one of the profiles of rclpy."""
+    match value:
+        case bool():
+            return Qos()
+        case int():
+            return Qos(value, "reliable", "volatile")
+        case QualifiedName(name=name) if name.startswith("rclpy.qos."):
+            profile = (
+                name.removesuffix(".value").rpartition(".")[2].lower().removeprefix("qos_profile_")
+            )
+            return Qos(*_PROFILES.get(profile, ()))
+        case Call(name="rclpy.qos.QoSProfile", kwargs=given):
+            depth = given.get("depth") if "history" not in given else None
+            reliability: str | None = "reliable"
+            if "reliability" in given:
+                reliability = _policy(given["reliability"])
+            durability: str | None = "volatile"
+            if "durability" in given:
+                durability = _policy(given["durability"])
+            return Qos(depth if isinstance(depth, int) else None, reliability, durability)
+    return Qos()
+
+
+def _policy(value: Value) -> str | None:
+    """Return a policy by its name in rclpy.qos, as ReliabilityPolicy.BEST_EFFORT; None where it is
+    not known.
+    """
+    if not isinstance(value, QualifiedName):
+        return None
+    name = value.name.rpartition(".")[2].lower()
+    for policy, group in _GROUPS.items():
+        if name in (policy, f"rmw_qos_policy_{group}_{policy}"):
+            return policy
+    return None

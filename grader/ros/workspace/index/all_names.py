@@ -1,0 +1,142 @@
+"""All names of a workspace where they are written, for editors: what defines a name, and what else
+uses it.
+
+The facts that are compared say what is wrong. Here are more uses than those: what the reader of
+robots, xacro or a launch file itself reports makes no finding of a workspace. Nothing of this is
+computed unless it is asked for.
+"""
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+
+from grader.ros.known.shared_names import shared_names
+from grader.ros.workspace.index.names_in_files import names_in_launch_files, names_in_yaml
+from grader.ros.workspace.index.names_in_robots import names_in_robots
+from grader.ros.workspace.index.names_in_xacro import names_in_xacro
+from grader.ros.workspace.index.written_names import (
+    Role,
+    WrittenName,
+    reader_of,
+    span_of_name,
+    written_name,
+)
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Definition, Fact, Use
+
+_MAX_TEXT = 4 * 1024 * 1024  # bytes of a file
+# Kinds that mean the same things: each link is a frame.
+_ALIKE = {"frame": "link"}
+# Kinds whose names belong to a robot, or to what is started with it, though a file does not say so.
+_OF_ROBOTS = frozenset({"link", "joint", "xacro argument"})
+
+
+class WorkspaceNames:
+    """The names that the files of a workspace define and use, of all of its robots.
+
+    `opened.names()` gives it; editors ask it what is at a place, and where else that name is.
+    """
+
+    def __init__(self, names: Iterable[WrittenName]) -> None:
+        self.names = tuple(sorted(dict.fromkeys(names), key=_order))
+        self._by_path: dict[str, list[WrittenName]] = {}
+        self._alike: dict[tuple[str, str], list[WrittenName]] = {}
+        for it in self.names:
+            self._by_path.setdefault(it.location.path, []).append(it)
+            self._alike.setdefault(_key(it), []).append(it)
+
+    def at(self, path: str, line: int, column: int) -> tuple[WrittenName, ...]:
+        """Return the names at a place of a file, the shortest first: a made one may hold others,
+        and a macro gives one place several names.
+        """
+        found = [it for it in self._by_path.get(path, ()) if it.covers(path, line, column)]
+        return tuple(sorted(found, key=_length))
+
+    def same_as(self, one: WrittenName) -> tuple[WrittenName, ...]:
+        """Return all places of a name: those of its owner, and those that share a place with them,
+        as robots do that include one file.
+        """
+        alike = self._alike.get(_key(one), [])
+        owners, count = {one.owner}, 0
+        while count < len(owners):
+            count = len(owners)
+            places = {it.location for it in alike if it.owner in owners}
+            owners |= {it.owner for it in alike if it.location in places}
+        return tuple(it for it in alike if it.owner in owners)
+
+
+def read_names(workspace: Workspace, facts: Iterable[Fact]) -> WorkspaceNames:
+    """Return the names of a workspace.
+
+    Args:
+        workspace: The packages and the robots.
+        facts: What `read_facts` yields of the workspace, as far as it is known.
+    """
+    names = [*names_in_robots(workspace.urdfs)]
+    names += names_in_xacro(workspace.urdfs, workspace.robots.xacro_sources)
+    names += names_in_launch_files(workspace)
+    names += names_in_yaml(workspace)
+    written = {(_key(it), it.role, it.location) for it in names}
+    for found in _names_of_facts(workspace, facts):
+        if (_key(found), found.role, found.location) not in written:
+            names.append(found)
+    return WorkspaceNames(_owned(workspace, names))
+
+
+def _key(name: WrittenName) -> tuple[str, str]:
+    """Return the kind and the name by which names are the same."""
+    return _ALIKE.get(name.kind, name.kind), name.name
+
+
+def _length(name: WrittenName) -> tuple[int, int]:
+    at = name.location
+    return at.end_line - at.line, at.end_column - at.column
+
+
+def _order(name: WrittenName) -> tuple[str, int, int, str, str, str]:
+    at = name.location
+    return at.path, at.line, at.column, name.kind, name.name, name.owner
+
+
+def _names_of_facts(workspace: Workspace, facts: Iterable[Fact]) -> Iterator[WrittenName]:
+    """Yield the names of facts at what is written of them; none of what no file of the workspace
+    has.
+    """
+    source_of = reader_of(lambda path: workspace.tree.read(path, _MAX_TEXT))
+    for fact in facts:
+        if not isinstance(fact, Definition | Use) or _is_of_no_place(fact):
+            continue
+        source = source_of(fact.location.path)
+        span = None
+        role: Role = "definition" if isinstance(fact, Definition) else "use"
+        if source is not None:
+            span = span_of_name(source, fact.location, fact.kind, fact.name, role)
+        if source is not None and span is not None:
+            yield written_name(source, span, fact.kind, fact.name, role, fact.owner)
+
+
+def _is_of_no_place(fact: Definition | Use) -> bool:
+    """Return whether a fact is a definition that no place has, or that is a use where it stands:
+    what passes an argument declares it to the comparison of names.
+    """
+    is_known_frame = fact.kind == "frame" and fact.name in shared_names().frames
+    is_argument = fact.kind in ("launch argument", "xacro argument")
+    return isinstance(fact, Definition) and (is_known_frame or is_argument)
+
+
+def _owned(workspace: Workspace, names: Sequence[WrittenName]) -> Iterator[WrittenName]:
+    """Yield names, those that no robot has with the robots that are meant: of their package, else
+    all that define them.
+    """
+    owners: dict[tuple[str, str], dict[str, None]] = defaultdict(dict)
+    for it in names:
+        if it.role == "definition" and it.owner:
+            owners[_key(it)][it.owner] = None
+    for it in names:
+        known_owners = owners.get(_key(it))
+        if it.owner or _key(it)[0] not in _OF_ROBOTS or not known_owners:
+            yield it
+            continue
+        package = next((one for one in workspace.packages if one.holds(it.location.path)), None)
+        own = [owner for owner in known_owners if package is not None and package.holds(owner)]
+        for owner in own or known_owners:
+            yield it._replace(owner=owner)

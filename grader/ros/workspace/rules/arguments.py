@@ -1,0 +1,94 @@
+"""Arguments of launch files and of xacro: those that are declared, and those that are passed."""
+
+import re
+from collections.abc import Iterator
+
+from grader.base.source import Location
+from grader.ros.installation.places import PREFIX
+from grader.ros.known.package_rows import launch_arguments
+from grader.ros.launch.launch_model import Launch
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Definition, Fact, Open, Use
+
+_CONFIGURATION = re.compile(r"LaunchConfiguration\(\s*[\"'](\w+)[\"']|\$\(var (\w+)")
+_MAX_LAUNCH = 128 * 1024  # bytes, as launch files are read
+_FIND = re.compile(r"\$\(find ([\w-]+)\)")
+_OTHER_INCLUDE = re.compile(
+    r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"'](?![^\"']*\.(?:xacro|urdf)[\"'])"
+)
+# xacro takes an argument also where it is only used, if it is passed.
+_XACRO_ARGUMENT = re.compile(
+    r"<xacro:arg\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']|\$\(arg\s+([^\s)]+)|\barg\(\s*[\"'](\w+)"
+)
+
+
+def argument_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the arguments that launch files and xacro declare, and those that includes and Command
+    pass.
+    """
+    for package, path, launch in workspace.launches.files:
+        start = Location(package.path(path), 1, 1)
+        for owner in workspace.launches.targets_of(package, path):
+            for name in launch.declared:
+                yield Definition("launch argument", name, start, owner)
+            text = (package.tree.read(path, _MAX_LAUNCH) or b"").decode("utf-8", "replace")
+            used = {match[1] or match[2] for match in _CONFIGURATION.finditer(text)}
+            for name in used:
+                yield Definition("launch argument", name, start, owner)
+            yield from _included_arguments(workspace, launch, owner)
+            if launch.more:
+                yield Open("launch argument", owner)
+    for owner, names in launch_arguments().items():
+        for name in names:
+            yield Definition("launch argument", name, Location(owner, 1, 1), owner)
+    yield from _passed_arguments(workspace)
+    yield from _xacro_arguments(workspace)
+
+
+def _included_arguments(workspace: Workspace, launch: Launch, owner: str) -> Iterator[Fact]:
+    """Yield the arguments of launch files outside the workspace, which a launch file passes on by
+    including them.
+    """
+    for passed in launch.passed:
+        names = launch_arguments().get(passed.path)
+        if names is not None:
+            for name in names:
+                yield Definition("launch argument", name, passed.location, owner)
+        elif not workspace.installed.has_file(passed.path):
+            yield Open("launch argument", owner)
+
+
+def _passed_arguments(workspace: Workspace) -> Iterator[Use]:
+    """Yield the arguments that launch files pass to those that they include."""
+    for _, _, launch in workspace.launches.files:
+        for passed in launch.passed:
+            path = passed.path
+            if workspace.installed.has_file(path) or path in launch_arguments():
+                said = f"the include of {path.rpartition('/')[2]}"
+                for name, _ in passed.values:
+                    yield Use("launch argument", name, passed.location, said, path, optional=True)
+
+
+def _xacro_arguments(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the arguments that xacro files declare, and those that launch files pass to xacro."""
+    for source in workspace.robots.xacro_sources:
+        for match in _XACRO_ARGUMENT.finditer(source.text):
+            number = match.lastindex or 0
+            yield Definition("xacro argument", match[number], source.at(match.start(number)))
+            if "$" in match[number]:
+                yield Open("xacro argument")
+        if any(workspace.packages[0].find(name) is None for name in _FIND.findall(source.text)):
+            yield Open("xacro argument")  # of files that are included from other packages
+        elif _OTHER_INCLUDE.search(source.text):
+            yield Open("xacro argument")  # of files that are not read here
+    for _, _, launch in workspace.launches.files:
+        for file in launch.named("urdf", "read"):
+            path = (file.path or "").removeprefix(f"{PREFIX}/")
+            if file.by == "xacro" and workspace.installed.has_file(path):
+                said = "Command of xacro"
+                # What includes the file declare is known where all of it was expanded.
+                is_expanded = (
+                    workspace.installed.source_of(file.path or "") in workspace.robots.files
+                )
+                for name, _ in file.arguments:
+                    yield Use("xacro argument", name, file.location, said, optional=not is_expanded)

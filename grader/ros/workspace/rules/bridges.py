@@ -1,0 +1,363 @@
+"""Bridges between Gazebo and ROS: the rows of ros_gz_bridge, compared with the topics that Gazebo
+has.
+"""
+
+import posixpath
+import re
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from grader.base.names import closest
+from grader.base.source import Location
+from grader.base.text import enumerated, quoted
+from grader.ros.config.yaml_nodes import YamlFault, YamlNode
+from grader.ros.known.gazebo_rows import NO_SENSOR, gazebo
+from grader.ros.known.package_tables import bridge_table
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, TO_GAZEBO, TO_ROS, BridgeRow, bridge_rows
+from grader.ros.workspace.graph.gazebo_topics import (
+    GazeboTopic,
+    gazebo_topics,
+    roots,
+    sensor_topics,
+)
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, corrections, cost_of_guess
+from grader.ros.workspace.rules.rule_table import (
+    BRIDGE_ARGUMENT,
+    BRIDGE_CLOCK,
+    BRIDGE_DIRECTION,
+    BRIDGE_FILE,
+    BRIDGE_ROW,
+    BRIDGE_TOPIC,
+    BRIDGE_TYPE,
+    SENSOR_TOPIC,
+)
+
+_TOPIC_KEYS = ("topic_name", "ros_topic_name", "gz_topic_name", "ign_topic_name")
+_COMPUTED = re.compile("^(world|model)/|[${<%]")  # names that Gazebo or a program makes
+_EXPANDED = "expand_gz_topic_names"  # the parameter that puts the namespace before the names
+# Below the topic, or beside it: also of cameras that segment (gz-sensors).
+_DERIVED = ("points", "image", "depth_image", "camera_info", "labels_map", "colored_map")
+# Models in worlds that have no sensors.
+_WITHOUT_SENSORS = ("sun", "ground_plane", "ground plane")
+
+
+def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield rows with types or directions that no bridge has, those of topics that Gazebo does not
+    have, and clocks.
+    """
+    for path in bridge_files(workspace):
+        fault = workspace.installed.yaml.get(path)
+        if isinstance(fault, YamlFault):
+            yield Mismatch(BRIDGE_FILE, f"this is not YAML: {fault}", fault.location)
+    yield from _unread_rows(workspace)
+    rows = list(bridge_rows(workspace))
+    if not rows:
+        return
+    yield from _compared_rows(workspace, rows)
+    yield from _clocks(workspace, rows)
+
+
+def _compared_rows(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Fact]:
+    """Yield what is wrong with rows, by the topics that Gazebo has."""
+    topics = list(gazebo_topics(workspace))
+    named, bridged = _named_topics(workspace), {row.gz for row in rows}
+    for _, node in workspace.launches.nodes:
+        if node.package == "ros_gz_image":
+            bridged |= {(word or "").strip("/") for word in node.arguments or ()}
+    unused = [topic for topic in topics if topic.name not in bridged]
+    by_name: dict[str, list[GazeboTopic]] = {}
+    for topic in topics:
+        by_name.setdefault(topic.name, []).append(topic)
+    is_known = not _is_open(workspace)
+    nameless = _nameless_sensors(workspace, topics) if is_known else {}
+    are_expanded = any(_EXPANDED in text for text in workspace.texts.searched_launch_texts())
+    for row in rows:
+        yield Compared("topics")
+        same = by_name.get(row.gz, [])
+        if row.direction not in bridge_table().directions:
+            yield _no_direction(row)
+            continue
+        yield from _no_type(workspace, row)
+        yield from _conversions(row, {f"gz.msgs.{topic.type}" for topic in same})
+        if row.gz in named:
+            yield from _contradictions(row, same)
+        elif not are_expanded and not _COMPUTED.search(row.gz):
+            workspace.charge(len(unused) + cost_of_guess(len(unused)))
+            yield from _not_there(row, unused, is_known=is_known)
+            yield from _without_topic(row, nameless)
+
+
+class _NamelessSensor(NamedTuple):
+    """A sensor for whose topic Gazebo makes a name."""
+
+    name: str
+    gz_type: str
+    location: Location
+
+
+def _nameless_sensors(
+    workspace: Workspace, topics: list[GazeboTopic]
+) -> dict[str, _NamelessSensor]:
+    """Return sensors without a <topic> by the types of their messages, which no topic has."""
+    named = {f"gz.msgs.{topic.type}" for topic in topics}
+    nameless: dict[str, _NamelessSensor] = {}
+    for root, place in roots(workspace):
+        for sensor in root.iter("sensor"):
+            types = gazebo().sensor.get(sensor.get("type", ""), NO_SENSOR)
+            gz_type = f"gz.msgs.{types.topic}"
+            if gz_type not in named and next(sensor.iterchildren("topic"), None) is None:
+                found = _NamelessSensor(sensor.get("name", ""), gz_type, place(sensor))
+                nameless.setdefault(gz_type, found)
+    return nameless
+
+
+def _without_topic(row: BridgeRow, nameless: dict[str, _NamelessSensor]) -> Iterator[Mismatch]:
+    """Yield that the only sensor with the messages of a row has no <topic>."""
+    sensor = nameless.get(row.gz_type)
+    if sensor is None or not row.is_published:
+        return
+    at = sensor.location
+    message = (
+        f"nothing publishes {quoted(row.gz)} in Gazebo: the sensor {quoted(sensor.name)} has no "
+        f"<topic> ({at.file_and_line})"
+    )
+    # A model that is not in the workspace may publish it.
+    yield Mismatch(SENSOR_TOPIC, message, row.location, at, is_certain=False)
+
+
+def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the rows that a bridge leaves out, and the arguments with which it ends."""
+    for path in sorted(bridge_files(workspace)):
+        tree = workspace.installed.yaml.get(path)
+        for row in tree.items if isinstance(tree, YamlNode) else ():
+            names_topic = [key for key in _TOPIC_KEYS if row.get(key) is not None]
+            for key in bridge_table().keys if names_topic else ():
+                if row.get(key) is None and row.get(key.replace("gz", "ign")) is None:
+                    message = f"the bridge leaves out the row: it has no {key}"
+                    yield Mismatch(BRIDGE_ROW, message, row.location)
+    for _, node in workspace.launches.nodes:
+        is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"
+        for word in node.arguments or () if is_bridge else ():
+            if word is None or word == "--ros-args":
+                break
+            if "@" not in word[1:]:
+                message = (
+                    f"the bridge ends with an error at the argument {quoted(word)}: write "
+                    "TOPIC@ROS_TYPE[GZ_TYPE"
+                )
+                yield Mismatch(
+                    BRIDGE_ARGUMENT, message, node.location, is_certain=node.when is True
+                )
+                break
+
+
+def _no_direction(row: BridgeRow) -> Mismatch:
+    """Return that a row has a direction that no bridge has."""
+    meant = closest(row.direction, bridge_table().directions)
+    guess = f"; did you mean {meant}?" if meant is not None else ""
+    message = f"the bridge leaves out the row: it has no direction {quoted(row.direction)}{guess}"
+    at = row.direction_location
+    either = corrections(row.direction, at, meant)
+    return Mismatch(BRIDGE_DIRECTION, message, at, None, row.is_used, either)
+
+
+def _no_type(workspace: Workspace, row: BridgeRow) -> Iterator[Mismatch]:
+    """Yield that no bridge has a type like the one of a row in ROS, and which one it may mean."""
+    types = [kind.replace(".", "/") for kind in bridge_table().types]
+    written = row.ros_type.replace(".", "/")
+    if written in types:
+        return
+    workspace.charge(cost_of_guess(len(types)))
+    meant = closest(written, types, is_clear=True)
+    package, _, name = written.partition("/")
+    if f"{package}/msg/{name}" in types:
+        meant = f"{package}/msg/{name}"
+    if meant is None or "/srv/" in written:
+        return
+    at = row.ros_type_location
+    message = f"the bridge has no type {quoted(written)}; did you mean {meant}?"
+    either = corrections(written, at, meant)
+    yield Mismatch(BRIDGE_TYPE, message, at, None, row.is_used, either)
+
+
+def bridge_files(workspace: Workspace) -> set[str]:
+    """Return the files with rows that launch files give to bridges, by their paths in the
+    workspace.
+    """
+    paths: list[Any] = []
+    for _, node in workspace.launches.nodes:
+        for given in node.parameters or () if node.package == BRIDGE else ():
+            value = given.values.get("config_file")
+            if value is not None:
+                paths.append(value.value)
+    for _, launch in workspace.launches.roots:
+        for passed in launch.passed:
+            if f"/{BRIDGE}/" in passed.path:
+                paths += [value for name, value in passed.values if name == "config_file"]
+    files = {workspace.installed.source_of(path) for path in paths if isinstance(path, str)}
+    return {file for file in files if file is not None}
+
+
+def _conversions(row: BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
+    """Yield that no bridge converts a type into the other one, and that the time of ROS is sent to
+    Gazebo.
+
+    Where the topics of Gazebo have the type of the row, the other one is wrong.
+    """
+    fitting = _fitting_types(row)
+    if fitting and row.gz_type not in fitting:
+        ros_type = row.ros_type.replace(".", "/")
+        plain = row.gz_type.removeprefix("gz.msgs.")
+        meant = []
+        if gazebo_types == {row.gz_type}:
+            for kind, converted in bridge_table().types.items():
+                if plain in converted:
+                    meant.append(kind.replace(".", "/"))
+        if meant:
+            wrong, at = ros_type, row.ros_type_location
+        else:
+            wrong, meant, at = row.gz_type, fitting[:1], row.gz_type_location
+        either = corrections(wrong, at, meant[0]) if wrong and len(meant) == 1 else ()
+        message = (
+            f"the bridge does not convert {ros_type} and {row.gz_type or 'an empty type'}; "
+            f"write {enumerated(meant, word='or')}"
+        )
+        yield Mismatch(BRIDGE_TYPE, message, at, None, row.is_used, either)
+    if row.gz_type == "gz.msgs.Clock" and row.direction == TO_GAZEBO:
+        message = (
+            f"the bridge sends the time of ROS to Gazebo: the clock is Gazebo's, so write {TO_ROS}"
+        )
+        yield _wrong_direction(row, message, TO_ROS)
+
+
+def _fitting_types(row: BridgeRow) -> list[str]:
+    """Return the types of Gazebo that a bridge converts into the type of a row in ROS."""
+    return [f"gz.msgs.{kind}" for kind in bridge_table().types.get(row.ros_type, ())]
+
+
+def _wrong_direction(
+    row: BridgeRow, message: str, right: str, related: Location | None = None
+) -> Mismatch:
+    """Return that a row has the wrong direction, with the right one; in an argument it is a
+    character.
+    """
+    at = row.direction_location
+    either = corrections(row.direction, at, right) if at != row.location else ()
+    return Mismatch(BRIDGE_DIRECTION, message, at, related, row.is_used, either)
+
+
+def _contradictions(row: BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
+    """Yield that a topic of Gazebo is bridged in the other direction, or has messages of another
+    type.
+    """
+    if not topics:
+        return
+    at = topics[0].location
+    wrong, right, done = TO_GAZEBO, TO_ROS, "publishes it"
+    if topics[0].is_input:
+        wrong, right, done = TO_ROS, TO_GAZEBO, "reads it"
+    are_alike = len({topic.is_input for topic in topics}) == 1
+    if are_alike and row.direction == wrong:
+        message = (
+            f"the topic {row.gz} is bridged {wrong}, but Gazebo {done} ({at.file_and_line}): "
+            f"write {right}"
+        )
+        yield _wrong_direction(row, message, right, at)
+    types = [f"gz.msgs.{topic.type}" for topic in topics]
+    # That no bridge converts the type is another mistake.
+    if row.gz_type in _fitting_types(row) and row.gz_type not in types:
+        message = (
+            f"the topic {row.gz} of Gazebo has {types[0]} ({at.file_and_line}), not {row.gz_type}"
+        )
+        yield Mismatch(BRIDGE_TYPE, message, row.gz_type_location, at, row.is_used)
+
+
+def _not_there(row: BridgeRow, unused: list[GazeboTopic], *, is_known: bool) -> Iterator[Mismatch]:
+    """Yield that Gazebo does not have the topic of a row, while no row has one of the same type
+    that it has.
+    """
+    fitting: dict[str, Location] = {}
+    for topic in unused:
+        if f"gz.msgs.{topic.type}" == row.gz_type and topic.is_input != row.is_published:
+            fitting[topic.name] = topic.location
+    if fitting:
+        meant = closest(row.gz, fitting)
+        if meant is None and not is_known:
+            return  # a sensor that is not read may publish it
+        meant = meant or min(fitting)
+        at = fitting[meant]
+        what = "no sensor publishes" if row.is_published else "nothing reads"
+        message = (
+            f"{what} {quoted(row.gz)} in Gazebo; did you mean {quoted(meant)} ({at.file_and_line})?"
+        )
+        is_certain = row.is_used and is_known and len(fitting) == 1
+        either = corrections(row.gz, row.location, meant, at)
+        yield Mismatch(BRIDGE_TOPIC, message, row.location, at, is_certain, either)
+
+
+def _clocks(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]:
+    """Yield that nodes wait for the time of the simulation, and no bridge takes it from Gazebo."""
+    used = [row for row in rows if row.is_used]
+    has_bridge = any(node.package == BRIDGE for _, node in workspace.launches.nodes)
+    has_clock = any(row.ros == "clock" for row in rows)
+    if not has_bridge or not used or has_clock or _is_open(workspace):
+        return
+    for _, launch in workspace.launches.roots:
+        for passed in launch.passed:
+            if not workspace.installed.source_of(passed.path) and "/ros_gz_sim/" not in passed.path:
+                return  # what it includes may have a bridge
+    for package, node in workspace.launches.nodes:
+        given = workspace.parameters.given_to(package, node)
+        sim_time = given.values.get("use_sim_time")
+        if sim_time is not None and str(sim_time.value).lower() == "true" and node.when:
+            message = (
+                f"{node.executable} waits for the time of the simulation, but no bridge takes "
+                "clock from Gazebo"
+            )
+            yield Mismatch(BRIDGE_CLOCK, message, sim_time.location, used[0].location)
+            return
+
+
+def _named_topics(workspace: Workspace) -> set[str]:
+    """Return every topic that the robot, models and worlds name, and those that Gazebo derives from
+    them.
+    """
+    topics: set[str] = set()
+    for root, _ in roots(workspace):
+        for element in root.iter("*"):
+            text = (element.text or "").strip().strip("/")
+            if not str(element.tag).endswith("topic") or not text:
+                continue
+            sensor = element.getparent()
+            if sensor is not None and sensor.tag == "sensor" and element.tag == "topic":
+                published = dict(sensor_topics(sensor, element))
+                topics |= published.keys()
+            else:
+                published = {}
+            if not published:
+                topics |= {text, f"{text}_image"}  # the latter of cameras that draw boxes
+                for name in _DERIVED:
+                    topics.add(posixpath.join(posixpath.dirname(text), name))
+                    topics.add(f"{text}/{name}")
+    return topics
+
+
+def _is_open(workspace: Workspace) -> bool:
+    """Return whether there may be other sensors and bridges than those that were read."""
+    if (
+        not workspace.robots.known
+        or workspace.robots.may_be_others
+        or workspace.launches.has_more_nodes
+    ):
+        return True
+    for _, node in workspace.launches.nodes:
+        is_known = node.arguments is not None and None not in node.arguments
+        if node.package in (BRIDGE, "ros_gz_image") and not is_known:
+            return True
+    for file in workspace.texts.sdf_files:
+        for include in file.root.iter("include"):
+            model = (include.findtext("uri") or "").strip().rpartition("/")[2]
+            if model.lower() not in _WITHOUT_SENSORS:
+                return True
+    return False

@@ -1,0 +1,56 @@
+"""Code: what stops own nodes, or keeps them from doing anything."""
+
+from collections.abc import Iterator, Mapping
+
+from grader.ros.nodes.node_facts import CodeRule
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, Undecided
+from grader.ros.workspace.rules.rule_table import (
+    BUFFER_LISTENER,
+    CALLBACK_CALLED,
+    CALLBACK_SLEEPS,
+    CALLBACK_WAITS,
+    CODE_SYNTAX,
+    CONTEXT_STARTED,
+    ENTITY_KEPT,
+    NODE_REGISTERED,
+    NODE_SPINS,
+    ROTATION_SET,
+    SERVICE_RESPONSE,
+    UNDEFINED_NAME,
+    Rule,
+)
+
+_RULES: Mapping[CodeRule, Rule] = {
+    "undefined name": UNDEFINED_NAME,
+    "callback is called": CALLBACK_CALLED,
+    "no response": SERVICE_RESPONSE,
+    "nothing spins": NODE_SPINS,
+    "no rclpy.init": CONTEXT_STARTED,
+    "waits in a callback": CALLBACK_WAITS,
+    "sleeps in a callback": CALLBACK_SLEEPS,
+    "destroyed at once": ENTITY_KEPT,
+    "no listener": BUFFER_LISTENER,
+    "no rotation": ROTATION_SET,
+    "not registered": NODE_REGISTERED,
+}
+
+
+def code_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what is wrong in the code of nodes."""
+    for package, nodes in workspace.code.by_package.items():
+        if nodes.has_more_faults:
+            yield Undecided("code", f"the code of {package!r} is too long to search")
+        if nodes.nodes or nodes.programs:  # a script may use rclpy without a node of its own
+            yield Compared("code")
+        for program in nodes.programs:
+            if program.syntax is not None:
+                at = program.syntax.location
+                message = f"Python cannot read the file: {program.syntax.message}"
+                if program.syntax.is_certain:
+                    yield Mismatch(CODE_SYNTAX, message, at)
+                else:
+                    yield Undecided("code", f"{at.path} is not read")
+        for fault in nodes.faults:
+            rule = _RULES[fault.rule]
+            yield Mismatch(rule, fault.message, fault.location, fault.related, fault.is_certain)

@@ -1,0 +1,240 @@
+"""Nodes that need others: who publishes joint states and the clock, who publishes the robot, and
+which nodes have one name.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.installation.places import PREFIX, share_parts
+from grader.ros.known.package_rows import (
+    commands_that_end,
+    controller_row,
+    package_row,
+    program_row,
+)
+from grader.ros.known.ros_machine import ros_machine
+from grader.ros.known.shared_names import shared_names
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
+from grader.ros.workspace.graph.started_controllers import defined_controllers, spawned_controllers
+from grader.ros.workspace.graph.unread_ends import may_publish_type
+from grader.ros.workspace.model.launches import MANAGER
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rules.rule_table import (
+    CLOCK_PUBLISHED,
+    JOINT_STATES,
+    NODE_NAME,
+    ONE_JOINT_STATE,
+    ROBOT_PUBLISHED,
+    SIMULATION_TIME,
+)
+
+_ROBOT_PUBLISHER, _CONTROL_NODE = "robot_state_publisher", "ros2_control_node"
+_JOINT_STATE, _CLOCK = "sensor_msgs.msg.JointState", "rosgraph_msgs.msg.Clock"
+_JOINT_STATE_WORDS = ("joint_state", "JointState")
+_TIME = "use_sim_time"
+_CODE, _PAGES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h"), (".md", ".sh")
+_SOURCES = (*_CODE, *_PAGES, ".yaml")
+_WORD = re.compile(r"[a-z0-9]+")
+
+
+def companion_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield nodes whose companions are missing or are there twice.
+
+    A launch file may be one of several that a person starts: what is missing is missing in all of
+    them. Where a launch file may start more than is known, nothing is.
+    """
+    if not workspace.launches.nodes:
+        return
+    yield Compared("wiring")
+    yield from _same_names(workspace)
+    yield from _two_joint_state_publishers(workspace)
+    if not workspace.launches.unknown_nodes:
+        yield from _no_joint_states(workspace)
+        yield from _no_robot(workspace)
+        yield from _no_clock(workspace)
+        yield from _wall_time(workspace)
+
+
+def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the nodes that a launch file gives a name which it gives another one."""
+    first: dict[tuple[int, str], StartedNode] = {}
+    for launch, node in workspace.launches.launched:
+        if node.when is not True or not node.node_name or node.namespace is None:
+            continue
+        name = node.full_name(node.node_name)
+        before = first.setdefault((launch, name), node)
+        if before is not node:
+            message = (
+                f"two nodes are named {name}: their parameters and services cannot be told apart; "
+                f"the other one is at {before.location.file_and_line}"
+            )
+            yield warning(NODE_NAME, message, node.location, before.location)
+
+
+def _broadcasters(workspace: Workspace) -> set[str]:
+    """Return the names of the controllers that publish joint states."""
+    names = set()
+    for controller in defined_controllers(workspace):
+        if controller_row(controller.type.text).publishes_joint_states:
+            names.add(controller.name)
+    return names
+
+
+def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the programs that publish joint states beside a controller that does."""
+    broadcasters = _broadcasters(workspace)
+    for launch, node in workspace.launches.launched:
+        is_source = program_row(node.package, node.executable).publishes_joint_states
+        if not is_source or node.when is not True or node.remaps or node.parameters:
+            continue
+        spawned = spawned_controllers(workspace, launch)
+        for name in sorted(broadcasters.intersection(spawned)):
+            if not spawned[name] and not node.namespace:
+                message = (
+                    f"{node.executable} and the controller {quoted(name)} both publish "
+                    "joint_states: the joints jump between their positions"
+                )
+                yield warning(ONE_JOINT_STATE, message, node.location)
+
+
+def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield a robot with moving joints whose positions nothing publishes."""
+    publishers = [
+        it for _, it in workspace.launches.nodes if it.executable == _ROBOT_PUBLISHER and it.when
+    ]
+    moving = []
+    for robot in workspace.robots.known:
+        moving += [it for it in robot.robot.joints if it.has_position and it.mimic is None]
+    if not publishers or not moving or workspace.robots.may_be_others:
+        return
+    for _, node in workspace.launches.nodes:
+        if program_row(node.package, node.executable).publishes_joint_states:
+            return
+        if may_publish_type(workspace, node, _JOINT_STATE):
+            return
+    if any(row.is_published and row.ros_type == _JOINT_STATE for row in bridge_rows(workspace)):
+        return
+    if _broadcasters(workspace) or _is_mentioned(workspace, _JOINT_STATE_WORDS):
+        return
+    if any(
+        word in robot.source.text for robot in workspace.robots.known for word in _JOINT_STATE_WORDS
+    ):
+        return  # a plugin of Gazebo may publish them
+    joint = moving[0]
+    message = (
+        f"nothing publishes joint_states, so the links of {len(moving)} moving joints such as "
+        f"{quoted(joint.name)} have no transform: start joint_state_publisher or a "
+        "joint_state_broadcaster"
+    )
+    at = joint.location.resolve() if joint.location is not None else None
+    yield warning(JOINT_STATES, message, publishers[0].location, at)
+
+
+def _is_mentioned(workspace: Workspace, words: Sequence[str]) -> bool:
+    """Return whether a launch file, a program or a page of the workspace has one of some words."""
+    texts = [*workspace.texts.searched_launch_texts()]
+    for package in workspace.packages:
+        texts += [source.text for source in workspace.texts.sources_of(package, _SOURCES)]
+    return any(word in text for text in texts for word in words)
+
+
+def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield a controller manager that waits for a robot which nothing publishes."""
+    managers = []
+    for _, node in workspace.launches.nodes:
+        if node.executable == _ROBOT_PUBLISHER:
+            return
+        if node.package == MANAGER and node.executable == _CONTROL_NODE:
+            if node.has_description:
+                return
+            managers.append(node)
+        elif "frames" not in package_row(node.package).without:
+            return
+    if managers and not _is_mentioned(workspace, ("robot_description",)):
+        message = (
+            "the controller manager waits for the topic robot_description, which nothing "
+            "publishes: start robot_state_publisher"
+        )
+        yield warning(ROBOT_PUBLISHED, message, managers[0].location)
+
+
+def _sim_time(workspace: Workspace) -> Iterator[Location]:
+    """Yield where nodes that are started are told to use the time of a simulation."""
+    for package, node in workspace.launches.nodes:
+        if node.when is True:
+            value = workspace.parameters.given_to(package, node).values.get(_TIME)
+            if value is not None and value.value is True:
+                yield value.location
+
+
+def _no_clock(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that nodes wait for the time of a simulation that nothing publishes."""
+    at = next(_sim_time(workspace), None)
+    if at is None or _may_have_clock(workspace):
+        return
+    message = "use_sim_time is true, but nothing publishes /clock: the time of the node stays 0"
+    yield warning(CLOCK_PUBLISHED, message, at)
+
+
+def _may_have_clock(workspace: Workspace) -> bool:
+    """Return whether something may publish /clock: a node, a launch file or a command that is not
+    read, or what a page tells people to start.
+    """
+    if any(row.is_published and row.ros_type == _CLOCK for row in bridge_rows(workspace)):
+        return True
+    for _, launch in workspace.launches.roots:
+        ending = (*ros_machine().ending_commands, *commands_that_end())
+        if not all(command.startswith(ending) for command in launch.commands):
+            return True
+        for passed in launch.passed:
+            package = share_parts(f"{PREFIX}/{passed.path}")[0]
+            is_own = workspace.installed.source_of(passed.path) is not None
+            if not is_own and not package_row(package).launches_no_clock:
+                return True
+    for _, node in workspace.launches.nodes:
+        if workspace.package_of(node) is None:
+            is_open = _says_clock(f"{node.package} {node.executable}")
+            is_open = is_open and "frames" not in package_row(node.package).without
+        else:
+            is_open = may_publish_type(workspace, node, _CLOCK)
+        if is_open or (node.package == BRIDGE and None in (node.arguments or (None,))):
+            return True
+    return _is_told(workspace)
+
+
+def _says_clock(text: str) -> bool:
+    """Return whether a name or a page has a word of simulations or of players."""
+    return not set(_WORD.findall(text.lower())).isdisjoint(shared_names().clock_words)
+
+
+def _is_told(workspace: Workspace) -> bool:
+    """Return whether a page or a script of the workspace says how to start a simulation, or a
+    program that is not started uses the type of the time.
+    """
+    for package in workspace.packages:
+        for source in workspace.texts.sources_of(package, _PAGES):
+            if _says_clock(source.text):
+                return True
+        for source in workspace.texts.sources_of(package, _CODE):
+            if _CLOCK.partition(".")[0] in source.text:
+                return True
+    return False
+
+
+def _wall_time(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that nodes compare times in a simulation whose clock they do not use."""
+    rows = [row for row in bridge_rows(workspace) if row.is_published and row.ros_type == _CLOCK]
+    if not rows or _is_mentioned(workspace, (_TIME,)):
+        return
+    for _, node in workspace.launches.nodes:
+        if package_row(node.package).compares_time and node.when is True:
+            message = (
+                f"{node.executable} uses the time of the machine, but the simulation has its own "
+                f"clock ({rows[0].location.file_and_line}): give the nodes use_sim_time"
+            )
+            yield warning(SIMULATION_TIME, message, node.location, rows[0].location)
+            return

@@ -1,0 +1,120 @@
+"""What is wrong in the files of a workspace's packages, each on its own: what stops a build or a
+launch file, and RViz files.
+"""
+
+from collections.abc import Iterator
+
+from grader.base.errors import NotDecided
+from grader.base.problems import Problem
+from grader.base.source import Location
+from grader.base.text import counted
+from grader.ros.installation import package_problems as kinds
+from grader.ros.known.releases import releases_with
+from grader.ros.launch.launch_model import Launch
+from grader.ros.package.found_problems import build_problems, launch_problems, sorted_problems
+from grader.ros.package.installed_files import are_installs_known
+from grader.ros.package.package import MANIFEST, Package
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.reading import read_agreement
+
+_OF_MISSING_FILES = (kinds.SETUP_STOPS, kinds.EMPTY_GLOB)
+_LAUNCH_FOLDER = "launch/"
+_COUNTED = (kinds.SETUP_UNKNOWN, kinds.LAUNCH_UNKNOWN)  # and not listed
+
+
+def _file_problems(workspace: Workspace) -> Iterator[Problem]:
+    """Yield what is wrong in package.xml, setup.py, CMakeLists.txt, launch and RViz files."""
+    yield from _build_problems(workspace)
+    roots = {id(launch) for _, launch in workspace.launches.roots}
+    mismatches = read_agreement(workspace).mismatches
+    wrong_programs = {it.location for it in mismatches if it.family == "programs"}
+    for _, path, launch in workspace.launches.files:
+        if launch.syntax is not None:
+            yield Problem(kinds.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
+        found = launch_problems(_started(workspace, path, launch)) if id(launch) in roots else []
+        for problem in found:
+            if problem.location not in wrong_programs:  # which is also a name that does not agree
+                yield problem
+    yield from _uninstalled_launch_files(workspace)
+    for package, paths in workspace.launches.of_ros1:
+        files = counted(len(paths), "launch file")
+        message = f"the package has {files} of ROS 1, which ros2 launch does not read"
+        yield Problem(kinds.OF_ROS1, message, Location(package.path(paths[0]), 1, 1))
+    for package in workspace.packages:
+        for path in package.rviz_files:
+            yield from _rviz_problems(package, path)
+
+
+def _uninstalled_launch_files(workspace: Workspace) -> Iterator[Problem]:
+    """Yield the packages with a folder launch of which a build installs no file."""
+    for package in workspace.packages:
+        files = []
+        for path in package.launch_files:
+            name = path.removeprefix(_LAUNCH_FOLDER)
+            if name != path and "launch" in name:
+                files.append(path)
+        setup = package.installation
+        is_module = f"{_LAUNCH_FOLDER}__init__.py" in package.tree.files
+        if not files or is_module or setup is None or not are_installs_known(package):
+            continue
+        if setup.stops:  # such as a file of this folder that is not there
+            continue
+        if not {*package.installed.values()}.isdisjoint(files):
+            continue
+        name = files[0].removeprefix(_LAUNCH_FOLDER)
+        message = f"ros2 launch does not find {name}: no {setup.entry} names the folder launch"
+        place = Location(package.path(files[0]), 1, 1)
+        yield Problem(kinds.NO_LAUNCH_FILES, message, place)
+
+
+def _build_problems(workspace: Workspace) -> Iterator[Problem]:
+    """Yield what stops a build, unless it needs what git has not fetched."""
+    for package in workspace.packages:
+        lacks_submodule = any(map(package.holds, workspace.folder.absent_submodules))
+        for problem in build_problems(package):
+            if not (lacks_submodule and problem.kind in _OF_MISSING_FILES):
+                yield problem
+
+
+def listed_problems(workspace: Workspace) -> list[Problem]:
+    """Return what is wrong in the files, each once, without what is not evaluated, which is only
+    counted.
+    """
+    return [it for it in dict.fromkeys(_file_problems(workspace)) if it.kind not in _COUNTED]
+
+
+def ros1_problem(package: Package) -> Problem:
+    """Return the note that a package is not one of ROS 2."""
+    message = f"the package {package.name!r} is one of ROS 1, and is not compared with others"
+    return Problem(kinds.OF_ROS1, message, Location(package.path(MANIFEST), 1, 1))
+
+
+def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
+    """Return a launch file that no other one surely includes, without the faults that its caller
+    may correct: who starts it gives it values, and a file that may include it declares arguments;
+    and without those of arguments that a stated release has.
+    """
+    name = path.rpartition("/")[2]
+    try:
+        count = sum(name in text for text in workspace.texts.searched_launch_texts())
+        is_named = count > (name in launch.source.text)
+    except NotDecided:
+        is_named = True
+    is_closed = not is_named and not any(it.unknown for _, _, it in workspace.launches.files)
+    faults = []
+    for fault in launch.faults:
+        having = releases_with("argument", fault.argument) if fault.argument else ()
+        if any(release in having for release in workspace.releases):
+            continue
+        if fault.lacks == "" or (fault.lacks == "declaration" and is_closed):
+            faults.append(fault)
+    return launch._replace(faults=tuple(faults), syntax=None)
+
+
+def _rviz_problems(package: Package, path: str) -> Iterator[Problem]:
+    """Yield the problems of an RViz file; of one of another release only the first display."""
+    seen = set()
+    for problem in sorted_problems(package.rviz(path).problems):
+        if problem.kind is not kinds.ROS1_CLASS or problem.kind not in seen:
+            seen.add(problem.kind)
+            yield problem

@@ -1,0 +1,360 @@
+"""Frames and joints: those of the robot and of static transforms, and where other files name
+them.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from typing import NamedTuple
+
+from grader.base.names import near
+from grader.base.source import LazyLocation, Location
+from grader.ros.config.yaml_values import YamlValue, is_parameters, values_in
+from grader.ros.known.gazebo_rows import gazebo
+from grader.ros.known.package_rows import frame_parameters, package_row
+from grader.ros.known.shared_names import shared_names
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.nodes.node_facts import NodeFrame
+from grader.ros.package.package import Package
+from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
+from grader.ros.urdf.model import Robot
+from grader.ros.workspace.graph.endpoints import frames_of
+from grader.ros.workspace.graph.gazebo_topics import roots, system_of
+from grader.ros.workspace.model.known_robots import KnownRobot
+from grader.ros.workspace.model.under_arguments import names_under_arguments
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import (
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Pattern,
+    Use,
+    corrections,
+)
+from grader.ros.workspace.rules.rule_table import (
+    FRAME_PARENT,
+    FRAME_PUBLISHED,
+)
+from grader.ros.xml.parsing import Element
+
+_JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
+_FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
+_BROADCASTING = ("TransformBroadcaster", "TFMessage")
+_TRANSFORMS = "tf2_msgs.msg.TFMessage"
+_POSES = "PosePublisher"  # a system of Gazebo that publishes the frames of a model
+_SENSOR_FRAMES = ("gz_frame_id", "ignition_frame_id")
+_FRAME_FIELDS = ("frame_id", "child_frame_id")  # of messages
+# What a program calls the frames that it makes itself.
+_OWN_FRAMES = re.compile(
+    r"^(odom|map|world|global|fixed|parent|target)_frame(_id)?$|^frame_prefix$"
+)
+
+
+def frame_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the frames and joints that are defined, and those that YAML, SRDF, Gazebo and
+    transforms name.
+    """
+    robots = [found.robot for found in workspace.robots.known if found.robot.links]
+    if not robots:
+        return
+    for robot in robots:
+        for link in robot.links:
+            yield Definition("frame", link.name, _place(link.location))
+            yield Definition("link", link.name, _place(link.location))
+        for joint in robot.joints:
+            yield Definition("joint", joint.name, _place(joint.location))
+    start = _place(robots[0].links[0].location)
+    yield from (Definition("frame", name, start) for name in shared_names().frames)
+    yield from openings(workspace)
+    yield from _static_transforms(workspace, robots)
+    yield from _frames_in_code(workspace, robots)
+    controllers = workspace.installed.typed_sections
+    for _, tree in workspace.installed.trees:
+        if is_parameters(tree):
+            for value in values_in(tree):
+                yield from _in_yaml(value, is_of_controller=not controllers.isdisjoint(value.keys))
+    for found in workspace.robots.known:
+        yield from _in_robot(found)
+    yield from _odometry_frames(workspace, robots)
+    yield from _sensor_frames(workspace, robots)
+
+
+def _place(location: LazyLocation | None) -> Location:
+    if location is not None:
+        return location.resolve()
+    return Location("", 1, 1)
+
+
+def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
+    """Yield that there may be other names: of other robots, under other arguments, and of programs
+    that may publish frames.
+    """
+    if workspace.robots.may_be_others:
+        yield from (Open("frame"), Open("link"), Open("joint"), Open("group"))
+    for name in names_under_arguments(workspace, "joint"):
+        yield Pattern("joint", name)
+    for name in names_under_arguments(workspace, "link"):
+        yield from (Pattern("link", name), Pattern("frame", name))
+    for _, _, launch in workspace.launches.files:
+        if launch.more:
+            yield Open("frame", reason=launch.more)
+        if any("bag" in command for command in launch.commands):
+            yield Open("frame")  # a recording has frames of its own
+    packages = {package.name for package in workspace.packages}
+    for _, node in workspace.launches.nodes:
+        if "frames" not in package_row(node.package).without and node.package not in packages:
+            yield Open("frame")
+    if _may_be_published(workspace):
+        yield Open("frame")
+
+
+def _may_be_published(workspace: Workspace) -> bool:
+    """Return whether code or a system of Gazebo may publish frames that are not known."""
+    if any(_may_publish(workspace, package) for package in workspace.packages):
+        return True
+    if any(word in text for text in workspace.texts.python_texts for word in _BROADCASTING):
+        return True
+    systems = (system_of(it) for root, _ in roots(workspace) for it in root.iter("plugin"))
+    return _POSES in systems
+
+
+def _may_publish(workspace: Workspace, package: Package) -> bool:
+    """Return whether the programs that CMake makes may publish frames that are not known."""
+    setup = package.installation
+    if not package.is_cmake or setup is None or not setup.programs:
+        return False
+    found = workspace.code.by_package[package.name]
+    read = {program.name for program in found.programs if program.nodes}
+    programs = {path.rpartition("/")[2] for path in setup.programs}
+    if found.doubts or found.loose_frames or not programs <= read:
+        return True
+    if any(node.doubts for node in found.nodes):
+        return True
+    if any(end.type == _TRANSFORMS for node in found.nodes for end in node.endpoints):
+        return True
+    started = {
+        node.executable for _, node in workspace.launches.nodes if node.package == package.name
+    }
+    for program in found.programs:
+        frames = [frame for node in program.nodes for frame in node.frames]
+        if program.name not in started and any(it.use == "publishes" for it in frames):
+            return True
+    return False
+
+
+def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
+    """Yield the frames that own nodes publish, look up and name in messages."""
+    named: list[_NamedFrame] = []
+    for _, node in workspace.launches.nodes:
+        for name, frame in frames_of(workspace, node) if node.when is not False else ():
+            if name is not None and name.strip("/"):
+                named.append(_NamedFrame(name.removeprefix("/"), frame, node))
+            elif name is None and frame.use == "publishes":
+                yield Open("frame", reason=f"the frames of {node.executable} are computed")
+    if named:
+        yield from _frames_of_others(workspace)
+    # Those that static transforms have as their parent, such as the root of a map.
+    above = {frames_named(node)[0] for _, node in workspace.launches.nodes if _is_static(node)}
+    for each in named:
+        at = each.frame.location
+        if each.frame.use in ("publishes", "is above"):
+            yield Definition("frame", each.name, at)
+        elif each.frame.use == "looks up" and each.name not in above:
+            is_python = at.path.endswith(".py")
+            said = "lookup_transform" if is_python else "lookupTransform"
+            yield Use("frame", each.name, at, said, optional=is_python)
+        elif each.frame.use == "names":
+            yield Use("frame", each.name, at, "frame_id")
+    yield from _misspelt_roots(named, robots)
+    yield from _frames_in_fields(workspace)
+
+
+def _frames_of_others(workspace: Workspace) -> Iterator[Definition | Open]:
+    """Yield the frames that nodes of other packages publish under names from launch files, and the
+    links of robots under the prefix that robot_state_publisher gives them.
+    """
+    for package, node in workspace.launches.nodes:
+        if node.frame_prefix is None:
+            yield Open("frame")
+        elif node.frame_prefix:
+            for robot in workspace.robots.known:
+                for link in robot.robot.links:
+                    name = f"{node.frame_prefix}{link.name}".removeprefix("/")
+                    yield Definition("frame", name, node.location)
+        if package_row(node.package).publishes_transforms:
+            given = workspace.parameters.given_to(package, node)
+            if given.unknown:
+                yield Open("frame")
+            for name, value in given.values.items():
+                if name in frame_parameters() and isinstance(value.value, str):
+                    yield Definition("frame", value.value.removeprefix("/"), value.location)
+
+
+def _frames_in_fields(workspace: Workspace) -> Iterator[Use]:
+    """Yield the frames that Python code of started packages writes into messages."""
+    started = {node.package for _, node in workspace.launches.nodes if node.when is not False}
+    for package in workspace.packages:
+        if package.name not in started:
+            continue
+        for field in workspace.code.by_package[package.name].field_uses:
+            if field.path[-1] not in _FRAME_FIELDS or len(field.literal) != 1:
+                continue
+            text = field.literal[0]
+            if isinstance(text, str) and text.strip("/"):
+                yield Use("frame", text.removeprefix("/"), field.location, field.path[-1])
+
+
+class _NamedFrame(NamedTuple):
+    """A frame that a node names as it is started."""
+
+    name: str
+    frame: NodeFrame
+    node: StartedNode
+
+
+def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> Iterator[Mismatch]:
+    """Yield frames that are published, and that are like the root of a robot that nothing puts
+    anywhere.
+    """
+    children = {joint.child for robot in robots for joint in robot.joints}
+    published = {each.name for each in named if each.frame.use == "publishes"}
+    roots: dict[str, Location] = {}
+    for robot in robots:
+        for link in robot.links:
+            if link.name not in children and link.name not in published:
+                roots[link.name] = _place(link.location)
+    for each in named:
+        meant = near(each.name, roots) if each.frame.use == "publishes" else None
+        if meant is None:
+            continue
+        at = each.frame.location
+        message = (
+            f"the frame {each.name!r} is published, which nothing else has; did you mean "
+            f"{meant!r} ({roots[meant].file_and_line})?"
+        )
+        either = corrections(each.name, at, meant, roots[meant])
+        is_certain = each.node.when is True and len(robots) == 1
+        yield Mismatch(FRAME_PUBLISHED, message, at, roots[meant], is_certain, corrections=either)
+
+
+def _is_static(node: StartedNode) -> bool:
+    return (node.package, node.executable) == STATIC_PUBLISHER
+
+
+def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
+    children = {joint.child: joint for robot in robots for joint in robot.joints}
+    links = {link.name for robot in robots for link in robot.links}
+    for _, node in workspace.launches.nodes:
+        if not _is_static(node):
+            continue
+        parent, child = frames_named(node)
+        if not parent or not child or None in (node.arguments or (None,)):
+            yield Open(
+                "frame", reason="the frames of a static_transform_publisher are not evaluated"
+            )
+            continue
+        yield Definition("frame", child, node.location)
+        # Above a robot, or a frame that others publish, it may be the root.
+        is_root = child not in children and (child in links or child in shared_names().frames)
+        yield Use("frame", parent, node.location, STATIC_PUBLISHER[1], optional=is_root)
+        own = children[child].parent if child in children else parent
+        if own != parent:
+            at = _place(children[child].location)
+            message = f"the frame {child!r} has two parents: {own!r} in the robot, {parent!r} here"
+            is_certain = node.when is True and len(robots) == 1
+            yield Mismatch(FRAME_PARENT, message, node.location, at, is_certain=is_certain)
+
+
+def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
+    """Yield the joints and frames that a parameter names; what a node of another kind calls joints
+    may be others.
+    """
+    key = value.keys[-1] if value.keys else ""
+    if _JOINTS.search(key):
+        for text, node in value.texts():
+            if text and "/" not in text and "$" not in text:
+                yield Use("joint", text, node.location, value.said, optional=not is_of_controller)
+    elif _FRAMES.search(key):
+        is_used = _OWN_FRAMES.search(key) is None
+        for text, node in value.texts():
+            name, at = text.removeprefix("/"), node.location
+            if name and "$" not in name and is_used:
+                yield Use("frame", name, at, value.said)
+            elif name and "$" not in name and key in frame_parameters():
+                yield Definition("frame", name, at)
+
+
+def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
+    """Yield what the elements for Gazebo and ros2_control name."""
+    joints = {joint.name for joint in robot.robot.joints}
+    joint_elements = gazebo().joint_elements
+    for element in robot.root.iterchildren("gazebo"):
+        at = robot.place(element)
+        for joint in element.iter("joint"):  # of Gazebo alone, for what URDF does not have
+            yield Definition("joint", joint.get("name", ""), at)
+        reference = element.get("reference")
+        if reference and reference not in joints:
+            yield Use("link", reference, at, "<gazebo reference>")
+        for inner in element.iter(*gazebo().frame_elements, *joint_elements):
+            text, parent = (inner.text or "").strip(), inner.getparent()
+            if text and inner.tag in joint_elements:
+                yield Use("joint", text, robot.place(inner), f"<{inner.tag}>")
+            elif text and inner.tag == "frame_id" and parent is not None and parent.tag == "plugin":
+                yield Definition("frame", text, robot.place(inner))  # that the plugin publishes
+            elif text:
+                yield Use("frame", text, robot.place(inner), f"<{inner.tag}>")
+    for system in robot.systems:
+        yield from _in_system(robot, system)
+
+
+def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
+    """Yield the frames that systems of Gazebo publish: those that they name, and by default those
+    below the model's.
+    """
+    created = set()  # the names of the models that launch files create
+    for _, node in workspace.launches.nodes:
+        if node.executable == "create":
+            options = pairwise(node.arguments or ())
+            created |= {name for option, name in options if option == "-name" and name}
+    defaults = [*gazebo().odometry_frames]
+    defaults += [link.name for robot in robots for link in robot.links]
+    systems = gazebo().odometry_systems
+    for root, place in roots(workspace):
+        for plugin in root.iter("plugin"):
+            if system_of(plugin) not in systems:
+                continue
+            at = place(plugin)
+            for element in plugin.iterchildren(*gazebo().odometry_elements):
+                yield Definition("frame", (element.text or "").strip(), at)
+            around = {model.get("name", "") for model in plugin.iterancestors("robot", "model")}
+            for model in sorted(around | created):
+                for frame in defaults:
+                    yield Definition("frame", f"{model}/{frame}", at)
+
+
+def _sensor_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Use]:
+    """Yield the frames of the sensors of models that are a robot as well: these have a link of it.
+    Their own links and frames are ignored, since Gazebo may publish them.
+    """
+    links = {link.name for robot in robots for link in robot.links}
+    for file in workspace.texts.sdf_files:
+        for model in file.root.iter("model"):
+            own = {element.get("name") for element in model.iter("link", "frame")}
+            if own.isdisjoint(links):
+                continue
+            for element in model.iter(*_SENSOR_FRAMES):
+                name = (element.text or "").strip().removeprefix("/")
+                if name and name not in own:
+                    at = file.location(element)
+                    yield Use("frame", name, at, f"<{element.tag}>", optional=True)
+
+
+def _in_system(robot: KnownRobot, system: Element) -> Iterator[Fact]:
+    """Yield the joints that a system of ros2_control names."""
+    for element in system.iterchildren("joint"):
+        yield Use("joint", element.get("name", ""), robot.place(element), "<ros2_control>")
+        for param in element.iterchildren("param"):
+            text = (param.text or "").strip()
+            if param.get("name") == "mimic" and text:
+                yield Use("joint", text, robot.place(param), "the parameter mimic")

@@ -1,0 +1,338 @@
+"""Interfaces: the files of messages, services and actions, what generates code of them, and the
+types and fields that nodes use.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from grader.base.names import closest, near
+from grader.base.source import Location
+from grader.base.text import MAX_NAMED, enumerated, quoted
+from grader.ros.interfaces.interface_types import (
+    BOOLEANS,
+    FLOATS,
+    INTEGERS,
+    TEXTS,
+    FieldType,
+    Interface,
+    InterfaceField,
+    InterfaceSection,
+)
+from grader.ros.interfaces.known_interfaces import known_interfaces
+from grader.ros.known.cmake_words import cmake_words
+from grader.ros.known.releases import RELEASES, Release
+from grader.ros.nodes.message_uses import ITEM
+from grader.ros.nodes.node_facts import FieldUse
+from grader.ros.package.package import Package
+from grader.ros.package.package_interfaces import PackageInterfaces
+from grader.ros.python.values import Value
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, Undecided, corrections
+from grader.ros.workspace.rules.rule_table import (
+    FIELD_VALUE,
+    INTERFACE_DEPENDENCY,
+    INTERFACE_FIELD,
+    INTERFACE_FILE,
+    INTERFACE_GROUP,
+    INTERFACE_TYPE,
+)
+
+_GROUP = "rosidl_interface_packages"
+# What rosidl brings for services and actions without naming them.
+_IMPLICIT = ("service_msgs", "action_msgs", "builtin_interfaces", "unique_identifier_msgs")
+_OF_PYTHON = ("get_fields_and_field_types", "SLOT_TYPES")  # besides what begins with _
+# Releases whose setters check the type of what is assigned: rosidl_generator_py of Foxy to Iron.
+_CHECKING = RELEASES[: RELEASES.index("jazzy")]
+_GOAL_HANDLE = "GoalHandle"
+# Releases that have the headers of all packages in one folder, where a compiler finds them.
+_OF_ONE_FOLDER: frozenset[Release] = frozenset({"foxy", "galactic"})
+
+
+def interface_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what is wrong with interfaces, and types and fields that are used and do not exist."""
+    for package in workspace.packages:
+        own = workspace.code.interfaces[package.name]
+        yield from _own_faults(workspace, package, own)
+    for package in workspace.packages:
+        yield from _used_types(workspace, package)
+        for use in workspace.code.by_package[package.name].field_uses:
+            workspace.charge(1 + len(use.path))
+            yield from _used_field(workspace, use)
+
+
+# --- Files and CMakeLists.txt
+
+
+def _own_faults(workspace: Workspace, package: Package, own: PackageInterfaces) -> Iterator[Fact]:
+    if own.location is None and not own.unlisted:
+        return
+    yield Compared("interfaces")
+    if not own.is_complete:
+        reason = f"which interfaces {package.name!r} generates is not evaluated"
+        yield Undecided("interfaces", reason)
+    manifest = package.manifest
+    is_read = manifest is not None and not manifest.unread and not manifest.refusals
+    if own.needs_group and manifest is not None and is_read and _GROUP not in manifest.groups:
+        message = (
+            f"package.xml needs <member_of_group>{_GROUP}</member_of_group>: without it, "
+            "rosidl_generate_interfaces() stops the build"
+        )
+        yield Mismatch(INTERFACE_GROUP, message, manifest.name_location, own.location)
+    for found in own.types.values():
+        for fault in found.interface.faults:
+            message = f"rosidl cannot read the file: {fault.message}"
+            either = corrections(fault.written, fault.location, fault.meant)
+            yield Mismatch(INTERFACE_FILE, message, fault.location, corrections=either)
+        for section in found.interface.sections:
+            for field in section.fields.values():
+                workspace.charge(1)
+                yield from _unknown_field_type(workspace, package, own, field)
+
+
+def _unknown_field_type(
+    workspace: Workspace, package: Package, own: PackageInterfaces, field: InterfaceField
+) -> Iterator[Fact]:
+    """Yield that nothing defines the type of a field, or that CMakeLists.txt does not name its
+    package.
+    """
+    kind, at, releases = field.type, field.location, {*workspace.releases}
+    if not kind.package or at is None:
+        return
+    absent = _absent(workspace, f"{kind.package}.msg.{kind.name}", at)
+    if absent is not None:
+        yield absent
+    elif kind.package != package.name and own.is_complete and not _OF_ONE_FOLDER & releases:
+        reached = _reached(workspace, own)
+        if reached is not None and kind.package not in reached:
+            message = (
+                f"the field {field.name} has a type of {kind.package}, which DEPENDENCIES of "
+                "rosidl_generate_interfaces() does not name: the build stops"
+            )
+            yield Mismatch(INTERFACE_DEPENDENCY, message, at, own.location)
+
+
+def _reached(workspace: Workspace, own: PackageInterfaces) -> set[str] | None:
+    """Return the packages whose messages an interface may use; None if not all are known."""
+    exports = cmake_words().exports
+    pending, reached = [*own.dependencies, *_IMPLICIT], set[str]()
+    while pending:
+        name = pending.pop()
+        if name in reached:
+            continue
+        reached.add(name)
+        other = workspace.code.interfaces.get(name)
+        if other is not None:
+            pending += other.dependencies
+        elif known_interfaces(name) is not None:
+            pending += _packages_used(name)
+        elif name not in exports:
+            return None
+        pending += exports.get(name, "").split() if other is None else ()
+    return reached
+
+
+def _packages_used(package: str) -> set[str]:
+    """Return the packages whose messages those of a well-known package use."""
+    names = set[str]()
+    for interface in (known_interfaces(package) or {}).values():
+        for section in interface.sections:
+            names.update(field.type.package for field in section.fields.values())
+    return names - {"", package}
+
+
+# --- Types
+
+
+def is_absent(workspace: Workspace, name: str) -> bool:
+    """Return whether nothing defines a type, such as chat_msgs.srv.Ask, if this is certain."""
+    package, _, own_name = name.partition(".")
+    if "_" in own_name:
+        return False  # of a section or an event, which rosidl generates too
+    own = workspace.code.interfaces.get(package)
+    if own is not None:
+        return own.is_complete and own_name not in own.types
+    known = known_interfaces(package, workspace.releases)
+    if known is None or "rolling" in workspace.releases:
+        return False
+    return own_name not in known
+
+
+def _absent(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
+    """Return that nothing defines a type, if this is certain."""
+    if not is_absent(workspace, name):
+        return None
+    package, _, own_name = name.partition(".")
+    kind, _, short = own_name.partition(".")
+    own = workspace.code.interfaces.get(package)
+    unlisted: Mapping[str, str] = {}
+    names = [*(known_interfaces(package, workspace.releases) or {})]
+    if own is not None:
+        names, unlisted = [*own.types], own.unlisted
+    shown = f"{package}/{kind}/{short}"
+    if own_name in unlisted:
+        related = own.location if own is not None else None
+        reason = f"rosidl_generate_interfaces() of {package} does not name its file"
+        if related is None:
+            reason = f"{package} does not call rosidl_generate_interfaces()"
+        return Mismatch(INTERFACE_TYPE, f"there is no type {shown}: {reason}", at, related)
+    workspace.charge(len(names))
+    of_kind = [it.partition(".")[2] for it in names if it.startswith(f"{kind}.")]
+    meant = near(short, of_kind) or closest(short, of_kind)
+    other = [it for it in names if it.partition(".")[2] == short]
+    hint = ""
+    if other:
+        hint = f"; there is {package}/{other[0].replace('.', '/')}"
+    elif meant is not None:
+        hint = f"; did you mean {meant}?"
+    elif of_kind and len(of_kind) <= MAX_NAMED:
+        hint = f"; there is {enumerated(of_kind)}"
+    either = corrections(short, at, meant) if not other else ()
+    return Mismatch(INTERFACE_TYPE, f"there is no type {shown}{hint}", at, corrections=either)
+
+
+def _used_types(workspace: Workspace, package: Package) -> Iterator[Fact]:
+    """Yield the types that the code of a package imports, or opens something with, and that do not
+    exist.
+    """
+    nodes = workspace.code.by_package[package.name]
+    used = {found.name: found.location for found in reversed(nodes.imports)}
+    for node in nodes.nodes:
+        for endpoint in node.endpoints:
+            if endpoint.type is not None and endpoint.type.count(".") == 2:
+                used.setdefault(endpoint.type, endpoint.location)
+    for name, at in used.items():
+        is_own = name.partition(".")[0] in workspace.code.interfaces
+        if is_own or known_interfaces(name.partition(".")[0]) is not None:
+            yield Compared("interfaces")
+        absent = _absent(workspace, name, at)
+        if absent is not None:
+            yield absent
+
+
+def _interface(workspace: Workspace, package: str, name: str) -> Interface | None:
+    own = workspace.code.interfaces.get(package)
+    if own is not None:
+        found = own.types.get(name)
+        return found.interface if found is not None and not found.interface.faults else None
+    return (known_interfaces(package, workspace.releases) or {}).get(name)
+
+
+# --- Fields
+
+
+def _used_field(workspace: Workspace, use: FieldUse) -> Iterator[Fact]:
+    """Yield that a type does not have a field that is used, or that it is set to a value of another
+    type.
+    """
+    package, kind, name, *sections = use.type.split(".")
+    section_name, path = "".join(sections), use.path
+    if section_name == _GOAL_HANDLE:
+        if path[0] != "request" or len(path) == 1:
+            return
+        section_name, path = "Goal", path[1:]
+    interface = _interface(workspace, package, f"{kind}.{name}")
+    section = interface.section(section_name) if interface is not None else None
+    if section is not None:
+        owner = f"{name}.{section_name}" if section_name else name
+        yield from _used_at(workspace, f"{package}/{kind}/{owner}", section, path, use)
+
+
+def _used_at(
+    workspace: Workspace, shown: str, section: InterfaceSection, path: Sequence[str], use: FieldUse
+) -> Iterator[Fact]:
+    """Yield what is wrong with the last name of a path of fields that begins in a section."""
+    attribute, *rest = path
+    field = section.fields.get(attribute)
+    if field is None:
+        if not rest and attribute != ITEM and not _is_of_python(section, attribute):
+            yield _without_field(workspace, shown, section, attribute, use.location)
+        return
+    if not rest:
+        yield from _wrong_value(workspace, field, shown, use)
+        return
+    if field.type.is_list:
+        is_item, rest = rest[0] == ITEM, rest[1:]
+        if not is_item or not rest:
+            return
+    inner = _interface(workspace, field.type.package, f"msg.{field.type.name}")
+    inner_section = inner.section("") if inner is not None else None
+    if inner_section is not None:
+        shown = f"{field.type.package}/msg/{field.type.name}"
+        yield from _used_at(workspace, shown, inner_section, rest, use)
+
+
+def _is_of_python(section: InterfaceSection, attribute: str) -> bool:
+    """Return whether the class that rosidl generates has an attribute that is no field."""
+    is_known = attribute in section.constants or attribute in _OF_PYTHON
+    return is_known or attribute.startswith("_") or attribute.endswith("__DEFAULT")
+
+
+def _without_field(
+    workspace: Workspace, shown: str, section: InterfaceSection, attribute: str, at: Location
+) -> Mismatch:
+    names, noun, inside = [*section.fields], "field", []
+    if attribute.isupper():
+        names, noun = sorted(section.constants), "constant"
+    for field in section.fields.values():
+        if field.type.package and not field.type.is_list:
+            inner = _interface(workspace, field.type.package, f"msg.{field.type.name}")
+            part = inner.section("") if inner is not None else None
+            if part is not None and attribute in part.fields:
+                inside.append(f"{field.name}.{attribute}")
+    workspace.charge(len(names))
+    meant = inside[0] if len(inside) == 1 else near(attribute, names) or closest(attribute, names)
+    if meant is not None:
+        hint = f"did you mean {meant}?"
+    else:
+        hint = f"it has {enumerated(names[:MAX_NAMED]) or 'none'}"
+        if len(names) > MAX_NAMED:
+            hint = f"{hint} and others"
+    message = f"{shown} has no {noun} {quoted(attribute)}; {hint}"
+    either = corrections(attribute, at, meant)
+    return Mismatch(INTERFACE_FIELD, message, at, corrections=either)
+
+
+def _wrong_value(
+    workspace: Workspace, field: InterfaceField, shown: str, use: FieldUse
+) -> Iterator[Mismatch]:
+    """Yield that a field is set to a value that its type certainly does not take."""
+    for value in use.literal:
+        if not _fits(field.type, value, workspace.releases):
+            wanted = field.type.full_name.replace(".", "/")
+            if field.type.is_list:
+                wanted = f"a list of {wanted}"
+            message = (
+                f"the field {field.name} of {shown} is {wanted}; it is set to {_in_words(value)}"
+            )
+            yield Mismatch(FIELD_VALUE, message, use.location)
+
+
+def _in_words(value: Value) -> str:
+    kinds = {bool: "a boolean", int: "an integer", float: "a float", str: "a text"}
+    if value is None:
+        return "None"
+    return f"{str(value)[:20]!r}, {kinds[type(value)]}"
+
+
+def _fits(kind: FieldType, value: Value, releases: tuple[Release, ...]) -> bool:
+    """Return whether a field may be set to a value; whether it is not is certain.
+
+    From Jazzy on the setters check nothing, and the value is converted when the message is sent: 0
+    then stands for 0.0 and False by chance.
+    """
+    if kind.package:
+        return False
+    if kind.is_list:
+        return isinstance(value, str)  # text is a list of bytes for some
+    is_checked = bool(releases) and all(release in _CHECKING for release in releases)
+    if isinstance(value, int) and not isinstance(value, bool) and value == 0 and not is_checked:
+        return kind.name not in TEXTS
+    wanted: tuple[type, ...] = (object,)
+    if kind.name in BOOLEANS:
+        wanted = (bool,)
+    elif kind.name in FLOATS:
+        wanted = (float,)
+    elif kind.name in INTEGERS - {"char"}:
+        wanted = (int,)
+    elif kind.name in TEXTS:
+        wanted = (str,)
+    return isinstance(value, wanted)

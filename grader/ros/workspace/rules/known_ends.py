@@ -1,0 +1,188 @@
+"""Topics of well-known programs and of displays: whether what is published there has their type,
+whether their inputs are published at all, and whether remappings replace names that they have.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from grader.base.names import near
+from grader.base.source import Location
+from grader.base.text import quoted
+from grader.ros.known.package_rows import ProgramRow
+from grader.ros.known.package_tables import display_types
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.workspace.graph.endpoints import End
+from grader.ros.workspace.graph.ends import KnownProgram, programs_in
+from grader.ros.workspace.graph.graph import graph_of, grouped
+from grader.ros.workspace.graph.unread_ends import Sought, may_be_opened
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rules.rule_table import (
+    DISPLAY_TYPE,
+    INPUT_PUBLISHED,
+    INPUT_TYPE,
+    REMAPPED_TOPIC,
+)
+
+_INPUT = re.compile(r"([a-z]+)\d+")
+_DEFAULT_DISPLAYS = "rviz_default_plugins"
+_CLASSIC = "libgazebo_ros_"  # how the names of plugins of Gazebo Classic begin, which publish
+
+
+class _Input(NamedTuple):
+    """A topic that a parameter of a program names, with the type that the program reads there."""
+
+    parameter: str
+    topic: str
+    type: str
+    location: Location
+
+
+_ByTopic = Mapping[str, Sequence[End]]  # the ends that publish a topic
+
+
+def known_end_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield topics that well-known programs and displays cannot read, and names that these do not
+    have.
+    """
+    graph = graph_of(workspace)
+    published = graph.certain("publisher", "code", "controller", "bridge", "program")
+    published = [end for end in published if end.type is not None]
+    by_launch = grouped(published, lambda end: end.launch)
+    for program in programs_in(workspace):
+        by_topic = grouped(by_launch.get(program.launch, ()), lambda end: end.name)
+        yield from _other_types(program, by_topic)
+        yield from _other_inputs(workspace, program, by_topic)
+        yield from _remappings(program.node, program.row)
+    yield from _displays(workspace, grouped(published, lambda end: end.name))
+
+
+def _other_type(published: Sequence[End], wanted: str) -> End | None:
+    """Return what is published with another type, if nothing is with the one that is wanted."""
+    if any(each.type == wanted for each in published):
+        return None
+    return next(iter(published), None)
+
+
+def _other_types(program: KnownProgram, published: _ByTopic) -> Iterator[Fact]:
+    """Yield the topics that a program reads, and that are published with another type."""
+    node = program.node
+    for name, wanted in program.row.subscriptions.items():
+        topic = node.topic(name)
+        publishers = published.get(topic or "", ())
+        if publishers:
+            yield Compared("wiring")
+        other = _other_type(publishers, wanted)
+        if other is not None:
+            message = (
+                f"{node.executable} reads {topic} with {wanted}, but it is published with "
+                f"{other.type} ({other.location.file_and_line})"
+            )
+            yield warning(INPUT_TYPE, message, node.location, other.location)
+
+
+def _inputs(workspace: Workspace, program: KnownProgram) -> list[_Input]:
+    """Return the topics that parameters of a program name, such as `odom0` of an ekf_node."""
+    row = program.row
+    if not row.inputs:
+        return []
+    inputs = []
+    parameters = workspace.parameters.given_to(program.package, program.node)
+    for name, given in parameters.values.items():
+        numbered = _INPUT.fullmatch(name)
+        if numbered is None or numbered[1] not in row.inputs or not isinstance(given.value, str):
+            continue
+        topic = program.node.topic(given.value)
+        if topic is not None:
+            inputs.append(_Input(name, topic, row.inputs[numbered[1]], given.location))
+    return inputs
+
+
+def _other_inputs(
+    workspace: Workspace, program: KnownProgram, published: _ByTopic
+) -> Iterator[Compared | Mismatch]:
+    """Yield the inputs that are published with another type, or not at all while another topic of
+    their type is.
+    """
+    inputs = _inputs(workspace, program)
+    topics = {each.topic for each in inputs}
+    for each in inputs:
+        yield Compared("wiring")
+        other = _other_type(published.get(each.topic, ()), each.type)
+        if other is not None:
+            message = (
+                f"{each.parameter} reads {each.topic} with {each.type}, but it is published with "
+                f"{other.type} ({other.location.file_and_line})"
+            )
+            yield warning(INPUT_TYPE, message, each.location, other.location)
+        elif each.topic not in published and not _may_be_published(workspace, each.topic):
+            meant = _only_unread(workspace, program.node, each.type, published, topics)
+            if meant is not None:
+                message = (
+                    f"{each.parameter} reads {each.topic}, which nothing publishes; did you mean "
+                    f"{meant.name} ({meant.location.file_and_line})?"
+                )
+                yield warning(INPUT_PUBLISHED, message, each.location, meant.location)
+
+
+def _only_unread(
+    workspace: Workspace, node: StartedNode, wanted: str, published: _ByTopic, read: set[str]
+) -> End | None:
+    """Return what others than a node publish with a type, and it does not read; None if that is
+    not one topic.
+    """
+    workspace.charge(len(published))
+    of_type: list[End] = []
+    for ends in published.values():
+        of_type += [end for end in ends if end.type == wanted]
+    topics = {end.name for end in of_type if end.location != node.location} - read
+    if len(topics) != 1:
+        return None
+    return next(end for end in of_type if end.name in topics)
+
+
+def _may_be_published(workspace: Workspace, topic: str) -> bool:
+    """Return whether something that is not read may publish a topic."""
+    for robot in workspace.robots.known:
+        if any(_CLASSIC in tag.get("filename", "") for tag in robot.root.iter("plugin")):
+            return True
+    # Programs of other packages know the type, also where the workspace has its package.
+    return may_be_opened(workspace, Sought("publisher", topic, None))
+
+
+def _remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:
+    """Yield the remappings of names that surely stand for one that a program has."""
+    names = [*row.subscriptions, *row.publishers, *row.names]
+    replaced = [rule[0].removeprefix("~/").strip("/") for rule in node.remaps or ()]
+    left = [name for name in names if name not in replaced]
+    plain = {name.replace("_", ""): name for name in left}
+    for written in replaced:
+        if written in names or ":" in written or written.startswith("__"):
+            continue
+        meant = plain.get(written.replace("_", "")) or near(written, left)
+        if meant is not None:
+            message = (
+                f"{node.executable} has no topic {quoted(written)}, so its remapping does nothing; "
+                f"did you mean {meant}?"
+            )
+            yield Mismatch(REMAPPED_TOPIC, message, node.location, is_certain=False)
+
+
+def _displays(workspace: Workspace, published: _ByTopic) -> Iterator[Mismatch]:
+    """Yield displays of RViz that read other messages than are published."""
+    for package in workspace.packages:
+        for path in package.rviz_files:
+            for display in package.rviz(path).displays:
+                is_default = display.package == _DEFAULT_DISPLAYS
+                wanted = display_types().get(display.kind) if is_default else None
+                topic = display.node.get("Topic", "Value")
+                if wanted is None or topic is None or not display.enabled:
+                    continue
+                other = _other_type(published.get(topic.text or "", ()), wanted)
+                if other is not None:
+                    message = (
+                        f"the display {quoted(display.name)} reads {wanted}, but {topic.text} is "
+                        f"published with {other.type} ({other.location.file_and_line})"
+                    )
+                    yield warning(DISPLAY_TYPE, message, topic.location, other.location)

@@ -1,0 +1,199 @@
+"""Topics, services and actions without another end, where a similar or fitting one is free."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from grader.base.names import closest
+from grader.base.source import Location
+from grader.ros.known.shared_names import shared_names
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
+from grader.ros.workspace.graph.endpoints import End
+from grader.ros.workspace.graph.graph import Graph, graph_of, grouped
+from grader.ros.workspace.graph.unread_ends import (
+    Sought,
+    is_all_read,
+    is_own_type,
+    may_be_opened,
+)
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.meeting_ends import SERVICES, TOPICS, Meeting
+from grader.ros.workspace.rules.names import (
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Use,
+    corrections,
+)
+from grader.ros.workspace.rules.rule_table import SERVICE_SERVED, TOPIC_HEARD, TOPIC_PUBLISHED
+
+
+class _Offer(NamedTuple):
+    """A topic that something publishes in a launch, by its name and its type."""
+
+    topic: str
+    type: str | None
+    location: Location
+    launch: int  # -1 for a row of a bridge that no launch file starts
+
+
+def missing_end_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the ends that nothing answers, where what they surely mean waits under another name."""
+    graph = graph_of(workspace)
+    subscriptions, publishers = TOPICS.ends(graph)
+    yield from _without_publisher(graph, subscriptions, publishers)
+    yield from _without_subscription(workspace, subscriptions, publishers)
+    for meeting in SERVICES:
+        yield from _without_server(graph, meeting)
+
+
+def _without_publisher(
+    graph: Graph, subscriptions: Sequence[End], publishers: Sequence[End]
+) -> Iterator[Fact]:
+    """Yield subscriptions to topics that nothing publishes, where a similar one is published and
+    not subscribed to.
+    """
+    workspace = graph.workspace
+    offers = [*_offers(workspace, publishers)]
+    offered = {offer.topic for offer in offers}
+    offered |= {end.name for end in graph.of_kind("publisher", sources=("program",))}
+    subscribed = {end.name for end in subscriptions}
+    unused = [offer for offer in offers if offer.topic not in subscribed]
+    yield Open("topic")
+    for offer in unused:
+        yield Definition("topic", offer.topic, offer.location)
+    by_type = grouped(unused, lambda offer: offer.type)
+    for end in subscriptions:
+        if end.name not in offered and end.source != "controller":
+            yield from _similar_topic(workspace, end, by_type.get(end.type, ()))
+
+
+def _offers(workspace: Workspace, publishers: Sequence[End]) -> Iterator[_Offer]:
+    """Yield what own code, controllers and bridges publish."""
+    for end in publishers:
+        yield _Offer(end.name, end.type, end.location, end.launch)
+    launches = {
+        launch for launch, node in workspace.launches.launched if node.package == BRIDGE
+    } or {-1}
+    for row in bridge_rows(workspace):
+        if row.is_published:
+            for launch in launches:
+                yield _Offer(f"/{row.ros}", row.ros_type, row.location, launch)
+
+
+def _similar_topic(workspace: Workspace, end: End, alike: Sequence[_Offer]) -> Iterator[Fact]:
+    """Yield the topic that a subscription surely means, of those of its type; else that it uses
+    its own, to which a similar name may be a correction.
+    """
+    workspace.charge(len(alike))
+    places = {offer.topic: offer.location for offer in alike if offer.launch == end.launch}
+    meant = closest(end.name, places)
+    is_one = len(places) == 1 or is_own_type(workspace, end.type)
+    if meant is None or not is_one or _may_be_published(workspace, end):
+        yield Use("topic", end.name, end.location, "create_subscription")
+    elif not any(end.node.topic(rule[1]) == meant for rule in end.node.remaps or ()):
+        # Else it is a remapping of another name, which is said of it.
+        yield _without_other(f"nothing publishes {end.name}", end, meant, places[meant])
+
+
+def _may_be_published(workspace: Workspace, end: End) -> bool:
+    """Return whether a topic may be published: by what is not read, or as names in files say."""
+    if may_be_opened(workspace, Sought("publisher", end.name, end.type)):
+        return True
+    if is_own_type(workspace, end.type):
+        return False
+    name, last = end.name.strip("/"), end.name.rpartition("/")[2]
+    if last in shared_names().topics or name.partition("/")[0] in workspace.installed.controllers:
+        return True
+    # A parameter, or a remapping of a plugin, may name what something publishes.
+    if any(name in tree.source.text for _, tree in workspace.installed.trees):
+        return True
+    for robot in workspace.robots.known:
+        if any(name in (tag.text or "") for tag in robot.root.iter("remapping", "ros_topic")):
+            return True
+    return False
+
+
+def _without_other(what: str, end: End, meant: str, at: Location) -> Mismatch:
+    """Return that an end has no other one, and the name that it surely means."""
+    message = f"{what}; did you mean {meant} ({at.file_and_line})?"
+    either = corrections(end.name, end.location, meant, at)
+    rule = TOPIC_PUBLISHED if end.kind == "subscription" else SERVICE_SERVED
+    return Mismatch(rule, message, end.location, at, corrections=either)
+
+
+def _without_subscription(
+    workspace: Workspace, subscriptions: Sequence[End], publishers: Sequence[End]
+) -> Iterator[Mismatch]:
+    """Yield publishers that nothing subscribes to, where a controller waits for such messages on
+    another topic.
+    """
+    of_code = [end for end in publishers if end.source == "code"]
+    subscribed = {end.name for end in subscriptions}
+    published = {end.name for end in of_code}
+    unheard = [end for end in of_code if end.name not in subscribed]
+    named: set[Location] = set()
+    for waiting in subscriptions:
+        if waiting.source != "controller" or waiting.name in published:
+            continue
+        workspace.charge(len(unheard))
+        fitting = [
+            end for end in unheard if (end.launch, end.type) == (waiting.launch, waiting.type)
+        ]
+        for publisher in fitting:
+            at, place = publisher.location, waiting.location
+            if at in named or _may_be_of_gazebo(workspace, publisher, waiting):
+                continue
+            is_certain = publisher.surely_meets(waiting) and is_all_read(workspace, waiting.launch)
+            is_same = _last_names(publisher, 1) == _last_names(waiting, 1)
+            if is_same or (is_certain and len(fitting) == 1):
+                named.add(at)
+                message = (
+                    f"nothing subscribes to {publisher.name}; did you mean {waiting.name} "
+                    f"({place.file_and_line})?"
+                )
+                yield Mismatch(TOPIC_HEARD, message, at, place, is_certain)
+
+
+def _fitting(waiting: End, others: Sequence[End]) -> list[End]:
+    """Return the ends with the type of another one, in the same launch."""
+    in_launch = [end for end in others if end.launch == waiting.launch]
+    return [end for end in in_launch if end.type == waiting.type]
+
+
+def _last_names(end: End, count: int) -> list[str]:
+    """Return the last parts of the name of a topic."""
+    return end.name.split("/")[-count:]
+
+
+def _may_be_of_gazebo(workspace: Workspace, publisher: End, waiting: End) -> bool:
+    """Return whether Gazebo may have the same controller in another namespace."""
+    is_same = _last_names(publisher, 2) == _last_names(waiting, 2)
+    return is_same and workspace.robots.has_controllers_in_gazebo
+
+
+def _without_server(graph: Graph, meeting: Meeting) -> Iterator[Mismatch]:
+    """Yield that nothing serves what a client calls, where a server of its type waits under one
+    other name.
+    """
+    workspace = graph.workspace
+    clients, servers = meeting.ends(graph)
+    called = {end.name for end in clients}
+    served = {end.name for end in servers}
+    uncalled = [end for end in servers if end.name not in called]
+    for client in clients:
+        if client.name in served or client.type is None:
+            continue
+        workspace.charge(1 + len(uncalled))
+        alike = [end for end in uncalled if (end.launch, end.type) == (client.launch, client.type)]
+        names = {end.name for end in alike}
+        if len(names) != 1:
+            continue
+        [meant] = names
+        is_meant = is_own_type(workspace, client.type) or closest(client.name, names) is not None
+        sought = Sought(meeting.offering, client.name, client.type)
+        if is_meant and not may_be_opened(workspace, sought):
+            what = f"nothing serves the {meeting.noun} {client.name}"
+            mismatch = _without_other(what, client, meant, alike[0].location)
+            is_certain = client.is_certain and alike[0].is_certain
+            yield mismatch._replace(is_certain=is_certain)

@@ -1,0 +1,254 @@
+"""Join the names that files define with those that they use: a name that is used has to be defined
+somewhere.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from fnmatch import fnmatchcase
+from typing import NamedTuple
+
+from grader.base.names import are_of_one_side, closest, near
+from grader.base.source import Location
+from grader.base.text import counted, quoted
+from grader.ros.workspace.rules.rule_table import DEFINED, FAMILIES, AnyFamily, DefinedKind, Rule
+
+_MAX_NEAR, _MAX_SIMILAR = 1000, 300  # known names that are compared in either way
+
+
+class Definition(NamedTuple):
+    """A name that a file defines. Those of one kind agree within one owner only, such as the
+    arguments of a file.
+    """
+
+    kind: DefinedKind
+    name: str
+    location: Location
+    owner: str = ""
+
+
+class Use(NamedTuple):
+    """A name that a file uses, and what the file calls it. Where it is `optional`, only a similar
+    name is wrong.
+    """
+
+    kind: DefinedKind
+    name: str
+    location: Location
+    said: str
+    owner: str = ""
+    optional: bool = False
+
+
+class Open(NamedTuple):
+    """That names of a kind may be defined by what is not in the workspace, or, for a reason, by
+    what is not evaluated.
+    """
+
+    kind: DefinedKind
+    owner: str = ""
+    reason: str = ""
+
+
+class Pattern(NamedTuple):
+    """That names of a kind may be defined that are not known; * stands for a part of them."""
+
+    kind: DefinedKind
+    pattern: str
+
+
+class Correction(NamedTuple):
+    """Another name in a file: the old one is at a place, behind it in the same element, or the key
+    before it.
+    """
+
+    location: Location
+    old: str
+    new: str
+
+
+class Mismatch(NamedTuple):
+    """Something that does not agree. It is a warning, and fails no criterion, unless it certainly
+    fails at run time.
+    """
+
+    rule: Rule
+    message: str
+    location: Location
+    related: Location | None = None  # of what was meant
+    is_certain: bool = True
+    corrections: tuple[
+        Correction, ...
+    ] = ()  # with each of which it agrees: first of the use, then of the definition
+
+    @property
+    def family(self) -> AnyFamily:
+        """The family of names_agree to which the rule belongs."""
+        return self.rule.family
+
+
+def warning(rule: Rule, message: str, at: Location, related: Location | None = None) -> Mismatch:
+    """Return something that does not agree, and may be meant so."""
+    return Mismatch(rule, message, at, related, is_certain=False)
+
+
+class Compared(NamedTuple):
+    """That something of a family is there to be compared; of a file its path below the prefix."""
+
+    family: AnyFamily
+    name: str = ""
+
+
+class Undecided(NamedTuple):
+    """That the names of a family are not compared, and why."""
+
+    family: AnyFamily
+    reason: str
+
+
+class Counted(NamedTuple):
+    """How many names of a family have a counterpart with which they are compared, and why not all
+    names are known.
+    """
+
+    family: AnyFamily
+    compared: int
+    total: int
+    reason: str = ""  # empty where all names are known
+
+    @property
+    def words(self) -> str:
+        """Return the count, where some names are not known; else an empty text."""
+        if not self.reason:
+            return ""
+        return f"{self.compared} of {counted(self.total, 'name')} compared: {self.reason}"
+
+
+Fact = Definition | Use | Open | Pattern | Mismatch | Compared | Undecided | Counted
+
+
+class Agreement(NamedTuple):
+    """What does not agree in a workspace, and for each family why something is not known."""
+
+    mismatches: tuple[Mismatch, ...]
+    undecided: Mapping[AnyFamily, str]
+    families: frozenset[AnyFamily]  # of which something is compared
+    files: frozenset[str]  # the paths below the prefix at which files are looked for
+    counts: Mapping[AnyFamily, Counted]
+    unused: tuple[Location, ...] = ()  # the files that no other one names
+
+    def holds(self, family: AnyFamily) -> bool:
+        """Return whether something of a family is compared, and all of it certainly agrees."""
+        is_wrong = any(it.family == family and it.is_certain for it in self.mismatches)
+        return family in self.families and family not in self.undecided and not is_wrong
+
+
+def uncompared(facts: Iterable[Fact], reason: str) -> Agreement:
+    """Return the mismatches among facts that are not all known, and for each family why nothing
+    else is compared.
+    """
+    found = [fact for fact in facts if isinstance(fact, Mismatch)]
+    families = frozenset(fact.family for fact in found)
+    return Agreement(_in_order(found), dict.fromkeys(FAMILIES, reason), families, frozenset(), {})
+
+
+def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: None) -> Agreement:
+    """Return which of the names that are used are not defined, in the order of their places. The
+    work of comparing names is charged.
+    """
+    every = [*facts]
+    known: dict[tuple[DefinedKind, str], dict[str, Location]] = {}
+    for fact in every:
+        if isinstance(fact, Definition):
+            known.setdefault((fact.kind, fact.owner), {}).setdefault(fact.name, fact.location)
+    opened: dict[tuple[DefinedKind, str], str] = {}
+    for fact in every:
+        if isinstance(fact, Open):
+            opened[fact.kind, fact.owner] = opened.get((fact.kind, fact.owner)) or fact.reason
+    patterns = [fact for fact in every if isinstance(fact, Pattern)]
+    found = [fact for fact in every if isinstance(fact, Mismatch)]
+    counts = {fact.family: fact for fact in every if isinstance(fact, Counted)}
+    undecided = _undecided(every, counts.values())
+    compared: set[AnyFamily] = set()
+    for use in [fact for fact in every if isinstance(fact, Use)]:
+        key = use.kind, use.owner
+        is_defined = use.name in known.get(key, {})
+        if is_defined or not (use.optional or key in opened):
+            compared.add(DEFINED[use.kind].family)
+        charge(1 + len(patterns))
+        if is_defined or _may_be_defined(use, patterns):
+            continue
+        charge(cost_of_guess(len(known.get(key, ()))))
+        mismatch = _mismatch(use, known.get(key, {}), is_open=key in opened)
+        if mismatch is not None:
+            found.append(mismatch)
+        if opened.get(key):
+            undecided.setdefault(DEFINED[use.kind].family, opened[key])
+    compared |= {fact.family for fact in every if isinstance(fact, Compared | Mismatch)}
+    files = frozenset(fact.name for fact in every if isinstance(fact, Compared) and fact.name)
+    return Agreement(_in_order(found), undecided, frozenset(compared), files, counts)
+
+
+def _in_order(found: Iterable[Mismatch]) -> tuple[Mismatch, ...]:
+    """Return mismatches, each once, in the order of their places."""
+    return tuple(
+        sorted(
+            dict.fromkeys(found),
+            key=lambda it: (it.location.path, it.location.line, it.location.column),
+        )
+    )
+
+
+def _may_be_defined(use: Use, patterns: Sequence[Pattern]) -> bool:
+    """Return whether a name is computed, or one that may be defined."""
+    possible = (it.pattern for it in patterns if it.kind == use.kind)
+    return "$" in use.name or any(fnmatchcase(use.name, pattern) for pattern in possible)
+
+
+def cost_of_guess(known: int) -> int:
+    """Return the parts of comparing a name with as many known ones; the most similar text is
+    searched among the first of them.
+    """
+    return 3 * min(known, _MAX_NEAR) + 20 * min(known, _MAX_SIMILAR)
+
+
+def _undecided(facts: Sequence[Fact], counts: Iterable[Counted]) -> dict[AnyFamily, str]:
+    """Return the families whose names are not compared, and why: the first reason of each."""
+    undecided: dict[AnyFamily, str] = {
+        fact.family: fact.reason for fact in reversed(facts) if isinstance(fact, Undecided)
+    }
+    for count in counts:
+        if count.reason and not count.compared:
+            undecided.setdefault(count.family, count.words)
+    return undecided
+
+
+def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mismatch | None:
+    """Return what is wrong with a name that is not defined, as far as it is known what is."""
+    meant = near(use.name, known, "link" if use.kind == "frame" else use.kind)
+    if is_open and meant is None:
+        return None
+    meant = meant or closest(use.name, known, is_clear=True)
+    is_certain = not is_open and (meant is not None or not use.optional)
+    if use.optional and meant is None:
+        return None
+    if meant is not None:
+        guess = f"; did you mean {quoted(meant)} ({known[meant].file_and_line})?"
+    else:
+        guess = ""
+    message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{guess}"
+    related = known[meant] if meant is not None else None
+    either = corrections(use.name, use.location, meant, related)
+    return Mismatch(DEFINED[use.kind], message, use.location, related, is_certain, either)
+
+
+def corrections(
+    name: str, at: Location, meant: str | None, defined: Location | None = None
+) -> tuple[Correction, ...]:
+    """Return that a name becomes the one that is meant, or the reverse; none for names of two sides
+    or numbers.
+    """
+    if meant is None or not (are_of_one_side(name, meant) or near(name, [meant])):
+        return ()
+    return (
+        Correction(at, name, meant),
+        *([Correction(defined, meant, name)] if defined is not None else []),
+    )

@@ -1,0 +1,472 @@
+"""Parameters: whether parameter files have some for the node that gets them, and whether own
+nodes declare them.
+"""
+
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from fnmatch import fnmatchcase
+from itertools import chain
+
+from grader.base.names import near
+from grader.base.source import Location
+from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, first_alias
+from grader.ros.config.yaml_values import (
+    PARAMETERS,
+    is_misspelt_key,
+    is_parameters,
+    keys_of_sections,
+    sections_in,
+    values_in,
+)
+from grader.ros.known.package_rows import package_row, plugin_classes
+from grader.ros.known.parameter_rows import row_for
+from grader.ros.known.releases import RELEASES, Release, releases_with
+from grader.ros.launch.launch_model import ParameterValue, StartedNode
+from grader.ros.nodes.node_facts import NodeFacts
+from grader.ros.package.mesh_content import LFS_POINTER
+from grader.ros.package.package import Package
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.bridges import bridge_files
+from grader.ros.workspace.rules.names import (
+    Compared,
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Undecided,
+    Use,
+    corrections,
+    cost_of_guess,
+)
+from grader.ros.workspace.rules.parameter_rules import type_in_words
+from grader.ros.workspace.rules.renamed_nodes import key_of_program_name
+from grader.ros.workspace.rules.rule_table import (
+    FILTER_SIZE,
+    PARAMETER_FILE,
+    PARAMETER_KEY,
+    PARAMETER_MISSING,
+    PARAMETER_NODE,
+    PARAMETER_TYPE,
+    PLUGIN_NAME,
+    ROBOT_TEXT,
+)
+
+_OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
+_OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
+_INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
+_ROBOT = "robot_description"
+_WILDCARD = re.compile(r"[*?\[]")
+_SEPARATORS = re.compile(r"[:/]+")
+# Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
+_LISTS = ("plugins", "navigators", "observation_sources", "filters", "controller_names")
+_NOT_LISTS = ("plugin_lib_names",)
+
+
+def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what parameter files have for nodes, what own nodes declare, and lists of plugins."""
+    files_of_bridges = bridge_files(workspace)
+    for path, tree in workspace.installed.yaml.items():
+        if isinstance(tree, YamlFault) and path not in files_of_bridges:
+            is_certain = path in workspace.parameters.files
+            is_of_opencv = not is_certain and workspace.folder.begins_with(path, _OF_OPENCV)
+            if is_of_opencv or workspace.folder.begins_with(path, LFS_POINTER):
+                continue
+            yield Mismatch(
+                PARAMETER_FILE, f"this is not YAML: {tree}", tree.location, is_certain=is_certain
+            )
+    for path, nodes in workspace.parameters.files.items():
+        yield Compared("parameters")
+        yield from _file_given(workspace, path, nodes)
+    yield from _controllers_given(workspace)
+    for package, node in workspace.launches.nodes:
+        own_node = workspace.code.own_node(node)
+        if own_node is not None:
+            yield from _declared(workspace, package, node, own_node)
+    yield from _without_time(workspace)
+    for path in workspace.parameters.files:
+        yield from _filters(workspace.installed.yaml.get(path))
+    for package, node in workspace.launches.nodes:
+        yield from _robot_as_text(workspace, package, node)
+    yield from _plugins(workspace)
+
+
+def _plugins(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what lists of plugins name, and plugins that pluginlib does not know as they are
+    written.
+    """
+    sections_by_file = {
+        path: frozenset(_sections(tree))
+        for path, tree in workspace.installed.trees
+        if is_parameters(tree)
+    }
+    for path, tree in workspace.installed.trees:
+        if path not in sections_by_file and "controller_names" not in tree.source.text:
+            continue
+        elsewhere: set[tuple[str, str]] = set()
+        # A file that may be given along with others may leave sections to them.
+        if not _is_given_alone(workspace, path):
+            for other, sections in sections_by_file.items():
+                if other != path:
+                    elsewhere |= sections
+        yield from _plugin_lists(tree, elsewhere)
+        yield from _plugin_names(tree, workspace.releases)
+
+
+def _sections(node: YamlNode) -> Iterator[tuple[str, str]]:
+    """Yield the names of the mappings in a file, each with the keys above it."""
+    waiting, visits = [("", node)], Visits()
+    while waiting:
+        above, mapping = waiting.pop()
+        if not isinstance(mapping.value, dict) or not visits.enters(mapping):
+            continue
+        for key, inner in mapping.value.items():
+            if isinstance(inner.value, dict):
+                yield above, key
+                waiting.append((f"{above}/{key.strip('/')}", inner))
+
+
+def _is_given_alone(workspace: Workspace, path: str) -> bool:
+    """Return whether a node gets no other file, and none that is not known, beside this one."""
+    for node in workspace.parameters.files.get(path, ()):
+        files = [given for given in node.parameters or () if given.path or given.unknown]
+        if len(files) == 1:
+            return True
+    return False
+
+
+def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -> Iterator[Fact]:
+    """Yield that a parameter file has nothing for a node that is given it, but for a node that
+    is not.
+    """
+    tree = workspace.installed.yaml.get(path)
+    if not isinstance(tree, YamlNode):
+        return
+    # A container gives the file to the components that are loaded into it.
+    if any(package_row(node.package).holds_nodes for node in nodes):
+        return
+    yield from _misplaced(tree)
+    sections = {keys[-1].rpartition("/")[2]: keys for keys, _ in sections_in(tree) if keys}
+    names = [workspace.code.name_of(node) for node in nodes]
+    known_names = [name for name in names if name is not None]
+    if len(known_names) < len(nodes):
+        return  # any section may be theirs
+    unread = _unread_sections(workspace, sections, known_names)
+    patterns = [key for key in sections if _WILDCARD.search(key)]
+    workspace.charge(len(known_names) * (1 + len(patterns)))
+    lacking = set()
+    for name in known_names:
+        if name not in sections and not any(fnmatchcase(name, key) for key in patterns):
+            lacking.add(name)
+    if not lacking or not unread:
+        return
+    is_passed = path in workspace.installed.passed_files
+    keys = keys_of_sections(tree)
+    for node, name in zip(nodes, known_names, strict=True):
+        workspace.charge(len(keys))
+        if key_of_program_name(workspace, node, keys) is not None:
+            continue  # that is said for the name of its program
+        workspace.charge(cost_of_guess(len(unread)))
+        meant = near(name, unread)
+        is_known = (
+            workspace.package_of(node) is not None or "frames" in package_row(node.package).without
+        )
+        # Without a similar name, the sections may be those of nodes that are not in the workspace.
+        if name not in lacking or (meant is None and (is_passed or not is_known)):
+            continue
+        key = meant or unread[0]
+        at = tree.key_location(*sections[key])
+        message = (
+            f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
+        )
+        is_only_pair = len(unread) == len(lacking) == 1
+        renamed = name if meant is not None or is_only_pair else None
+        either = corrections(key, at, renamed, node.location)
+        yield Mismatch(PARAMETER_NODE, message, at, node.location, corrections=either)
+
+
+def _unread_sections(
+    workspace: Workspace, sections: Iterable[str], names: Sequence[str]
+) -> list[str]:
+    """Return the keys of sections that neither the nodes of these names nor their children read."""
+    children: set[str] = set()
+    for name in set(names):
+        children |= workspace.code.children_of(name)
+    unread, known_names = [], set(names)
+    for key in sections:
+        is_read = key in children or key in known_names
+        if not is_read and _WILDCARD.search(key):
+            workspace.charge(len(known_names))
+            is_read = any(fnmatchcase(name, key) for name in known_names)
+        if not is_read:
+            unread.append(key)
+    return unread
+
+
+def _controllers_given(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what is misplaced in files that only controllers are given."""
+    for path in sorted(
+        workspace.parameters.controller_files.difference(workspace.parameters.files)
+    ):
+        tree = workspace.installed.yaml.get(path)
+        if isinstance(tree, YamlNode):
+            yield Compared("parameters")
+            yield from _misplaced(tree)
+
+
+def _misplaced(tree: YamlNode) -> Iterator[Fact]:
+    """Yield aliases, values that are not below ros__parameters, and ros__parameters inside of
+    ros__parameters.
+    """
+    alias = first_alias(tree.source)
+    if alias is not None:
+        name, at = alias
+        yield Mismatch(
+            PARAMETER_FILE,
+            f"ROS 2 reads no aliases in parameter files: write the value in place of *{name}",
+            at,
+        )
+    waiting: list[tuple[str, YamlNode, bool]] = [("", tree, False)]
+    visits = {True: Visits(), False: Visits()}  # by whether it is below a key ros__parameters
+    while waiting:
+        name, node, is_below = waiting.pop()
+        if not visits[is_below].enters(node):
+            continue
+        if isinstance(node.value, dict) and node.value:
+            for key, inner in node.value.items():
+                if key == PARAMETERS and is_below:
+                    message = f"{name}: ros__parameters is inside of other ros__parameters"
+                    yield Mismatch(PARAMETER_KEY, message, node.key_location(key))
+                elif not is_below and is_misspelt_key(key, inner):
+                    message = (
+                        f"{name}: rcl does not know the key {key!r}; did you mean {PARAMETERS!r}?"
+                    )
+                    at = node.key_location(key)
+                    yield Mismatch(
+                        PARAMETER_KEY, message, at, corrections=corrections(key, at, PARAMETERS)
+                    )
+                else:
+                    waiting.append((key, inner, is_below or key == PARAMETERS))
+        elif not is_below and name:
+            message = f"{name} is not below a key ros__parameters, so rcl cannot read the file"
+            yield Mismatch(PARAMETER_KEY, message, node.location)
+
+
+def _declared(
+    workspace: Workspace, package: Package, node: StartedNode, own_node: NodeFacts
+) -> Iterator[Fact]:
+    """Yield the parameters that a node of the workspace declares, reads and is given."""
+    owner = f"{node.package}/{node.executable}"
+    for parameter in own_node.parameters:
+        if parameter.name is None:
+            yield Open("parameter", owner)
+        elif parameter.is_declared:
+            yield Definition("parameter", parameter.name, parameter.location, owner)
+    for name in _OF_EVERY_NODE:
+        yield Definition("parameter", name, own_node.location, owner)
+    package_of_node = workspace.package_of(node)
+    if package_of_node is not None:
+        nodes = workspace.code.by_package[package_of_node.name]
+        if own_node.doubts or nodes.has_loose_declarations:
+            yield Open("parameter", owner)
+    for parameter in own_node.parameters:
+        if parameter.name is not None and not parameter.is_declared:
+            is_optional = not parameter.is_needed
+            at = parameter.location
+            yield Use("parameter", parameter.name, at, "get_parameter", owner, is_optional)
+    yield from _given(workspace, package, node, own_node)
+
+
+def _given(
+    workspace: Workspace, package: Package, node: StartedNode, own_node: NodeFacts
+) -> Iterator[Fact]:
+    """Yield the parameters that a node of the workspace is given."""
+    owner = f"{node.package}/{node.executable}"
+    if workspace.code.name_of(node) is None and any(it.path for it in node.parameters or ()):
+        yield Undecided("parameters", f"the name of {node.executable} is computed")
+        return
+    given = workspace.parameters.read_given(package, node, workspace.code.name_of(node) or "")
+    if given.unknown:
+        yield Undecided("parameters", given.unknown)
+    # What a file gives to every node, or to another of the same name, need not be declared by this.
+    shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
+    for name, value in given.values.items():
+        if value.location not in shared and not name.startswith("qos_overrides."):
+            said = f"the node {workspace.code.name_of(node) or node.executable!r}"
+            yield Use("parameter", name, value.named_at or value.location, said, owner)
+    yield from _types_given(own_node, given.values)
+    if not given.unknown and node.arguments == () and workspace.code.name_of(node) is not None:
+        yield from _not_given(workspace, node, own_node, given.values)
+
+
+def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Location]:
+    """Yield the places of parameters that a node of another program, or a controller, of the same
+    name gets and may declare.
+    """
+    for given in workspace.parameters.owners.get(workspace.code.name_of(node) or "", ()):
+        if (given.node.package, given.node.executable) == (node.package, node.executable):
+            continue
+        workspace.charge(len(given.values))
+        other = workspace.code.own_node(given.node)
+        is_known = other is not None and not other.doubts
+        declared = {it.name for it in other.parameters} if other is not None else set()
+        for name, value in given.values.items():
+            may_be_declared = not is_known or not declared.isdisjoint({name, None})
+            if may_be_declared and value.location.path in workspace.installed.yaml:
+                yield value.location
+
+
+def _not_given(
+    workspace: Workspace,
+    node: StartedNode,
+    own_node: NodeFacts,
+    values: Mapping[str, ParameterValue],
+) -> Iterator[Mismatch]:
+    """Yield the parameters that a node declares without a value and reads, and is not given: rclpy
+    and rclcpp raise ParameterUninitializedException.
+    """
+    read = {it.name for it in own_node.parameters if not it.is_declared and it.is_needed}
+    for parameter in own_node.parameters:
+        name = parameter.name
+        if parameter.is_unset and name in read and name not in values:
+            named = workspace.code.name_of(node) or node.executable
+            message = (
+                f"the node {named!r} stops without a value of the parameter {name!r}, which it "
+                f"declares without one ({parameter.location.file_and_line})"
+            )
+            is_certain = node.when is True and not own_node.doubts
+            yield Mismatch(
+                PARAMETER_MISSING, message, node.location, parameter.location, is_certain
+            )
+
+
+def _types_given(node: NodeFacts, values: Mapping[str, ParameterValue]) -> Iterator[Mismatch]:
+    """Yield the values of other types than a node declares."""
+    for parameter in node.parameters:
+        name = parameter.name or ""
+        if parameter.is_declared and parameter.is_plain and name in values:
+            yield from _other_type(
+                name,
+                values[name],
+                type_in_words(parameter.default),
+                parameter.location,
+                is_certain=not node.doubts,
+            )
+
+
+def _without_time(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that `use_sim_time`, which every node declares, is given no boolean."""
+    for given in chain.from_iterable(workspace.parameters.owners.values()):
+        value = given.values.get("use_sim_time")
+        if value is not None:
+            yield from _other_type("use_sim_time", value, type_in_words(True), at=None)
+
+
+def _other_type(
+    name: str,
+    given: ParameterValue,
+    declared: str,
+    at: Location | None,
+    *,
+    is_certain: bool = True,
+    reader: str = "its node",
+) -> Iterator[Mismatch]:
+    """Yield that a parameter is given a value of another type than the node declares."""
+    actual = type_in_words(given.value)
+    if not declared or not actual or declared == actual:
+        return
+    there = f" ({at.file_and_line})" if at is not None else ""
+    message = (
+        f"the parameter {name!r} is given {actual}; {reader} declares {declared}{there}, and stops"
+    )
+    yield Mismatch(PARAMETER_TYPE, message, given.location, at, is_certain)
+
+
+def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
+    """Yield which values of an input a filter of robot_localization takes, where there are not 15
+    of them.
+    """
+    for _, section in sections_in(tree) if isinstance(tree, YamlNode) else ():
+        for value in values_in(section):
+            count = len(value.node.items)
+            if value.keys and _INPUT.fullmatch(value.keys[-1]) and count not in (0, 15):
+                message = (
+                    f"{value.keys[-1]} has {count} values; it needs 15: x y z, angles, their "
+                    "rates and accelerations"
+                )
+                yield Mismatch(FILTER_SIZE, message, value.node.location)
+
+
+def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
+    """Yield that a program that needs the text of a robot gets a path in its place."""
+    row = row_for(f"{node.package}/{node.executable}", _ROBOT)
+    if row is None or not row.is_required or node.arguments != ():
+        return
+    robot = workspace.parameters.given_to(package, node).values.get(_ROBOT)
+    if robot is not None and isinstance(robot.value, str):
+        text = robot.value.strip()
+        if text and not text.startswith("<"):
+            advice = "give it the content of the file, not the path"
+            message = f"robot_description is no XML, so {node.executable} stops: {advice}"
+            yield Mismatch(ROBOT_TEXT, message, robot.location)
+
+
+def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Iterator[Fact]:
+    """Yield the entries of lists of plugins that have no section beside them, and none at the same
+    place elsewhere.
+    """
+    waiting, visits = [("", tree)], Visits()
+    while waiting:
+        above, node = waiting.pop()
+        if not isinstance(node.value, dict) or not visits.enters(node):
+            continue
+        sections: dict[str, Location] = {}
+        for key, inner in node.value.items():
+            waiting.append((f"{above}/{key.strip('/')}", inner))
+            if isinstance(inner.value, dict):
+                sections[key] = inner.location
+        for key, inner in node.value.items():
+            is_list = key in _LISTS or key.endswith("_plugins")
+            if not sections or not is_list or key in _NOT_LISTS:
+                continue
+            owner = f"{tree.source.path}:{inner.location.line}"
+            for name, at in sections.items():
+                yield Definition("plugin section", name, at, owner)
+            for name, at in _listed(key, inner):
+                if (above, name) not in elsewhere:
+                    yield Use("plugin section", name, at, key, owner)
+
+
+def _listed(key: str, node: YamlNode) -> Iterator[tuple[str, Location]]:
+    """Yield the names of sections in a list of plugins; a name with a separator is a class."""
+    texts = [(item.text or "", item.location) for item in node.items]
+    if node.text is not None and key == "observation_sources":
+        texts = [(word, node.location) for word in node.text.split()]
+    for text, at in texts:
+        if text and "/" not in text and "::" not in text:
+            yield text, at
+
+
+def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Iterator[Fact]:
+    """Yield plugins that are written with other separators than pluginlib knows them by, in every
+    release that the file may be for.
+    """
+    values = [value for value in values_in(tree) if value.keys[-1:] == ("plugin",)]
+    if not values:
+        return
+    names = {_SEPARATORS.sub("::", name): name for name in plugin_classes()}
+    first = 0  # of the releases that the file may be for: it has a name that none before has
+    for value in values:
+        having = releases_with("plugin", value.node.text or "")
+        if any(release in having for release in releases or having):
+            first = max(first, RELEASES.index(having[0]))
+    for value in values:
+        text = value.node.text or ""
+        meant = names.get(_SEPARATORS.sub("::", text))
+        if meant is None or meant == text:
+            continue
+        if any(release in RELEASES[first:] for release in releases_with("plugin", text)):
+            yield Compared("parameters")  # of another release, at most
+            continue
+        message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
+        at = value.node.location
+        yield Mismatch(PLUGIN_NAME, message, at, corrections=corrections(text, at, meant))

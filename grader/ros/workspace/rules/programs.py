@@ -1,0 +1,188 @@
+"""Programs and nodes: what launch files start, entry points, and the nodes that a lifecycle
+manager looks after.
+"""
+
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+from typing import NamedTuple
+
+from grader.base.errors import InputError
+from grader.base.names import closest, near
+from grader.base.source import Location
+from grader.ros.known.package_rows import package_row
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.node_parameters import parameters_of
+from grader.ros.package.entry_points import entry_fault, entry_points, module_path
+from grader.ros.package.package import CMAKE, SETUP, Package
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import (
+    Compared,
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Undecided,
+    Use,
+    corrections,
+)
+from grader.ros.workspace.rules.rule_table import (
+    ENTRY_POINT,
+    PROGRAM_EXISTS,
+    PROGRAM_RUNS,
+)
+
+_MAX_FIRST_LINE = 100  # bytes
+_OF_MISSING = 5_000  # parts: similar names are searched among all programs
+
+
+def program_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the programs that launch files start and no package has, and nodes that nothing
+    starts.
+    """
+    for package in workspace.packages:
+        yield from _entry_points(workspace, package)
+    for package, node in workspace.launches.nodes:
+        if not workspace.folder.means_one(package, node.package):
+            yield Undecided("programs", f"several packages are named {node.package!r}")
+            continue
+        owner = package.find(node.package)
+        if owner is not None:
+            yield from _own_program(workspace, owner, node)
+            continue
+        row = package_row(node.package)
+        programs = row.programs if row.is_compared else None
+        if programs is None:
+            continue
+        yield Compared("programs")
+        if node.executable not in programs:
+            workspace.charge(_OF_MISSING)
+            missing = _missing_program(node.package, node.executable, programs)
+            either = corrections(node.executable, node.location, missing.meant)
+            yield Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+    yield from _lifecycle(workspace)
+
+
+def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Iterator[Fact]:
+    """Yield that a package of the workspace does not have the program of a node, or that Linux
+    cannot execute it.
+    """
+    yield Compared("programs")
+    if owner.installation is not None and owner.installation.unread:
+        yield Undecided("programs", owner.installation.unread)
+    if owner.has_program(node.package, node.executable) is False:
+        workspace.charge(_OF_MISSING + len(owner.tree.files))
+        missing = _why_no_program(owner, node.executable)
+        start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
+        either = corrections(node.executable, node.location, missing.meant, start)
+        yield Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+    else:
+        yield from _not_executed(owner, node)
+
+
+def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
+    """Yield the entry points of a package that name no function."""
+    for entry in entry_points(package):
+        yield Compared("programs")
+        path = module_path(package, entry.module)
+        size = package.tree.files[path].size if path is not None else 0
+        workspace.charge(len(package.tree.files) + size)  # the functions of the module
+        fault = entry_fault(package, entry.name)
+        if fault is not None:
+            message = f"the entry point of {entry.name!r} names no function: {fault.message}"
+            either = corrections(fault.written, fault.location, fault.meant)
+            yield Mismatch(ENTRY_POINT, message, fault.location, corrections=either)
+
+
+def _not_executed(package: Package, node: StartedNode) -> Iterator[Mismatch]:
+    """Yield that Linux cannot execute a script: its first line has to name the interpreter, and end
+    without CR.
+    """
+    target = f"lib/{package.name}/{node.executable}"
+    source = package.installed.get(target, "")
+    if source.endswith(".py"):
+        with suppress(InputError):
+            start = package.tree.files[source].read(_MAX_FIRST_LINE, first=True)
+            line = start.partition(b"\n")[0]
+            if not line.startswith(b"#!"):
+                wrong = "is not #!/usr/bin/env python3"
+            elif line.endswith(b"\r"):
+                wrong = "ends as on Windows, with CR LF"
+            else:
+                return
+            message = f"Linux cannot execute {node.executable}: its first line {wrong}"
+            at = Location(package.path(source), 1, 1)
+            yield Mismatch(PROGRAM_RUNS, message, at, node.location)
+
+
+class _MissingProgram(NamedTuple):
+    """Why a package has no program of a name, and the name of the program that may be meant."""
+
+    message: str
+    meant: str | None = None
+
+
+def _why_no_program(package: Package, name: str) -> _MissingProgram:
+    """Return that ros2 run does not find a program, and where it is installed, or which there
+    are.
+    """
+    setup, home = package.installation, f"lib/{package.name}"
+    entries = [entry.name for entry in entry_points(package)]
+    if name in entries:
+        folder = setup.scripts_folder if setup is not None else ""
+        return _MissingProgram(
+            f"a build installs {name!r} in {folder}, not in {home}: see install_scripts of "
+            "setup.cfg"
+        )
+    installed = []
+    if setup is not None:
+        installed = [*setup.programs, *(copy.target for copy in setup.copies)]
+    for path in installed:
+        if path.rpartition("/")[2] != name:
+            continue
+        if path == f"{home}/{name}":
+            return _MissingProgram(
+                f"a build installs {name!r} without the right to execute it: write "
+                "install(PROGRAMS ...)"
+            )
+        return _MissingProgram(f"a build installs {name!r} as {path}, but ros2 run looks in {home}")
+    programs = [path for path in installed if path.startswith(f"{home}/")]
+    names = {*entries, *(path.rpartition("/")[2] for path in programs)}
+    return _missing_program(package.name, name, sorted(names))
+
+
+def _missing_program(package: str, name: str, programs: Sequence[str]) -> _MissingProgram:
+    """Return that a package has only programs of other names, and the one that may be meant."""
+    guess = closest(name, programs) or near(name, programs, "node")
+    there = f"did you mean {guess!r}?" if guess else f"it has {', '.join(programs) or 'none'}"
+    return _MissingProgram(f"the package {package!r} has no program {name!r}; {there}", guess)
+
+
+def _lifecycle(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the nodes that lifecycle managers are told of, and all that are started."""
+    managers = [
+        pair for pair in workspace.launches.nodes if pair[1].executable == "lifecycle_manager"
+    ]
+    if managers:
+        yield from _started(workspace)
+    for package, manager in managers:
+        given = parameters_of(manager, package.open_installed, "lifecycle_manager")
+        workspace.charge(len(given.values))
+        names = given.values.get("node_names")
+        if given.unknown and names is None:
+            yield Undecided("programs", given.unknown)
+        if names is not None and isinstance(names.value, list):
+            for name in names.value:
+                yield Use("node", str(name).rpartition("/")[2], names.location, "node_names")
+
+
+def _started(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the nodes that launch files start, and that there may be more."""
+    for _, _, launch in workspace.launches.files:
+        if launch.more:
+            yield Open("node", reason=launch.more)
+    for _, node in workspace.launches.nodes:
+        name = workspace.code.name_of(node)
+        if name is not None:
+            yield Definition("node", name, node.location)
+        elif "lifecycle" not in package_row(node.package).without:
+            yield Open("node")

@@ -1,0 +1,162 @@
+"""Read a workspace: what its files define and use, and what does not agree."""
+
+from collections.abc import Collection, Iterator
+from functools import lru_cache
+from itertools import chain
+from typing import NamedTuple
+
+from grader.base.errors import NotDecided
+from grader.base.source import Location
+from grader.ros.package.package import Package
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.arguments import argument_facts
+from grader.ros.workspace.rules.bridges import bridge_facts
+from grader.ros.workspace.rules.code import code_facts
+from grader.ros.workspace.rules.companions import companion_facts
+from grader.ros.workspace.rules.component_names import component_facts
+from grader.ros.workspace.rules.controllers import controller_facts
+from grader.ros.workspace.rules.dependencies import dependency_facts
+from grader.ros.workspace.rules.files import file_facts
+from grader.ros.workspace.rules.footprint_values import footprint_facts
+from grader.ros.workspace.rules.frames import frame_facts
+from grader.ros.workspace.rules.gains import gain_facts
+from grader.ros.workspace.rules.gazebo import gazebo_facts
+from grader.ros.workspace.rules.interfaces import interface_facts
+from grader.ros.workspace.rules.known_ends import known_end_facts
+from grader.ros.workspace.rules.known_parameters import known_parameter_facts
+from grader.ros.workspace.rules.limit_values import limit_facts
+from grader.ros.workspace.rules.looked_up_transforms import lookup_facts
+from grader.ros.workspace.rules.meeting_ends import meeting_facts
+from grader.ros.workspace.rules.missing_ends import missing_end_facts
+from grader.ros.workspace.rules.moveit import moveit_facts
+from grader.ros.workspace.rules.names import (
+    Agreement,
+    Definition,
+    Fact,
+    Mismatch,
+    Use,
+    agreement,
+    uncompared,
+)
+from grader.ros.workspace.rules.namespaces import namespace_facts
+from grader.ros.workspace.rules.one_machine import machine_facts
+from grader.ros.workspace.rules.parameters import parameter_facts
+from grader.ros.workspace.rules.programs import program_facts
+from grader.ros.workspace.rules.published_transforms import transform_facts
+from grader.ros.workspace.rules.rate_values import rate_facts
+from grader.ros.workspace.rules.received_messages import received_message_facts
+from grader.ros.workspace.rules.remapped_names import remapping_facts
+from grader.ros.workspace.rules.renamed_nodes import renamed_node_facts
+from grader.ros.workspace.rules.rule_table import DEFINED, AnyFamily
+from grader.ros.workspace.rules.spawners import spawner_facts
+from grader.ros.workspace.rules.srdf import srdf_facts
+from grader.ros.workspace.rules.topic_wiring import topic_wiring_facts
+from grader.ros.workspace.rules.unused import unused_files
+from grader.ros.workspace.rules.wheel_values import wheel_value_facts
+
+_READERS = (
+    file_facts,
+    frame_facts,
+    controller_facts,
+    spawner_facts,
+    parameter_facts,
+    known_parameter_facts,
+    argument_facts,
+    program_facts,
+    component_facts,
+    meeting_facts,
+    missing_end_facts,
+    remapping_facts,
+    gazebo_facts,
+    bridge_facts,
+    srdf_facts,
+    moveit_facts,
+    dependency_facts,
+    interface_facts,
+    code_facts,
+    wheel_value_facts,
+    limit_facts,
+    rate_facts,
+    footprint_facts,
+    transform_facts,
+    lookup_facts,
+    companion_facts,
+    namespace_facts,
+    renamed_node_facts,
+    machine_facts,
+    topic_wiring_facts,
+    received_message_facts,
+    gain_facts,
+    known_end_facts,
+)
+
+
+# The parts of a fact, and of a mismatch, for which similar names are searched.
+_OF_FACT, _OF_MISMATCH = 3, 1_000
+
+
+class _Facts(NamedTuple):
+    facts: list[Fact]
+    why_not_all: NotDecided | None = None
+
+
+@lru_cache(maxsize=2)
+def read_agreement(workspace: Workspace) -> Agreement:
+    """Return what does not agree in a workspace; what is found before the budget of the workspace
+    is spent, and that the rest is not compared.
+    """
+    facts, error = facts_once(workspace)
+    unused: tuple[Location, ...] = ()
+    try:
+        if error is not None:
+            raise error
+        found = agreement(facts, workspace.charge)
+        unused = tuple(unused_files(workspace))
+    except NotDecided as reason:
+        found = uncompared(facts, str(reason))
+    # names_agree needs a package.
+    families = found.families if workspace.packages else frozenset[AnyFamily]()
+    return found._replace(families=families, unused=unused)
+
+
+@lru_cache(maxsize=2)
+def facts_once(workspace: Workspace) -> _Facts:
+    """Return what files define and use, as far as it is read before the budget of the workspace is
+    spent.
+    """
+    facts: list[Fact] = []
+    try:
+        facts += read_facts(workspace)
+    except NotDecided as error:
+        return _Facts(facts, error)
+    return _Facts(facts)
+
+
+def wrong_names(
+    workspace: Workspace, family: AnyFamily, packages: Collection[Package]
+) -> list[Mismatch]:
+    """Return what certainly does not agree in some packages of a workspace."""
+    wrong = []
+    for mismatch in read_agreement(workspace).mismatches:
+        is_wrong = mismatch.family == family and mismatch.is_certain
+        if is_wrong and any(package.holds(mismatch.location.path) for package in packages):
+            wrong.append(mismatch)
+    return wrong
+
+
+def read_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield what the files of a workspace define and use. Raises NotDecided where this takes too
+    much work.
+    """
+    for fact in chain.from_iterable(reader(workspace) for reader in _READERS):
+        workspace.charge(_OF_MISMATCH if isinstance(fact, Mismatch) else _OF_FACT)
+        yield fact
+
+
+def compared_facts(
+    workspace: Workspace, families: Collection[AnyFamily]
+) -> Iterator[Use | Definition]:
+    """Yield the names of these families that files use or define."""
+    for fact in read_facts(workspace):
+        if isinstance(fact, Use | Definition) and DEFINED[fact.kind].family in families:
+            yield fact

@@ -1,0 +1,152 @@
+"""Names of other releases of ROS 2 than those that a workspace is for."""
+
+import re
+from collections.abc import Iterator
+
+from grader.base.errors import NotDecided
+from grader.base.problems import Problem
+from grader.base.source import Location
+from grader.ros.config.yaml_values import sections_in, values_in
+from grader.ros.known.releases import NameKind, other_name
+from grader.ros.workspace.graph.started_controllers import defined_controllers
+from grader.ros.workspace.model.stated_releases import deciding_launch_files, releases_in_path
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.model.workspace_folder import TOO_MUCH
+from grader.ros.workspace.rules.name_problems import name_problems
+from grader.ros.workspace.rules.names import Agreement
+from grader.ros.workspace.rules.reading import read_agreement
+from grader.ros.workspace.rules.rule_table import NAME_RELEASE, NAMES_COMPARED
+
+_DEPENDENCY = re.compile(r"<\w*depend>\s*([\w-]+)\s*</")
+_PLUGIN_KEYS = ("plugin", "robot_model_type")
+
+
+def compared_names(workspace: Workspace) -> Iterator[Problem]:
+    """Yield what is wrong with the names of a workspace: those that do not agree, then those of
+    other releases.
+    """
+    agreement = read_agreement(workspace)
+    yield from name_problems(agreement)
+    try:
+        yield from _release_problems(workspace, agreement)
+    except NotDecided:
+        assert workspace.folder.is_spent
+    if workspace.folder.is_spent:
+        start = Location(next(iter(workspace.tree.files), ""), 1, 1)
+        yield NAMES_COMPARED.problem(f"not all names are compared: {TOO_MUCH}", start)
+
+
+def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Problem]:
+    """Return the names that no stated release has, each once in a file; without those that are said
+    not to agree.
+    """
+    if not workspace.releases:
+        return []
+    said = {it.location for it in agreement.mismatches if it.family != "dependencies"}
+    deciding = deciding_launch_files(workspace)
+    found: dict[tuple[str, str], Problem] = {}
+    for reader in _READERS:
+        for kind, name, at, owner in reader(workspace):
+            if at in said or at.path in deciding:
+                continue
+            releases = {*workspace.releases, *releases_in_path(at.path)}
+            other = other_name(kind, name, releases, shown=owner)
+            if other is not None:
+                problem = NAME_RELEASE.problem(other.message, at, kind)
+                found.setdefault((other.message, at.path), problem)
+    return sorted(
+        found.values(), key=lambda it: (it.location.path, it.location.line, it.location.column)
+    )
+
+
+_Use = tuple[NameKind, str, Location, str]  # with the start of the name that is not shown
+
+
+def _uses_in_robots(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the plugins of Gazebo and of ros2_control that robots load, but for own ones."""
+    own = [package.name for package in workspace.packages]
+    for robot in workspace.robots.known:
+        for element in robot.root.iter("plugin"):
+            name = element.get("filename", "") or (element.text or "").strip()
+            package = name.partition("/")[0].removeprefix("lib").removesuffix(".so")
+            if package not in own:
+                yield "plugin", name, robot.place(element), ""
+
+
+def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the plugins, controllers and parameters in YAML files."""
+    types: dict[str, str] = {}
+    for controller in defined_controllers(workspace):
+        types[controller.name] = controller.type.text or ""
+        if not workspace.texts.has_plugin(types[controller.name]):
+            yield "controller", types[controller.name], controller.location, ""
+    for _, tree in workspace.installed.trees:
+        for value in values_in(tree):
+            if value.keys[-1:] and value.keys[-1] in _PLUGIN_KEYS:
+                yield "plugin", value.node.text or "", value.node.location, ""
+        for keys, section in sections_in(tree):
+            name = keys[-1].rpartition("/")[2] if keys else ""
+            owner = f"{types.get(name, name)}/"
+            for value in values_in(section):
+                yield "parameter", owner + ".".join(value.keys), value.node.location, owner
+
+
+def _uses_in_launch_files(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the packages, programs and launch files in launch files."""
+    for package, node in workspace.launches.nodes:
+        if package.find(node.package) is None:
+            yield "package", node.package, node.location, ""
+            owner = f"{node.package}/"
+            yield "program", f"{owner}{node.executable}", node.location, owner
+    for package, _, launch in workspace.launches.files:
+        for passed in launch.passed:
+            parts = passed.path.split("/")
+            if parts[0] == "share" and len(parts) > 1 and package.find(parts[1]) is None:
+                yield "package", parts[1], passed.location, ""
+                owner = f"{parts[1]}/"
+                yield "launch file", owner + parts[-1], passed.location, owner
+
+
+def _topics_of_controllers(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the topics that are those of controllers, by their names."""
+    types = {it.name: it.type.text or "" for it in defined_controllers(workspace)}
+    for topic, at in _topics(workspace):
+        controller, _, last = topic.strip("/ ").rpartition("/")
+        owner = f"{types.get(controller.rpartition('/')[2], '')}/"
+        yield "topic", owner + last, at, owner
+
+
+def _topics(workspace: Workspace) -> Iterator[tuple[str, Location]]:
+    """Yield the topics that remappings and own nodes in Python name."""
+    for robot in workspace.robots.known:
+        for element in robot.root.iter("remapping"):
+            for topic in (element.text or "").split(":="):
+                yield topic, robot.place(element)
+    for _, node in workspace.launches.nodes:
+        for names in node.remaps or ():
+            for topic in names:
+                yield topic, node.location
+        own_node = workspace.code.own_node(node)
+        for endpoint in own_node.endpoints if own_node is not None else ():
+            yield node.topic(endpoint.name or "") or "", endpoint.location
+
+
+def _declared(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the packages that package.xml declares without a condition."""
+    for package in workspace.packages:
+        manifest = package.manifest
+        if manifest is None:
+            continue
+        for found in _DEPENDENCY.finditer(manifest.source.text):
+            name = found[1]
+            if name in manifest.dependencies and package.find(name) is None:
+                yield "package", name, manifest.source.at(found.start(1)), ""
+
+
+_READERS = (
+    _uses_in_robots,
+    _uses_in_yaml,
+    _uses_in_launch_files,
+    _topics_of_controllers,
+    _declared,
+)

@@ -1,0 +1,106 @@
+"""Topics that connect, and yet no message arrives as it should: two sources of commands, images of
+another transport, displays of RViz that ask for more, and programs that send another type.
+"""
+
+from collections.abc import Iterator, Sequence
+
+from grader.base.text import quoted
+from grader.ros.known.package_tables import transport_types
+from grader.ros.workspace.graph.endpoints import End
+from grader.ros.workspace.graph.ends import deciding_parameter
+from grader.ros.workspace.graph.graph import Graph, graph_of
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Fact, Mismatch, warning
+from grader.ros.workspace.rules.rule_table import (
+    COMMAND_TYPE,
+    DISPLAY_QUALITY,
+    IMAGE_TRANSPORT,
+    ONE_COMMANDER,
+)
+
+_COMMANDS = ("geometry_msgs.msg.Twist", "geometry_msgs.msg.TwistStamped")
+_IMAGE = "sensor_msgs.msg.Image"
+
+
+def topic_wiring_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield topics on which messages do not arrive as they should."""
+    graph = graph_of(workspace)
+    publishers = graph.certain("publisher", "code")
+    subscriptions = graph.certain("subscription", "code")
+    yield from _two_commanders(publishers, subscriptions)
+    yield from _other_transport(publishers, subscriptions)
+    yield from _displays(workspace, publishers)
+    yield from _programs(graph)
+
+
+def _two_commanders(publishers: Sequence[End], subscriptions: Sequence[End]) -> Iterator[Mismatch]:
+    """Yield the topics of commands that two nodes publish, and another one obeys."""
+    obeyed = {(it.launch, it.name) for it in subscriptions}
+    first: dict[tuple[int, str], End] = {}
+    said: set[tuple[int, str]] = set()
+    for each in publishers:
+        key = each.launch, each.name
+        if each.type not in _COMMANDS or key not in obeyed or key in said:
+            continue
+        before = first.setdefault(key, each)
+        if before.node is not each.node:
+            said.add(key)
+            message = (
+                f"{each.node.executable} and {before.node.executable} both publish {each.name}: "
+                "the robot obeys each in turn; twist_mux chooses one"
+            )
+            yield warning(ONE_COMMANDER, message, each.location, before.location)
+
+
+def _other_transport(publishers: Sequence[End], subscriptions: Sequence[End]) -> Iterator[Mismatch]:
+    """Yield subscriptions of images on a topic that carries compressed ones."""
+    published = {it.name for it in publishers}
+    for each in subscriptions:
+        topic, _, transport = each.name.rpartition("/")
+        kind = transport_types().get(transport)
+        if kind is None or each.type != _IMAGE or each.name in published:
+            continue
+        message = (
+            f"the topic {each.name} carries {kind}, and is subscribed to with {_IMAGE}: "
+            f"subscribe to {topic}, or with the other type"
+        )
+        yield warning(IMAGE_TRANSPORT, message, each.location)
+
+
+def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Mismatch]:
+    """Yield displays of RViz that ask for reliable messages, which every publisher sends as best
+    effort.
+    """
+    offered: dict[str, set[str | None]] = {}
+    for each in publishers:
+        offered.setdefault(each.name, set()).add(each.endpoint.qos.reliability)
+    for package in workspace.packages:
+        for path in package.rviz_files:
+            for display in package.rviz(path).displays:
+                policy = display.node.get("Topic", "Reliability Policy")
+                topic = display.node.get("Topic", "Value")
+                if policy is None or topic is None or policy.text != "Reliable":
+                    continue
+                if display.enabled and offered.get(topic.text or "") == {"best_effort"}:
+                    message = (
+                        f"the display {quoted(display.name)} asks for reliable messages of "
+                        f"{topic.text}, which are published as best effort: it stays empty"
+                    )
+                    yield warning(DISPLAY_QUALITY, message, policy.location)
+
+
+def _programs(graph: Graph) -> Iterator[Mismatch]:
+    """Yield the well-known programs that send a controller another type than it reads, where a
+    parameter decides the type.
+    """
+    subscriptions = graph.of_kind("subscription", sources=("controller",))
+    publishers = graph.certain("publisher", "program")
+    for reader, publisher in graph.pairs(subscriptions, publishers):
+        parameter = deciding_parameter(publisher)
+        is_same = reader.launch == publisher.launch
+        if is_same and parameter is not None and publisher.type != reader.type:
+            message = (
+                f"{publisher.owner} publishes {publisher.name} with {publisher.type}, but the "
+                f"controller subscribes to it with {reader.type}: set its parameter {parameter}"
+            )
+            yield warning(COMMAND_TYPE, message, publisher.location, reader.location)

@@ -1,0 +1,432 @@
+"""Numbers of wheels: what controllers and plugins of Gazebo are told of radii, tracks and
+wheelbases, against the robot's wheels.
+
+The rows of controllers, in the files of their packages, and of gazebo.toml say which parameter is
+which number.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import chain
+from math import hypot
+from typing import NamedTuple
+
+from grader.base.errors import MissingElement, NotDecided
+from grader.base.names import closest
+from grader.base.source import Location
+from grader.base.text import enumerated, quoted
+from grader.base.transforms import Y_AXIS, Vector, dot, minus, unit
+from grader.ros.config.yaml_nodes import YamlNode
+from grader.ros.known.gazebo_rows import NO_SYSTEM, gazebo
+from grader.ros.known.package_rows import WheelRow, controller_row
+from grader.ros.urdf.kinematics import Configuration
+from grader.ros.urdf.model import Joint, Robot
+from grader.ros.urdf.numbers import finite_number
+from grader.ros.urdf.rolling import middle_of
+from grader.ros.urdf.wheel_sizes import WheelSize, measure_wheel
+from grader.ros.workspace.graph.gazebo_topics import system_of
+from grader.ros.workspace.graph.started_controllers import (
+    defined_controllers,
+    parameters_of_controllers,
+)
+from grader.ros.workspace.model.known_robots import KnownRobot
+from grader.ros.workspace.model.under_arguments import may_vary
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
+from grader.ros.workspace.rules.rule_table import (
+    WHEEL_AXIS,
+    WHEEL_DISTANCE,
+    WHEEL_RADIUS,
+    WHEEL_SIDE,
+    Rule,
+)
+from grader.ros.xml.parsing import Element
+
+_ENTRY = re.compile(r"(.*)\.(\d+)$")  # a parameter with a list, and the number of an entry
+_TOLERANCE, _ROUNDING = 0.02, 0.002  # of a number; metres
+_LEVEL = 0.3  # the sine of the angle to the ground up to which an axle lies
+_SIDEWAYS = 0.9  # the cosine of the angle to the y axis up to which wheels drive forward or back
+_SIDED = ("track", "pivots", "half sum")  # whose first groups are left and right wheels
+_ROLLING = ("track", "half sum", "radius", "diameter")  # of joints that turn wheels
+_PLACING = ("origin", "axis", "cylinder", "sphere")  # elements that place and size wheels
+_BASE = "base_frame_id"
+_MAX_WHEELS = 20  # that one parameter is about; each takes as long as the robot has joints
+
+
+class _Word(NamedTuple):
+    """The text of a parameter, or an entry of its list, and its place."""
+
+    text: str
+    location: Location
+
+
+_Parameters = Callable[[str], Sequence[_Word]]
+
+
+class _Source(NamedTuple):
+    """What tells a robot of its wheels: the rows of its parameters, and what they are given."""
+
+    name: str
+    rows: Mapping[str, WheelRow]
+    parameters: _Parameters
+    robots: Sequence[KnownRobot]
+
+    def joints(self, keys: Sequence[str]) -> list[_Word]:
+        """Return the joints that some parameters name."""
+        found: list[_Word] = []
+        for key in keys:
+            entry = _ENTRY.fullmatch(key)
+            if entry is None:
+                found += self.parameters(key)
+            else:
+                number = int(entry[2])
+                found += self.parameters(entry[1])[number : number + 1]
+        return found
+
+
+class _Wheels(NamedTuple):
+    """The wheels of the groups of a parameter, in the frame of the robot's base."""
+
+    base: str
+    groups: tuple[tuple[WheelSize, ...], ...]
+
+    def middle_of_group(self, group: int) -> Vector:
+        """Return the mean of the middles of the wheels of a group."""
+        return middle_of([wheel.middle for wheel in self.groups[group]])
+
+    @property
+    def all(self) -> list[WheelSize]:
+        """The wheels of all groups, each joint once."""
+        return [*{wheel.joint.name: wheel for wheel in chain(*self.groups)}.values()]
+
+    @property
+    def axle(self) -> Vector:
+        """The direction of the axles, to the left of the base where it can be told."""
+        for wheel in self.all:
+            x, y, z = wheel.axis
+            if abs(z) < _LEVEL:
+                side = 1.0 if y >= 0.0 else -1.0
+                return (side * x, side * y, 0.0)
+        return (0.0, 1.0, 0.0)
+
+    @property
+    def names(self) -> str:
+        """The joints, for a message."""
+        return _joints(self.all)
+
+
+def wheel_value_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the numbers of wheels that are not those of the robot."""
+    sources = [*_controllers(workspace), *_plugins(workspace)]
+    if not sources or may_vary(workspace, *_PLACING):
+        return
+    for source in sources:
+        yield Compared("values")
+        is_open = workspace.robots.may_be_others
+        for fault in _faults_under_all(source):
+            yield fault._replace(is_certain=fault.is_certain and not is_open)
+
+
+def _faults_under_all(source: _Source) -> Sequence[Mismatch]:
+    """Return the faults under the first robot; none where the numbers are those of another one."""
+    first: Sequence[Mismatch] = ()
+    for robot in source.robots:
+        faults = [*_faults_of(source, Configuration(robot.robot))]
+        if not faults:
+            return ()
+        first = first or faults
+    return first
+
+
+def _controllers(workspace: Workspace) -> Iterator[_Source]:
+    sections = parameters_of_controllers(workspace)
+    for controller in defined_controllers(workspace):
+        rows = controller_row(controller.type.text).wheels
+        section = sections.get(controller.name)
+        if not rows or section is None:
+            continue
+        source = _Source(controller.name, rows, _reader_of_yaml(section), ())
+        keys = {key for row in rows.values() for key in chain(*row.of)}
+        named = [joint.text for joint in source.joints(sorted(keys))]
+        robots = [it for it in workspace.robots.known if all(map(it.robot.has_joint, named))]
+        if not robots and len(workspace.robots.known) == 1:
+            [robot] = workspace.robots.known
+            if all(robot.robot.has_joint(_meant(robot.robot, name)) for name in named):
+                robots = [robot]
+        if named and robots:
+            yield source._replace(robots=robots)
+
+
+def _meant(robot: Robot, name: str) -> str:
+    """Return the joint that a name means; that it is misspelt is another mistake."""
+    if robot.has_joint(name):
+        return name
+    return closest(name, (joint.known.name for joint in robot.joints), is_clear=True) or name
+
+
+def _reader_of_yaml(section: YamlNode) -> _Parameters:
+    def read(key: str) -> list[_Word]:
+        node = section.get(*key.split("."))
+        if node is None:
+            return []
+        return [_Word(it.text, it.location) for it in (node.items or [node]) if it.text]
+
+    return read
+
+
+def _plugins(workspace: Workspace) -> Iterator[_Source]:
+    for robot in workspace.robots.known:
+        for plugin in robot.root.iter("plugin"):
+            name = system_of(plugin)
+            rows = gazebo().system.get(name, NO_SYSTEM).wheels
+            if not rows:
+                name = plugin.get("filename", "").rpartition("/")[2]
+                library = gazebo().library.get(name)
+                rows = library.wheels if library is not None else {}
+            if rows:
+                yield _Source(name, rows, _reader_of_plugin(robot, plugin), [robot])
+
+
+def _reader_of_plugin(robot: KnownRobot, plugin: Element) -> _Parameters:
+    def read(key: str) -> list[_Word]:
+        return [
+            _Word((child.text or "").strip(), robot.place(child))
+            for child in plugin.iterchildren(key)
+        ]
+
+    return read
+
+
+def _faults_of(source: _Source, robot: Configuration) -> Iterator[Mismatch]:
+    """Yield the numbers, sides and directions that are not those of a robot."""
+    compared: set[str] = set()  # the joints whose sides and directions were compared
+    rows = sorted(source.rows.items(), key=lambda row: row[1].number not in _SIDED)
+    for key, row in rows:
+        kind, groups = row.number, [source.joints(keys) for keys in row.of]
+        wheels = _measured(source, robot, groups)
+        if wheels is None:
+            continue
+        faults: list[Mismatch] = []
+        names = {wheel.joint.name for wheel in wheels.all}
+        if compared.isdisjoint(names):
+            compared |= names
+            faults += _faults_of_side(wheels, groups, kind)
+            yield from faults
+        is_of_sides = bool(faults) and kind in _SIDED  # a number of these wheels means nothing
+        if is_of_sides or _is_corrected(source, row):
+            continue
+        for number in source.parameters(key):
+            value = finite_number(number.text)
+            if value is not None:
+                yield from _faults_of_number(key, value, number.location, kind, wheels)
+
+
+def _is_corrected(source: _Source, row: WheelRow) -> bool:
+    """Return whether a factor corrects the number of a row."""
+    for name in row.unless:
+        for word in source.parameters(name):
+            if finite_number(word.text) != 1.0:
+                return True
+    return False
+
+
+def _measured(
+    source: _Source, robot: Configuration, groups: Sequence[Sequence[_Word]]
+) -> _Wheels | None:
+    """Return the wheels of groups of joints, in the frame of the robot's base; None where a group
+    is empty, or a wheel cannot be measured.
+    """
+    named = [word.text for group in groups for word in group]
+    if not all(groups) or len(named) > _MAX_WHEELS:
+        return None
+    try:
+        base = robot.root_of(_joint(robot, named[0]).child)
+        for frame in source.parameters(_BASE):
+            if robot.robot.has_link(frame.text):
+                base = frame.text
+        measured = []
+        for group in groups:
+            joints = [_joint(robot, word.text) for word in group]
+            measured.append(tuple(measure_wheel(robot, joint, base) for joint in joints))
+    except (MissingElement, NotDecided):
+        return None
+    return _Wheels(base, tuple(measured))
+
+
+def _joint(robot: Configuration, name: str) -> Joint:
+    return robot.joint(_meant(robot.robot, name))
+
+
+def _faults_of_side(wheels: _Wheels, groups: list[list[_Word]], kind: str) -> Iterator[Mismatch]:
+    """Yield that left wheels are on the right, and the reverse, wheels that turn about an axis
+    across their axle, and wheels that turn backward.
+    """
+    places = {
+        wheel.joint.name: word.location
+        for wheel, word in zip(chain(*wheels.groups), chain(*groups), strict=True)
+    }
+
+    def fault(
+        rule: Rule, joints: Sequence[WheelSize], message: str, *, is_certain: bool = False
+    ) -> Mismatch:
+        at = places[joints[0].joint.name]
+        return Mismatch(rule, message, at, _place(joints[0]), is_certain)
+
+    base = quoted(wheels.base)
+    backward = [wheel for wheel in wheels.all if wheel.axis[1] < -_SIDEWAYS]
+    if kind in _SIDED:
+        toward_left = _toward_left(wheels)
+        across = [it for it in wheels.all if abs(dot(it.axis, toward_left)) < _LEVEL]
+        exchanged = _exchanged(wheels)
+        if kind in _ROLLING and len(exchanged) == len(backward) == len(wheels.all):
+            message = (
+                f"the wheels of {wheels.names} drive the robot toward -x of {base}: left and right "
+                "are exchanged, and their axes point to the right"
+            )
+            yield fault(WHEEL_SIDE, exchanged, message)
+            return
+        if exchanged and abs(toward_left[1]) > _SIDEWAYS:
+            sides = [f"{quoted(it.joint.name)} is at y {it.middle[1]:.4g} m" for it in exchanged]
+            message = f"left and right wheels are exchanged: {', '.join(sides)} in {base}"
+            yield fault(WHEEL_SIDE, exchanged, message, is_certain=True)
+        if kind in _ROLLING and across:
+            x, y, z = across[0].axis
+            message = (
+                f"{_joints(across)} should turn about the axle from right to left, not about "
+                f"{x:.3g} {y:.3g} {z:.3g} in {base}"
+            )
+            yield fault(WHEEL_AXIS, across, message)
+    if kind in _ROLLING and backward:
+        message = (
+            f"a positive speed of {_joints(backward)} drives toward -x of {base}: the axis should "
+            "point to the left"
+        )
+        yield fault(WHEEL_AXIS, backward, message)
+
+
+def _toward_left(wheels: _Wheels) -> Vector:
+    """Return the direction from the right wheels to the left ones, or y where there is none."""
+    left, right = wheels.middle_of_group(0), wheels.middle_of_group(1)
+    return unit((left[0] - right[0], left[1] - right[1], 0.0)) or Y_AXIS
+
+
+def _exchanged(wheels: _Wheels) -> list[WheelSize]:
+    """Return the left wheels that are on the right of the middle between the wheels, and the
+    reverse.
+    """
+    middle = middle_of([wheel.middle for wheel in wheels.all])[1]
+    left, right = wheels.groups[:2]
+    found = [wheel for wheel in left if wheel.middle[1] < middle]
+    return found + [wheel for wheel in right if wheel.middle[1] > middle]
+
+
+def _joints(wheels: Sequence[WheelSize]) -> str:
+    return enumerated([quoted(wheel.joint.name) for wheel in wheels])
+
+
+def _place(wheel: WheelSize) -> Location | None:
+    location = wheel.joint.location
+    return location.resolve() if location is not None else None
+
+
+def _faults_of_number(
+    key: str, value: float, at: Location, kind: str, wheels: _Wheels
+) -> Iterator[Mismatch]:
+    """Yield that a number is not what the wheels of the robot have."""
+    if value < 0.0:
+        yield Mismatch(WHEEL_DISTANCE, f"{key} is {value:g}: a length is not negative", at)
+        return
+    related = _place(wheels.all[0])
+    if kind in ("radius", "diameter"):
+        yield from _faults_of_radius(key, value, at, kind, wheels)
+        return
+    measured, slack, what = _SPANS[kind](wheels)
+    low, high = measured - slack, measured + slack
+    if len(wheels.all) > 2 and kind == "track":
+        high = max(high, value)  # wheels that slip sideways need a wider track
+    rounding = _ROUNDING + _TOLERANCE * measured
+    if low - rounding <= value <= high + rounding:
+        return
+    is_certain = kind == "track" and _is_other_half(value, measured, wheels)
+    message = f"{key} is {value:g} m; {what} {measured:.4g} m"
+    if slack:
+        message += f" ({low:.4g} to {high:.4g} m with the width of the wheels)"
+    yield Mismatch(WHEEL_DISTANCE, message, at, related, is_certain)
+
+
+def _is_other_half(value: float, measured: float, wheels: _Wheels) -> bool:
+    """Return whether a number is twice or half the track of two wheels of known width, which is
+    surely a mistake.
+    """
+    if len(wheels.all) != 2 or any(wheel.half_width is None for wheel in wheels.all):
+        return False
+    return _is_near(value, 2.0 * measured) or _is_near(value, measured / 2.0)
+
+
+def _is_near(value: float, other: float) -> bool:
+    return abs(value - other) <= _TOLERANCE * other
+
+
+def _faults_of_radius(
+    key: str, value: float, at: Location, kind: str, wheels: _Wheels
+) -> Iterator[Mismatch]:
+    """Yield that no wheel has a radius, and that wheels of one radius have several."""
+    factor = 2.0 if kind == "diameter" else 1.0
+    sized = [wheel for wheel in wheels.all if wheel.radii]
+    fitting = []
+    for wheel in sized:
+        if any(_is_near(value, factor * radius) for radius in wheel.radii):
+            fitting.append(wheel)
+    for wheel in sized:
+        if wheel in fitting or (not fitting and wheel is not sized[0]):
+            continue
+        name, size = quoted(wheel.joint.name), factor * wheel.radii[0]
+        message = f"{key} is {value:g} m; the wheel of {name} has the {kind} {size:.4g} m"
+        yield warning(WHEEL_RADIUS, message, at, _place(wheel))
+
+
+def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:
+    """Return the distance of the left wheels from the right ones along the axles, by how much the
+    width of wheels changes it, and what it is.
+    """
+    left, right = wheels.middle_of_group(0), wheels.middle_of_group(1)
+    widths = [wheel.half_width for wheel in wheels.all]
+    slack = 2.0 * max([width for width in widths if width is not None], default=0.0)
+    distance = abs(dot(minus(left, right), wheels.axle))
+    if None in widths:
+        slack = max(slack, distance / 4.0)  # the middle of a mesh may be beside its joint
+    return distance, slack, f"the wheels of {wheels.names} are apart by"
+
+
+def _measure_wheelbase(wheels: _Wheels) -> tuple[float, float, str]:
+    """Return the distance of the front wheels from the rear ones across the axles."""
+    front, rear = wheels.middle_of_group(0), wheels.middle_of_group(1)
+    x, y, _ = wheels.axle
+    distance = abs(dot(minus(front, rear), (y, -x, 0.0)))
+    return distance, 0.0, f"the axles of {wheels.names} are apart by"
+
+
+def _measure_half_sum(wheels: _Wheels) -> tuple[float, float, str]:
+    """Return half the track and half the wheelbase together."""
+    track, slack, _ = _measure_track(wheels._replace(groups=wheels.groups[:2]))
+    wheelbase, _, _ = _measure_wheelbase(wheels._replace(groups=wheels.groups[2:]))
+    what = "half the track and half the wheelbase of the robot together are"
+    return (track + wheelbase) / 2.0, slack / 2.0, what
+
+
+def _measure_ring(wheels: _Wheels) -> tuple[float, float, str]:
+    """Return the mean distance of wheels from the middle between them."""
+    middle = middle_of([wheel.middle for wheel in wheels.all])
+    away = [minus(wheel.middle, middle) for wheel in wheels.all]
+    distance = sum(hypot(x, y) for x, y, _ in away) / len(away)
+    widths = [wheel.half_width or 0.0 for wheel in wheels.all]
+    return distance, max(widths), f"the wheels of {wheels.names} are from their middle by"
+
+
+_SPANS: Mapping[str, Callable[[_Wheels], tuple[float, float, str]]] = {
+    "track": _measure_track,
+    "pivots": _measure_track,
+    "wheelbase": _measure_wheelbase,
+    "half sum": _measure_half_sum,
+    "ring": _measure_ring,
+}
