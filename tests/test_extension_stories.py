@@ -112,7 +112,7 @@ def _found(*edits: Edit) -> int:
 
 def test_a_note_is_left() -> None:
     """Once, and nothing is said without one."""
-    assert _found((LAUNCH, "def generate", "# FIXME: speed\\n# FIXME: name\\n\\n\\ndef generate")) == 1
+    assert _found((LAUNCH, "def generate", "NOTE = 'FIXME FIXME'\\n\\n\\ndef generate")) == 1
     assert _found() == 0
 '''
 

@@ -63,15 +63,18 @@ def meeting_facts(workspace: Workspace) -> Iterator[Fact]:
     for meeting in (TOPICS, *SERVICES):
         every_asking = distinct(graph.of_kind(meeting.asking, sources=_ASKING))
         every_offering = distinct(graph.of_kind(meeting.offering, sources=_OFFERING))
+        is_compared = False
         for asking, offering in graph.pairs(every_asking, every_offering):
             if _is_of_other_rule(asking, offering):
                 continue
-            yield Compared(meeting.rule.family)
+            is_compared = True
             if asking.source == "controller":
                 yield from _other_type_of_controller(asking, offering)
             else:
                 yield from _other_type(workspace, meeting, asking, offering)
                 yield from _other_quality(asking, offering)
+        if is_compared:
+            yield Compared(meeting.rule.family)
     yield from _other_type_of_bridge(graph)
 
 
@@ -79,10 +82,12 @@ def _is_of_other_rule(asking: End, offering: End) -> bool:
     """Return whether another rule compares two ends: that of rows of bridges, also of those that
     nothing starts, or that of the parameters of programs.
     """
-    sources = {asking.source, offering.source}
-    if sources in ({"bridge"}, {"bridge", "code"}):
-        return True
-    return sources == {"controller", "program"} and deciding_parameter(offering) is not None
+    if asking.source == "bridge":
+        return offering.source in ("bridge", "code")
+    if offering.source == "bridge":
+        return asking.source == "code"
+    is_command = asking.source == "controller" and offering.source == "program"
+    return is_command and deciding_parameter(offering) is not None
 
 
 def _differ(asking: End, offering: End) -> bool:
