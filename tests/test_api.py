@@ -53,6 +53,7 @@ def test_the_examples_print_what_the_page_shows(code: str, shown: str, tmp_path:
     assert printed.getvalue() == shown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "path",
     [
@@ -154,6 +155,7 @@ def test_a_urdf_is_read_from_text(text: str) -> None:
     assert (read.verdict, read.robot, read.problems) == (same.verdict, same.robot, same.problems)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("code", "modules"),
     [

@@ -273,6 +273,7 @@ def names_of_api() -> Iterator[tuple[str, str]]:
             yield from ((str(node.module), alias.name) for alias in node.names)
 
 
+@pytest.mark.slow
 def test_ros_knows_no_lab_and_no_submission() -> None:
     """No name in `ros` speaks of them, and no docstring or comment."""
     words = re.compile(r"(?i)submission|\blab(?:s|\b|_)")

@@ -290,6 +290,7 @@ def test_an_explanation_shows_the_example() -> None:
     assert "`grader explain frame_at`" in explanation("lidar-frame", rubric)
 
 
+@pytest.mark.slow
 def test_the_pages_show_every_example() -> None:
     """docs/make.py makes a section of each code and check, with its example in code blocks."""
     pages = runpy.run_path(str(ROOT / "docs/make.py"))["pages"]()

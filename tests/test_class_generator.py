@@ -50,6 +50,7 @@ def every(made: Iterable[made_up.WrittenSubmission]) -> list[made_up.WrittenSubm
     return list(made)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", made_up.LAYOUTS)
 @pytest.mark.parametrize("kind", ["urdf", "mixed"])
 def test_the_same_seed_gives_the_same_bytes(kind: str, layout: str, tmp_path: Path) -> None:
@@ -78,6 +79,7 @@ def test_all_urdfs_differ() -> None:
     assert len(texts) == 500
 
 
+@pytest.mark.slow
 def test_the_proportions_are_those_of_real_classes() -> None:
     """Some 37 in 100 are correct, half of them with other numbers; 6 are broken; the most frequent mistakes come first."""
     made = [
@@ -99,6 +101,7 @@ def test_the_proportions_are_those_of_real_classes() -> None:
     assert {"right-mirrored", "lidar-buried"} == set(sorted(met, key=lambda name: met[name])[-2:])
 
 
+@pytest.mark.slow
 def test_a_generated_class_loses_the_expected_criteria() -> None:
     """Every URDF of a class gets the marks that it was generated for."""
     for submission in made_up.submissions(150, SEED, "urdf"):
@@ -130,6 +133,7 @@ def test_two_mistakes_do_not_hide_each_other() -> None:
 # --- A class of all kinds ---------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_all_kinds_and_names_occur(tmp_path: Path) -> None:
     """Each kind of submission and each awkward name occurs in a class of 300, and is written as far as the disk allows."""
     written = every(made_up.make_class(tmp_path, MANY, SEED, "mixed"))
@@ -190,6 +194,7 @@ def _lost(graded: StoredResult) -> set[str]:
     return lost & set(made_up.criteria())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layout", ["canvas", "moodle"])
 @pytest.mark.parametrize("list_name", ["roster.csv", "lms.csv"])
 def test_the_lists_match_the_class(layout: str, list_name: str, tmp_path: Path) -> None:

@@ -205,6 +205,7 @@ def test_every_equivalent_of_the_reference_gets_full_marks(data: bytes) -> None:
     assert report.submission.verdict == "clean"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("step", BEHAVING, ids=lambda step: step.__name__)
 def test_each_rewriting_alone_gets_full_marks(step: Step) -> None:
     """No single rewriting loses points, in three tries."""

@@ -56,6 +56,7 @@ def test_an_example_of_a_kind_is_found(name: str, tmp_path: Path) -> None:
     assert right == []
 
 
+@pytest.mark.slow
 def test_the_page_names_every_kind() -> None:
     """docs/make.py makes a row of each kind, and a section with an example of each that is found."""
     page = runpy.run_path(str(ROOT / "docs/make.py"))["pages"]()["misconfigurations.md"]

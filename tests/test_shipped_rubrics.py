@@ -108,6 +108,7 @@ def test_a_mistake_costs_what_it_is_worth() -> None:
 Edit = tuple[str, str, str]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("one", "other", "costs"),
     [

@@ -100,6 +100,7 @@ def test_the_rubric_contains_the_reference() -> None:
         waiting += folders.subdirs.values()
 
 
+@pytest.mark.slow
 def test_the_files_that_follow_from_others_are_current() -> None:
     """READMEs, packages and the class are those that `python tests/sample_files.py` writes, and nothing is beside them."""
     expected = dict(generated())
@@ -113,6 +114,7 @@ def test_the_files_that_follow_from_others_are_current() -> None:
     }
 
 
+@pytest.mark.slow
 def test_the_class_is_graded_by_the_command_of_its_readme(tmp_path: Path) -> None:
     """Two are perfect, most lose something; a file is missing, another broken, one is late, one was submitted again."""
     command = next(line for line in TOP.splitlines() if line.startswith("grader ")).removeprefix(

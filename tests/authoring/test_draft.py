@@ -175,6 +175,7 @@ ONCE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("edits", ONCE.values(), ids=ONCE)
 def test_a_mistake_of_names_costs_once(edits: list[Edit], of_cart: Rubric, tmp_path: Path) -> None:
     """What else fails because of it, such as a node that does not start, is carried from it."""
@@ -279,6 +280,7 @@ def rename_joints(package: Path) -> None:
             _ = path.write_text(text.replace("_wheel_joint", "_drive"))
 
 
+@pytest.mark.slow
 def test_joints_may_have_other_names_where_all_files_use_them(
     of_diffdrive: Rubric, tmp_path: Path
 ) -> None:
@@ -376,6 +378,7 @@ def test_lists_with_names_of_joints_that_are_compared_are_not_asked_for(tmp_path
     assert [it.outcome.message for it in report.results if it.is_lost] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in SAMPLES if not name.startswith("equivalent")])
 def test_the_mistake_of_a_sample_costs_once(name: str, of_diffdrive: Rubric) -> None:
     """Whatever else of the differential drive fails because of it."""
@@ -414,6 +417,7 @@ def test_names_get_half_of_the_points_where_the_work_is_not_the_robot(of_cart: R
     assert min(it.points for it in of_names) >= max(others)
 
 
+@pytest.mark.slow
 def test_frames_axes_and_limits_weigh_more_than_colours_and_masses(tmp_path: Path) -> None:
     """In the draft of a robot, unless all weights are equal."""
     assert new(tmp_path, ARM).returncode == 0
@@ -443,6 +447,7 @@ KINDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kinds", "checks"), KINDS.items(), ids=KINDS)
 def test_kinds_of_criteria_can_be_omitted(kinds: str, checks: set[str], tmp_path: Path) -> None:
     """The others stay."""
@@ -578,6 +583,7 @@ def test_criteria_may_be_deleted(of_cart: Rubric) -> None:
     assert done.stderr.decode().count("files-names-agree") == 1
 
 
+@pytest.mark.slow
 def test_all_mistakes_are_reported_at_once(tmp_path: Path) -> None:
     """Those in the file, and what the reference does not pass of the other criteria."""
     assert new(tmp_path, ARM).returncode == 0

@@ -33,6 +33,7 @@ def answer_in(submitted: Submitted, locations: Sequence[str] = PLACES) -> Outcom
     return outcome
 
 
+@pytest.mark.slow
 def test_a_word_file_is_read() -> None:
     """Paragraphs and tables of a Word file are read as lines."""
     data = docx(
@@ -69,6 +70,7 @@ def test_a_damaged_document_is_named(name: str) -> None:
     assert f" (not read: {name} " in beside.message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["answers.docx", "answers.pdf"])
 def test_without_the_readers_the_document_is_named(
     name: str, monkeypatch: pytest.MonkeyPatch
@@ -165,6 +167,7 @@ def test_a_document_is_converted_once(tmp_path: Path, monkeypatch: pytest.Monkey
     assert log.read_text() == "x"
 
 
+@pytest.mark.slow
 def test_the_number_of_converted_documents_is_limited(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -184,6 +184,7 @@ def test_several_files_are_graded_like_a_folder(tmp_path: Path) -> None:
 # --- Reports ----------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_reports_quote_unchanged_files_only(tmp_path: Path) -> None:
     """A text report quotes lines as `grader grade` does, below the student's name; once the file has changed, none.
 

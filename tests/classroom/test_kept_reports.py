@@ -58,6 +58,7 @@ def written(before: dict[str, tuple[bytes, int]], after: dict[str, tuple[bytes, 
     return {name for name in after if after[name][1] != before[name][1]}
 
 
+@pytest.mark.slow
 def test_equal_robots_are_searched_once(top: Path, searches: list[str]) -> None:
     """Each page has its hints all the same, with its own file."""
     found = pages(top)
@@ -133,6 +134,7 @@ def test_hints_are_the_same_when_they_are_kept(level: str, tmp_path: Path) -> No
     assert b'"hints": [{' in b"".join(b" ".join(text.split()) for text in texts[0].values())
 
 
+@pytest.mark.slow
 def test_pictures_of_robots_are_kept(top: Path) -> None:
     """The class's page is the same where no report is written again; equal robots share a picture."""
     pages(top)

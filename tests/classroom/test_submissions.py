@@ -112,6 +112,7 @@ IN_MOODLE = st.text(
 )
 
 
+@pytest.mark.slow
 @examples(30)
 @given(
     st.dictionaries(
@@ -140,6 +141,7 @@ def test_any_download_of_canvas_is_grouped_again(
     assert {one.student.canvas: (one.is_late, sorted(one.names)) for one in found} == expected
 
 
+@pytest.mark.slow
 @examples(30)
 @given(st.dictionaries(st.integers(0, 10**12), IN_MOODLE, min_size=2, max_size=6))
 def test_any_download_of_moodle_is_grouped_again(people: dict[int, str]) -> None:
@@ -156,6 +158,7 @@ def test_any_download_of_moodle_is_grouped_again(people: dict[int, str]) -> None
 NAMES = st.lists(st.text(st.characters(codec="utf-8"), min_size=1, max_size=20), max_size=20)
 
 
+@pytest.mark.slow
 @given(NAMES, st.booleans())
 def test_any_names_are_accepted_and_can_be_assigned(names: list[str], is_twice: bool) -> None:
     """Keys are printable and unique, all paths are in the zip, and the roster can assign every submission to a student."""

@@ -42,6 +42,7 @@ def test_a_hostile_file_gets_a_report(data: bytes, tmp_path: Path) -> None:
     assert run(("inspect", tmp_path / "my_robot.urdf")).returncode == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["terminal", pytest.param("json", marks=pytest.mark.exhaustive)])
 def test_closed_standard_output(form: str) -> None:
     """One line on standard error and exit code 2, whether it was closed before or during the output."""

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import jsonschema
+import pytest
 
 from grader.report.formats import Format
 from tests.classroom.gradebooks import batch, grader, lab_text
@@ -77,6 +78,7 @@ def test_a_final_mark_is_the_headline(top: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_manual_marks_are_in_the_headline(top: Path) -> None:
     """Manual marks count in the headline, and the line below it separates them from the automatic points."""
     assert grader("mark", "anna", "essay", "3", "--gradebook", top / "book").returncode == 0
@@ -86,6 +88,7 @@ def test_manual_marks_are_in_the_headline(top: Path) -> None:
     assert "1 point needs manual grading" in found[Format.MARKDOWN]
 
 
+@pytest.mark.slow
 def test_the_late_penalty_is_in_the_headline(top: Path) -> None:
     """The headline includes the late penalty, unlike the score of the criteria."""
     (top / "late.toml").write_text(
@@ -102,6 +105,7 @@ def test_the_late_penalty_is_in_the_headline(top: Path) -> None:
     assert_headlines(found, "3.8 / 11", "Points: 6 automatic - 2.2 late.", 6, expected)
 
 
+@pytest.mark.slow
 def test_an_excused_student_has_no_points_in_the_headline(top: Path) -> None:
     """The headline of an excused student has no points, whatever the criteria give."""
     assert grader("mark", "anna", "total", "excused", "--gradebook", top / "book").returncode == 0

@@ -63,6 +63,7 @@ def test_levels(level: str, says: str) -> None:
         assert ("-1.57" in text) == (level == "edit"), kind
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wanted", LEVELS)
 @pytest.mark.parametrize("allowed", ["", *LEVELS])
 def test_an_option_never_exceeds_the_rubric(allowed: str, wanted: str, tmp_path: Path) -> None:
@@ -135,6 +136,7 @@ def test_fix_of_several_files_needs_a_folder(tmp_path: Path) -> None:
     assert (done.returncode, b"cannot make the folder " in done.stderr) == (2, True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["same", "symlink", "hard link", "inside"])
 def test_fix_never_overwrites_what_is_graded(kind: str, tmp_path: Path) -> None:
     """Neither by its name, nor by a link, nor another file of the folder that is graded."""
@@ -166,6 +168,7 @@ def test_fix_of_nothing(tmp_path: Path) -> None:
     assert not (tmp_path / "fixed.urdf").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("steps", "reserve", "written"), [(0, 20, False), (26, 20, True), (4, 0, False)]
 )
@@ -266,6 +269,7 @@ def test_a_rubric_that_shows_no_edits_writes_no_fix(tmp_path: Path) -> None:
 MISSPELT_FRAME = ROOT / "submissions/lab6/rviz-fixed-frame-misspelt"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(path.name for path in MISSPELT_FRAME.glob("my_robot/*")))
 def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
     """Without any one file or folder of the package the search does not fail."""
@@ -275,6 +279,7 @@ def test_what_is_missing_costs_no_other_hint(name: str, tmp_path: Path) -> None:
     assert b"the grader itself failed" not in run(("grade", tmp_path / "sample")).stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("place", "failing"),
     [

@@ -77,6 +77,7 @@ def test_concurrent_marks(top: Path) -> None:
     assert (found["anna"][1], found["emil"][1]) == (2.5, 2)
 
 
+@pytest.mark.slow
 def test_no_report_names_an_account(top: Path) -> None:
     """Without `--by` no report, table or feedback names an author; with it, that name."""
     book, account = ("--gradebook", top / "book"), {"LOGNAME": "jdoe47"}

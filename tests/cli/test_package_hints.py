@@ -111,6 +111,7 @@ def test_the_mistake_itself_is_corrected(name: str, tmp_path: Path) -> None:
     assert not [result for result in graded(folder)["results"] if result["status"] == "failed"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["default value of a path", "fixed frame"])
 def test_the_cause_gives_no_answer_away(name: str, tmp_path: Path) -> None:
     """Below the level edit the hint says where and what is wrong, in the words of the file's format."""

@@ -161,6 +161,7 @@ def test_a_report_that_cannot_be_printed_is_not_saved(place: Path) -> None:
     assert (done.returncode, files(place)) == (2, before), done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", ["r.json", "solution/new.urdf", "f.urdf"])
 def test_other_files_are_written(place: Path, target: str) -> None:
     """A fix may replace any other file, and a file that is not there yet may be beside what is read."""

@@ -129,6 +129,7 @@ def test_a_sheet_is_never_overwritten(book: Path) -> None:
     assert file.read_text() == "mine"
 
 
+@pytest.mark.slow
 def test_an_anonymous_review(book: Path) -> None:
     """No name, key, path or file name: not in pages, captions, addresses and messages, and not in a sheet."""
     with running(book, by="Kim", is_anonymous=True) as served:

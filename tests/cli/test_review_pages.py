@@ -202,6 +202,7 @@ def test_an_item_is_marked_as_it_was_shown(review: Review, book: Path) -> None:
     assert 'class="each"' not in all_marked
 
 
+@pytest.mark.slow
 def test_documents_are_shown_where_no_answer_was_found(review: Review) -> None:
     """An answer without the expected heading is read on the page, not searched for in a zip."""
     found = addresses(review)

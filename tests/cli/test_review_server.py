@@ -156,6 +156,7 @@ def test_marking_again_changes_a_mark_and_a_hyphen_withdraws_it(review: Review, 
     assert review.post("end", {"do": "again"}).json == go["1"]
 
 
+@pytest.mark.slow
 def test_a_mark_of_another_person_is_replaced_only_if_asked(book: Path) -> None:
     """Whether the page has shown it or not; the answer has the mark, and is the same for a later one."""
 
@@ -199,6 +200,7 @@ def test_rows_that_have_gone_are_named_before_the_next_save(review: Review, book
     assert rows_of(book) == ["1", "2", "1"]
 
 
+@pytest.mark.slow
 def test_states(review: Review, book: Path) -> None:
     """Of marked items, of those that were marked before the submission changed, and of all."""
     shown: dict[str, list[tuple[str, str]]] = {}
@@ -226,6 +228,7 @@ def test_states(review: Review, book: Path) -> None:
     assert "did you mean 'essay'" in wrong["error"]
 
 
+@pytest.mark.slow
 def test_marks_at_once_and_the_end(review: Review, book: Path) -> None:
     """Requests that arrive together are followed one after the other; the end says how many are marked, and the next command."""
     with ThreadPoolExecutor(ITEMS) as pool:
@@ -450,6 +453,7 @@ def test_the_command(book: Path, ending: signal.Signals) -> None:
     assert "0.5" in (book / "grades.csv").read_text().splitlines()[1].split(",")
 
 
+@pytest.mark.slow
 def test_a_pdf_is_served_to_the_viewer(tmp_path: Path) -> None:
     """The page of an answer in a PDF has the file, opened on its page; what is no PDF is not served."""
     data, birch = pdf(["Title"], ["Task 1: Step 1", "The roots."]), tmp_path / "class" / "birch"

@@ -217,6 +217,7 @@ def test_several_robots_are_a_list(tmp_path: Path) -> None:
         assert view.page("b.urdf").part("broken") == ""
 
 
+@pytest.mark.slow
 def test_arguments_of_xacro_are_tried(tmp_path: Path) -> None:
     """The page has each with its default; values are expanded without writing a file, also after a change, until they are reset."""
     file = tmp_path / "r.urdf.xacro"
@@ -355,6 +356,7 @@ def test_meshes_are_triangles(package: Path) -> None:
             assert view.get(address).status == 404
 
 
+@pytest.mark.slow
 def test_meshes_have_limits_that_are_said(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One with too many triangles is shown with fewer, one beyond all as its box."""
     monkeypatch.setattr(mesh_data, "_MAX_TRIANGLES", 8)

@@ -134,6 +134,7 @@ def test_unreadable_states_are_waited_out(robot: Path, watch: Watch) -> None:
     assert BETTER in done.out[4]
 
 
+@pytest.mark.slow
 def test_a_folder_with_saved_reports_in_it(tmp_path: Path, watch: Watch) -> None:
     """Whatever is graded counts; the grader's own output does not, to avoid endless rounds."""
     folder = tmp_path / "lab6"
@@ -162,6 +163,7 @@ def test_a_folder_with_saved_reports_in_it(tmp_path: Path, watch: Watch) -> None
     assert '"lidar-frame"' in (folder / "report.json").read_text()
 
 
+@pytest.mark.slow
 def test_a_rubric_in_a_file_is_watched(robot: Path, tmp_path: Path, watch: Watch) -> None:
     """Its mistakes are reported line by line and waited out; the URDF is graded by the current rubric."""
     rubric = tmp_path / "rules" / "lab.toml"

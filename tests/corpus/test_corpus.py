@@ -1,5 +1,7 @@
 """Every case of the corpus prints and writes what is expected of it."""
 
+import re
+import shlex
 from pathlib import Path
 
 import pytest
@@ -16,7 +18,14 @@ def is_costly(case: Case) -> bool:
     return case.path.parent.name == "class" and case.index % STEP > 0
 
 
-@pytest.mark.every(kind=lambda case: case.path)
+def command_of(case: Case) -> tuple[str, ...]:
+    """Return the command that a case runs first: `rubric new`, without options and arguments."""
+    words = shlex.split(case.commands[0])
+    command = [word for word in words if re.fullmatch("[a-z]+", word)]
+    return tuple(command[: 2 if "rubric" in command[:1] else 1])
+
+
+@pytest.mark.every(kind=lambda case: (case.path.parent.name, *command_of(case)))
 @pytest.mark.parametrize("case", light(read_corpus(), is_costly), ids=lambda case: case.name)
 def test_the_case_is_as_expected(case: Case, tmp_path: Path) -> None:
     """Standard output, standard error, exit codes and written files; `python -m tests.corpus` writes them again."""

@@ -44,6 +44,7 @@ def base(size: str, mass_at: str) -> str:
     return f'<link name="base">{visual}{inertial}</link>'
 
 
+@pytest.mark.slow
 @examples(60)
 @example(
     size=(1.0, 1.0, 0.3046875),

@@ -80,6 +80,7 @@ def test_lists_problems_of_what_is_typed(in_diffdrive: Run) -> None:
     in_diffdrive(act)
 
 
+@pytest.mark.slow
 def test_counts_columns_as_editors_do(in_lab6: Run) -> None:
     """A character of two units of UTF-16 moves what is behind it by two."""
 
@@ -95,6 +96,7 @@ def test_counts_columns_as_editors_do(in_lab6: Run) -> None:
     in_lab6(act)
 
 
+@pytest.mark.slow
 def test_a_closed_file_counts_as_on_the_disk(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
         await one.open(_CONTROLLERS)
@@ -106,6 +108,7 @@ def test_a_closed_file_counts_as_on_the_disk(in_diffdrive: Run) -> None:
     in_diffdrive(act)
 
 
+@pytest.mark.slow
 def test_what_is_saved_elsewhere_counts(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
         text = one.text(_CONTROLLERS)
@@ -173,6 +176,7 @@ def test_lists_criteria_of_a_rubric(graded_by_lab6: Run) -> None:
     graded_by_lab6(act)
 
 
+@pytest.mark.slow
 def test_one_mistake_is_one_diagnostic(graded_by_lab6: Run) -> None:
     """What is assumed, what it costs and what it costs besides are said with the problem."""
 
@@ -246,6 +250,7 @@ def test_says_what_a_name_is(in_diffdrive: Run) -> None:
     in_diffdrive(act)
 
 
+@pytest.mark.slow
 def test_says_what_a_parameter_is(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
         at, document = one.position(_CONTROLLERS, "wheel_radius"), one.document(_CONTROLLERS)
@@ -292,6 +297,7 @@ def test_completes_names(in_diffdrive: Run) -> None:
     in_diffdrive(act)
 
 
+@pytest.mark.slow
 def test_completes_types_of_joints(in_lab6: Run) -> None:
     """Also in a file that is not well-formed, as while a tag is typed."""
 
@@ -345,6 +351,7 @@ def test_corrects_a_name(in_diffdrive: Run) -> None:
     in_diffdrive(act)
 
 
+@pytest.mark.slow
 def test_corrects_each_of_two_equal_names_in_one_line(in_diffdrive: Run) -> None:
     async def act(one: Editor) -> None:
         await one.open(_CONTROLLERS)
@@ -367,6 +374,7 @@ def test_corrects_each_of_two_equal_names_in_one_line(in_diffdrive: Run) -> None
     in_diffdrive(act)
 
 
+@pytest.mark.slow
 def test_corrects_where_the_name_is_written(in_diffdrive: Run) -> None:
     """The problem is at the call, and the name some lines below it."""
 
@@ -388,6 +396,7 @@ def test_corrects_where_the_name_is_written(in_diffdrive: Run) -> None:
     in_diffdrive(act)
 
 
+@pytest.mark.slow
 def test_corrects_a_word_for_which_ros_2_rejects_the_file(in_lab6: Run) -> None:
     async def act(one: Editor) -> None:
         await one.open(_LAB6)
@@ -488,6 +497,7 @@ def test_an_empty_folder_has_no_problems(tmp_path: Path) -> None:
     _edit(root, act)
 
 
+@pytest.mark.slow
 def test_without_the_extra_it_says_how_to_install_it() -> None:
     code = (
         "import sys; sys.modules['lsprotocol'] = None; sys.argv = ['grader', 'lsp'];"

@@ -105,6 +105,7 @@ def changed_before_reading(path: Path, data: bytes | None) -> Iterator[None]:
     path.write_bytes(before)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "data", [None, b"", b'<robot name="r">', b"PK\x03\x04"], ids=["gone", "empty", "cut", "other"]
 )

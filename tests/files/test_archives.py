@@ -562,6 +562,7 @@ def test_too_many_members(ending: str, monkeypatch: pytest.MonkeyPatch) -> None:
     )
 
 
+@pytest.mark.slow
 def test_too_many_folders() -> None:
     """Folders count as well, including those that only exist in the names of files."""
     names: dict[str, bytes | None] = {f"{n}/" + "a/" * 600 + "x": b"" for n in range(100)}
@@ -705,6 +706,7 @@ def test_an_archive_that_cannot_be_opened(tmp_path: Path) -> None:
     assert "rar archive" in str(tree.ignored[0])
 
 
+@pytest.mark.slow
 def test_damaged_archives_in_a_folder(tmp_path: Path) -> None:
     """An archive that cannot be opened is named, and the others are opened."""
     (tmp_path / "a.zip").write_bytes(b"nothing")

@@ -124,6 +124,7 @@ def test_an_encrypted_member_is_ignored(tmp_path: Path) -> None:
         opened.read("ann/a.urdf", 100)
 
 
+@pytest.mark.slow
 def test_a_zip_bomb_affects_its_student_only(tmp_path: Path) -> None:
     """A member that would unpack to more than the limit is refused before it is unpacked."""
     zeros = bytes(64 * 1024 * 1024)

@@ -46,6 +46,7 @@ def test_a_harness_holds_on_its_seeds(name: str) -> None:
             harness.run(data)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", _CRASHES, ids=lambda path: f"{path.parent.name}-{path.name}")
 def test_what_once_failed_holds(path: Path) -> None:
     """Each file in `crashes` is an input with which a harness once found a fault."""

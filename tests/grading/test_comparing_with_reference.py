@@ -54,6 +54,7 @@ def test_a_class(lab: Path) -> None:
         assert {row["id"]: row["moves"] for row in DictReader(file)} == {"ash": "4", "birch": "0"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("check", "is_needed"), [(CHECK, True), ('check = "urdf_loads"\n', False)])
 def test_the_bundle_contains_the_reference(lab: Path, check: str, is_needed: bool) -> None:
     """Also where hints, for which it is needed otherwise, are off; without such a check they decide."""

@@ -63,6 +63,7 @@ HOSTILE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", spread(HOSTILE, 1))
 def test_a_large_robot_is_searched_with_bounded_work(name: str) -> None:
     """Hundreds of anything that a search looks at take a bounded number of lines of Python."""

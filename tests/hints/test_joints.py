@@ -136,6 +136,7 @@ def graded(path: Path, *options: str) -> dict[str, Any]:
     return data
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MISTAKES)
 def test_a_mistake_is_undone(name: str, tmp_path: Path) -> None:
     """The smallest edit is found, and the file with it gets full marks; the cause is named without the edit."""

@@ -116,6 +116,7 @@ def test_the_hints_of_a_sample_hold(name: str) -> None:
     hold(SAMPLES[name].open(), SAMPLES[name].rubric)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MISTAKES)
 def test_the_hints_for_a_mistake_of_students_hold(name: str) -> None:
     """The same for each listed mistake."""

@@ -116,6 +116,7 @@ def test_xacro_in_a_urdf_is_not_repaired_number_by_number() -> None:
     )
 
 
+@pytest.mark.slow
 def test_no_hint_loses_a_point(tmp_path: Path) -> None:
     """Random damage: every hint, graded from scratch, keeps what passed and gains what it says."""
     random = Random(14)

@@ -106,6 +106,7 @@ def test_a_wrong_count_of_numbers_is_corrected(written: str) -> None:
     assert hints.is_full
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "change"),
     [
@@ -140,6 +141,7 @@ def test_a_number_near_the_expected_one_becomes_the_expected_one(written: str) -
     assert [[edit.new for edit in found.edits] for found in hints.found] == [['xyz="0 0 0.025"']]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "link"), [("arm/diameter-for-radius", "shoulder"), ("arm/box-lying", "forearm")]
 )

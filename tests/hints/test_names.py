@@ -74,6 +74,7 @@ def after(texts: Mapping[str, str], edits: Edits) -> dict[str, str]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("place", "old", "new"),
     [
@@ -176,6 +177,7 @@ _BACKWARD = (
 )
 
 
+@pytest.mark.slow
 def test_a_remapping_that_is_written_backward_is_exchanged() -> None:
     """The publisher, whose topic nothing subscribes to then, stays as it is."""
     correct = reference(RUBRICS["diffdrive"])
@@ -190,6 +192,7 @@ def test_a_remapping_that_is_written_backward_is_exchanged() -> None:
     assert applied(text.replace(*_BACKWARD).encode(), edits).decode() == text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("ending", "text", "expected"),
     [

@@ -220,6 +220,7 @@ def test_a_mistake_is_undone(mistake: str) -> None:
     assert content(after, path) == content(_REFERENCE, path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("mistake", spread(CORRECTED, 3))
 def test_a_mistake_is_corrected(mistake: str) -> None:
     """There is an edit with which everything passes that passes for the reference."""

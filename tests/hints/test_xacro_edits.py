@@ -253,6 +253,7 @@ def values(text: str) -> Iterator[tuple[str, str, str]]:
         yield from ((str(index), str(name), str(value)) for name, value in element.items())
 
 
+@pytest.mark.slow
 @given(
     seed=st.integers(0, 400),
     which=st.integers(0, 30),

@@ -46,6 +46,7 @@ def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:
     return submission.reopen(overlaid(submission.whole_tree, {path: text.encode()})), text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("path", "old", "new"),
     [
@@ -85,6 +86,7 @@ def test_a_mistake_in_xacro_is_undone(path: str, old: str, new: str) -> None:
         assert edited(text, name, first.edits) is not None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("left", "right", "expected"),
     [
@@ -134,6 +136,7 @@ def test_a_value_that_a_macro_gets_computed_is_corrected_where_it_is_given(
     assert set(texts(found.edits)) == expected
 
 
+@pytest.mark.slow
 def test_a_mistake_in_a_macro_is_not_corrected_in_its_calls() -> None:
     """Each call could get another value, but all of them are wrong for what the macro does with it."""
     submission, _ = mutant(WHEEL, "wheel_width / 2}", "wheel_width}")
@@ -141,6 +144,7 @@ def test_a_mistake_in_a_macro_is_not_corrected_in_its_calls() -> None:
     assert not [edit for edit in found.edits if edit.path == URDF]
 
 
+@pytest.mark.slow
 def test_a_value_that_a_call_lacks_on_a_side_that_nothing_tells() -> None:
     """Both values are named and none is given, if the wheel is wrong with either: a half correct edit misleads."""
     submission, text = mutant(URDF, 'side="right" outward="-1"', 'side="right"')
@@ -165,6 +169,7 @@ def texts(edits: Sequence[Edit]) -> list[str]:
     return [edit.renamed or edit.new for edit in edits]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sample", "expected"),
     [
@@ -209,6 +214,7 @@ READ = "    with open(os.path.join(share, 'my_robot.urdf')) as file:\n        ro
 PATH = "os.path.join(share, 'my_robot.urdf')"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("reading", "expected"),
     [

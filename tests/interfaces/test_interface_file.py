@@ -140,6 +140,7 @@ WORDS = st.sampled_from(
 )
 
 
+@pytest.mark.slow
 @given(st.lists(st.lists(WORDS, max_size=5), max_size=6))
 @examples(200)
 def test_a_fault_has_a_place(lines: list[list[str]]) -> None:

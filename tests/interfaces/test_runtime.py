@@ -2,12 +2,15 @@
 
 from pathlib import Path
 
+import pytest
+
 from grader.files.reading import URDF_LIMIT
 from grader.ros.workspace.opening import open_workspace
 from grader.ros.workspace.rules.reading import read_agreement
 from tests.labs.variants import make_variant
 
 
+@pytest.mark.slow
 def test_generated_interfaces_need_the_runtime_of_rosidl(tmp_path: Path) -> None:
     """package.xml declares it, as each package that is used."""
     workspace = make_variant("laundry", "solution", tmp_path)

@@ -33,6 +33,7 @@ def statuses_of(rubric: Rubric, name: str, folder: Path) -> dict[str, str]:
     return {it.criterion.id: it.outcome.status for it in results}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", spread([name for name in variants_of(LAB) if name[0] == "w"], 6))
 def test_a_wrong_variant_fails_in_its_family(rubric: Rubric, name: str, tmp_path: Path) -> None:
     """The names of the family that is wrong do not agree."""

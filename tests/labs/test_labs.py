@@ -106,6 +106,7 @@ def reference_pending(lab: str) -> frozenset[str]:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "robot", spread(ROBOTS, 80), ids=lambda robot: f"{robot.lab}-{robot.kind}-{robot.name}"
 )

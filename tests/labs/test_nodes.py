@@ -39,6 +39,7 @@ def graded(rubric: Rubric, name: str, folder: Path) -> Report:
     return grade(rubric, open_submission(str(make_variant(LAB, name, folder)), rubric.lab))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", spread([name for name in variants_of(LAB) if name[0] == "w"], 12))
 def test_a_wrong_variant_loses_the_criterion_of_its_family(
     rubric: Rubric, name: str, tmp_path: Path

@@ -378,6 +378,7 @@ def test_xml_beyond_the_limits_of_the_parser(data: bytes) -> None:
     assert reason.endswith(" is not XML")
 
 
+@pytest.mark.slow
 @given(TRIANGLES, st.integers(1, 12))
 @examples(40)
 def test_reduced_triangles_are_few_and_inside(triangles: list[Triangle], most: int) -> None:

@@ -130,6 +130,7 @@ def pythons_glob(pattern: str, root: str, *, recursive: bool = True) -> list[str
     return sorted(path for path in found if os.path.lexists(os.path.join(root, path)))
 
 
+@pytest.mark.slow
 @examples(30)
 @given(tree=trees(), pattern=_PATTERNS, recursive=st.booleans())
 @example(tree=make_tree("", [], ["a/.h", "a/b/c"]), pattern="**", recursive=True)
@@ -217,6 +218,7 @@ def test_paths_are_resolved_like_the_system(tree: Tree, parts: list[str]) -> Non
         assert reported == real
 
 
+@pytest.mark.slow
 @examples(20)
 @given(tree=trees(), folder=_FOLDERS)
 def test_listing_folders(tree: Tree, folder: str) -> None:

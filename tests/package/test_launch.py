@@ -251,6 +251,7 @@ def is_well_formed(launch: Launch) -> bool:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "data"),
     light(hostile(), lambda row: row[0] in COSTLY),

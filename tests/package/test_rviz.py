@@ -205,6 +205,7 @@ def test_class_without_a_package() -> None:
     ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     spread(

@@ -29,6 +29,7 @@ def _plain(text: str) -> str:
     return text.replace(JOINER, "")
 
 
+@pytest.mark.slow
 @given(
     st.sampled_from(["reference", "several-mistakes", "pictures-only", "setup-as-created"]),
     st.integers(-5, 20_000),

@@ -162,6 +162,7 @@ def test_scripts_make_no_markup_and_run_no_text(file: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_page_of_a_huge_robot_is_bounded() -> None:
     """A browser shows it soon: so many shapes and links are on it, and how many are not."""
     boxes = "".join(

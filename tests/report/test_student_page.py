@@ -30,6 +30,7 @@ def read(text: str | bytes) -> Any:
     return html.document_fromstring(text)
 
 
+@pytest.mark.slow
 def test_page_of_sixty_links_is_small() -> None:
     """Score, failures and three views of all shapes take less than 300 KB."""
     page = render(

@@ -151,6 +151,7 @@ def test_every_text_that_the_reader_knows_is_drawn() -> None:
         assert not re.search(r"[a-z]{2}|e", drawn), case.name
 
 
+@pytest.mark.slow
 def test_two_hundred_links_are_drawn_in_a_second() -> None:
     """A chain of boxes, cylinders and spheres, each of which overlaps its neighbours."""
     shapes = (

@@ -214,6 +214,7 @@ def trees(draw: st.DrawFn) -> Robot:
     return Robot("r", tuple(links), tuple(draw(st.permutations(joints))))
 
 
+@pytest.mark.slow
 @given(tree=trees(), draw=st.data())
 def test_poses_are_products_along_the_tree(tree: Robot, draw: st.DataObject) -> None:
     """A child's pose is its parent's times the joint's origin times the joint's motion, in any order of the queries."""
@@ -229,6 +230,7 @@ def test_poses_are_products_along_the_tree(tree: Robot, draw: st.DataObject) -> 
         assert configuration.root_of(joint.child) == "l0"
 
 
+@pytest.mark.slow
 @given(tree=trees(), draw=st.data())
 def test_relative_poses_are_consistent(tree: Robot, draw: st.DataObject) -> None:
     """T_b_c is the inverse of T_a_b times T_a_c, T_b_a undoes T_a_b, and a link in its own frame is at the identity."""
@@ -485,6 +487,7 @@ def ask_all(links: int, joints: list[Joint]) -> None:
             configuration.pose(f"l{index}")
 
 
+@pytest.mark.slow
 def test_links_on_a_long_loop_are_refused_in_linear_time() -> None:
     """Computing the poses of 6,000 links on a loop does not walk the loop 6,000 times."""
     count = 6000
@@ -496,6 +499,7 @@ def test_links_on_a_long_loop_are_refused_in_linear_time() -> None:
         ask_all(count, joints)
 
 
+@pytest.mark.slow
 def test_links_below_a_defect_are_refused_in_linear_time() -> None:
     """Computing the poses of 6,000 links below a zero axis does not walk up to it 6,000 times."""
     count = 6000

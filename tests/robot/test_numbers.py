@@ -222,6 +222,7 @@ def test_a_wrong_count_is_reported(count: int) -> None:
         vector(" ".join(["1"] * count))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text",
     [

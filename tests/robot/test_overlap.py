@@ -169,6 +169,7 @@ def test_closed_forms(
     assert penetration(b, T_w_b, a, T_w_a) == pytest.approx(max(0.0, -expected), abs=FINE)
 
 
+@pytest.mark.slow
 @examples(30)
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
 def test_no_direction_has_a_smaller_overlap(

@@ -36,6 +36,7 @@ def message(read: Reading, code: str) -> str:
 # --- Any bytes --------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @examples(60)
 @given(raw=data | st.binary(max_size=100))
 @example(raw=b"")

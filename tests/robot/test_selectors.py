@@ -130,6 +130,7 @@ def test_links_that_may_exist_are_not_ignored() -> None:
         selected(Robot("r", (Link("a"),), incomplete="an argument is not known"), "@tip")
 
 
+@pytest.mark.slow
 def test_a_long_chain_takes_linear_time() -> None:
     """Thousands of links are no problem."""
     links = tuple(Link(str(number)) for number in range(20_000))

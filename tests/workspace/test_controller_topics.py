@@ -33,6 +33,7 @@ def topic_problems(
     return [it for it in agreement_of(edited(*edits)).mismatches if it.family == "topics"]
 
 
+@pytest.mark.slow
 def test_a_controller_gets_messages_of_its_type() -> None:
     """Stamped velocities agree with diff_drive_controller, by its full name or by the name below its own."""
     assert topic_problems("TwistStamped") == []

@@ -1312,6 +1312,7 @@ def generate_launch_description():
     assert sure(agreement_of(texts)) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("file", "found"),
     [

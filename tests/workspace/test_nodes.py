@@ -119,6 +119,7 @@ def test_a_node_that_a_function_makes_has_names() -> None:
     assert opened("door", edit) == [("service", "/door/lock"), ("client", "/a")]
 
 
+@pytest.mark.slow
 def test_a_name_depends_on_the_launch_file() -> None:
     """On the name that it gives the node, the namespace, remappings, and parameters of a file."""
     named = (
@@ -437,6 +438,7 @@ FOUND = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("family", "edit", "message"), FOUND)
 def test_what_certainly_fails_is_found(family: str, edit: Edit, message: str | None) -> None:
     """What may be right has no mismatch."""
@@ -507,6 +509,7 @@ def test_code_may_be_too_long_to_search(monkeypatch: pytest.MonkeyPatch) -> None
     assert found.undecided["code"] == "the code of 'laundry' is too long to search"
 
 
+@pytest.mark.slow
 def test_conditions_may_be_nested_too_deeply() -> None:
     """The function is not searched further."""
     branches = "".join(

@@ -134,6 +134,7 @@ _RENAMED = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", _RENAMED)
 @examples(3)
 @given(new=_others)

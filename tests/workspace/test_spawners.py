@@ -28,6 +28,7 @@ GIVEN = ", parameters=[controllers]"
 NO_TYPE = "the controller manager is not given the parameters with the type of"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("given", "more", "found"),
     [

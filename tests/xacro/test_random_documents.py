@@ -19,6 +19,7 @@ def test_random_documents(part: int) -> None:
     assert differences == [], counted
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("write", "accepted"), [(grammar.document, 15), (collisions.document, 2)])
 def test_random_documents_are_the_same_in_every_run_and_often_accepted(
     write: type, accepted: int

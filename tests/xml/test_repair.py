@@ -48,6 +48,7 @@ def test_a_path_without_quotes_is_read_whole() -> None:
     assert b'<mesh filename="package://my_robot/caster.stl"/>' in found.xml
 
 
+@pytest.mark.slow
 @examples(40)
 @given(st.data())
 def test_any_damage_is_read_with_its_places(data: st.DataObject) -> None:

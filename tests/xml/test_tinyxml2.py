@@ -246,6 +246,7 @@ def _is_plain_name(name: str) -> bool:
     )
 
 
+@pytest.mark.slow
 @examples(60)
 @given(raw=data)
 def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
@@ -254,6 +255,7 @@ def test_plain_soup_means_the_same_to_lxml(raw: bytes) -> None:
     assert_alike_if_plain(raw)
 
 
+@pytest.mark.slow
 @examples(30)
 @given(text=_robots)
 def test_both_readings_give_the_same_robot(text: str) -> None:

@@ -112,6 +112,7 @@ def appended(folder: Path, start: bytes | None, marks: list[Mark], name: str = "
     return (folder / name).read_bytes()
 
 
+@pytest.mark.slow
 @given(dialect() | st.none(), MARKS, MARKS)
 def test_appended_marks_are_read_as_they_were_given(
     start: bytes | None, first: list[Mark], second: list[Mark]

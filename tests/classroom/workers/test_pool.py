@@ -50,6 +50,7 @@ def _unspeakable() -> object:
     return lambda: None
 
 
+@pytest.mark.slow
 def test_results_come_back(pool: Processes) -> None:
     """Anything that can be sent is returned, with positional and keyword arguments."""
     assert pool.submit(sorted, [3, 1, 2], reverse=True).result(HANG_TIMEOUT) == [3, 2, 1]

@@ -32,6 +32,7 @@ def picture(name: str, rubric: str = "lab6") -> Picture:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "picture"), [("svg", "<svg "), ("html", "Three views")])
 def test_a_number_that_overflows_costs_neither_picture_nor_hints(
     kind: str, picture: str, tmp_path: Path
