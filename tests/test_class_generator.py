@@ -22,6 +22,8 @@ from tests.samples import LAB6, ROOT
 sys.path.insert(0, str(ROOT / "benchmarks"))  # a folder of scripts
 import class_generator as made_up
 
+pytestmark = pytest.mark.slow
+
 MIXED, MANY, SEED = 120, 300, 1
 ALL_VARIANTS = (*made_up.MISTAKES, *made_up.EQUIVALENTS, *made_up.BROKEN)
 
@@ -50,7 +52,6 @@ def every(made: Iterable[made_up.WrittenSubmission]) -> list[made_up.WrittenSubm
     return list(made)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("layout", made_up.LAYOUTS)
 @pytest.mark.parametrize("kind", ["urdf", "mixed"])
 def test_the_same_seed_gives_the_same_bytes(kind: str, layout: str, tmp_path: Path) -> None:
@@ -60,7 +61,6 @@ def test_the_same_seed_gives_the_same_bytes(kind: str, layout: str, tmp_path: Pa
     assert digest(tmp_path / "one") == digest(tmp_path / "two") != digest(tmp_path / "other")
 
 
-@pytest.mark.slow
 def test_random_choices_are_the_same_on_every_python() -> None:
     """The results for one seed are recorded here."""
     dice = made_up.Dice("1/hand-in/0")
@@ -79,7 +79,6 @@ def test_all_urdfs_differ() -> None:
     assert len(texts) == 500
 
 
-@pytest.mark.slow
 def test_the_proportions_are_those_of_real_classes() -> None:
     """Some 37 in 100 are correct, half of them with other numbers; 6 are broken; the most frequent mistakes come first."""
     made = [
@@ -101,7 +100,6 @@ def test_the_proportions_are_those_of_real_classes() -> None:
     assert {"right-mirrored", "lidar-buried"} == set(sorted(met, key=lambda name: met[name])[-2:])
 
 
-@pytest.mark.slow
 def test_a_generated_class_loses_the_expected_criteria() -> None:
     """Every URDF of a class gets the marks that it was generated for."""
     for submission in made_up.submissions(150, SEED, "urdf"):
@@ -121,7 +119,6 @@ def test_a_variant_loses_the_expected_criteria(variant: made_up.Variant) -> None
         assert lost(made.text) == set(made.lost), made.text
 
 
-@pytest.mark.slow
 def test_two_mistakes_do_not_hide_each_other() -> None:
     """Any two mistakes in different elements lose what both lose."""
     for one, two in combinations(made_up.MISTAKES, 2):
@@ -133,7 +130,6 @@ def test_two_mistakes_do_not_hide_each_other() -> None:
 # --- A class of all kinds ---------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
 def test_all_kinds_and_names_occur(tmp_path: Path) -> None:
     """Each kind of submission and each awkward name occurs in a class of 300, and is written as far as the disk allows."""
     written = every(made_up.make_class(tmp_path, MANY, SEED, "mixed"))
@@ -150,7 +146,6 @@ def test_all_kinds_and_names_occur(tmp_path: Path) -> None:
     assert written[-1].person.login.endswith(str(MANY))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("layout", spread(made_up.LAYOUTS, 1))
 def test_every_mixed_submission_is_opened(layout: str, tmp_path: Path) -> None:
     """None causes an error of the grader, and those with a known result get it."""
@@ -194,7 +189,6 @@ def _lost(graded: StoredResult) -> set[str]:
     return lost & set(made_up.criteria())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("layout", ["canvas", "moodle"])
 @pytest.mark.parametrize("list_name", ["roster.csv", "lms.csv"])
 def test_the_lists_match_the_class(layout: str, list_name: str, tmp_path: Path) -> None:

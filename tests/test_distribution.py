@@ -17,6 +17,8 @@ import pytest
 
 from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment
 
+pytestmark = pytest.mark.slow
+
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 URLS = PROJECT["project"]["urls"]
 SITE, REPOSITORY = URLS["Documentation"], URLS["Repository"]

@@ -17,6 +17,8 @@ from grader.ros.xml.parsing import Element
 from tests.examples import examples
 from tests.rewriting import BEHAVING, Step, parse, rewritings, rewritten
 
+pytestmark = pytest.mark.slow
+
 RUBRIC = load_rubric("lab6")
 REFERENCE = parse((RUBRIC.path.parent / RUBRIC.reference / RUBRIC.urdf).read_bytes())
 
@@ -189,7 +191,6 @@ def carried(report: Report) -> set[str]:
     return {result.criterion.id for result in report.results if result.carried}
 
 
-@pytest.mark.slow
 @examples(60)
 @given(data=rewritings(REFERENCE))
 def test_every_equivalent_of_the_reference_gets_full_marks(data: bytes) -> None:
@@ -205,7 +206,6 @@ def test_every_equivalent_of_the_reference_gets_full_marks(data: bytes) -> None:
     assert report.submission.verdict == "clean"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("step", BEHAVING, ids=lambda step: step.__name__)
 def test_each_rewriting_alone_gets_full_marks(step: Step) -> None:
     """No single rewriting loses points, in three tries."""
@@ -258,7 +258,6 @@ _ADDED = st.sampled_from(
 )
 
 
-@pytest.mark.slow
 @examples(80)
 @given(draw=st.data())
 def test_no_value_is_an_error_of_the_grader(draw: st.DataObject) -> None:

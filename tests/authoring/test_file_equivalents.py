@@ -9,6 +9,8 @@ from grader.ros.config.yaml_nodes import yaml_value
 from grader.ros.workspace.rules.reading import read_agreement
 from tests.workspace.carts import cart, cart_files
 
+pytestmark = pytest.mark.slow
+
 DETECTOR = "cart_bringup/config/detector.yaml"
 
 

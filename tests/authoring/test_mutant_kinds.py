@@ -1,7 +1,11 @@
 """The kinds of mutants: samples over all of them, scores, and why some may survive."""
 
+import pytest
+
 from grader.lab.authoring.mutant_kinds import draw, kind_of, scores_by_kind, why_right
 from grader.lab.authoring.mutants import Mutant
+
+pytestmark = pytest.mark.slow
 
 
 def many(**counts: int) -> list[Mutant]:

@@ -5,6 +5,8 @@ import pytest
 from grader.lab.authoring.mutants import mutants
 from tests.authoring.robots import ARM, CHANGES
 
+pytestmark = pytest.mark.slow
+
 FOUND = {mutant.id: mutant for mutant in mutants(ARM, "birch.urdf")}
 
 

@@ -11,6 +11,8 @@ from grader.lab.submission.submission import Submission
 from grader.ros.workspace.rules.reading import read_agreement
 from tests.command_line import ROOT
 
+pytestmark = pytest.mark.slow
+
 LAB6 = ROOT / "rubrics/lab6/my_robot"
 DIFFDRIVE = ROOT / "rubrics/diffdrive/diffdrive_robot"
 

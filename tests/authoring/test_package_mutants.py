@@ -12,6 +12,8 @@ from grader.lab.submission.submission import Submission
 from tests.authoring.robots import CHANGES
 from tests.samples import LAB6, reference
 
+pytestmark = pytest.mark.slow
+
 REFERENCE = reference()
 
 

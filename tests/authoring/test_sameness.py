@@ -9,6 +9,8 @@ from tests.authoring.robots import ARM, CHANGES
 from tests.hints.behaviour import behaviour, differences
 from tests.hints.trials import BASES
 
+pytestmark = pytest.mark.slow
+
 REFERENCE = read_as_ros(ARM.encode(), "birch.urdf")
 
 
@@ -37,7 +39,6 @@ def test_a_name_that_something_refers_to_counts() -> None:
     assert not is_same('joint name="tool_joint"', 'joint name="other"', "tool_joint")
 
 
-@pytest.mark.slow
 def test_no_mutant_of_lab6_that_counts_as_the_same_robot_behaves_otherwise() -> None:
     """Shapes, colours, axes and frames, measured in the frame of the base, are where they were."""
     base = BASES["reference"]

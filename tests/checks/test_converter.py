@@ -18,6 +18,8 @@ from tests.checks.submissions import REFERENCE, URDF, Submitted
 from tests.documents.files import docx
 from tests.samples import ROOT
 
+pytestmark = pytest.mark.slow
+
 PLACES = ["task 1 step 15", "step 15"]
 ANSWER = "There are two roots."
 QUESTION = "What happens?"
@@ -33,7 +35,6 @@ def answer_in(submitted: Submitted, locations: Sequence[str] = PLACES) -> Outcom
     return outcome
 
 
-@pytest.mark.slow
 def test_a_word_file_is_read() -> None:
     """Paragraphs and tables of a Word file are read as lines."""
     data = docx(
@@ -56,7 +57,6 @@ def test_a_word_file_is_read() -> None:
     assert row.measured == "Task 2 step 2\trviz2 shows it"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["answers.docx", "answers.pdf"])
 def test_a_damaged_document_is_named(name: str) -> None:
     """A document that cannot be read is named for the person who grades; other documents are read all the same."""
@@ -70,7 +70,6 @@ def test_a_damaged_document_is_named(name: str) -> None:
     assert f" (not read: {name} " in beside.message
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["answers.docx", "answers.pdf"])
 def test_without_the_readers_the_document_is_named(
     name: str, monkeypatch: pytest.MonkeyPatch
@@ -97,7 +96,6 @@ def converter(code: bytes, path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("grader.lab.documents.converter.__file__", str(path))
 
 
-@pytest.mark.slow
 def test_all_documents_share_one_budget(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A document that takes too long uses up the time of later documents; texts are read all the same."""
     log = tmp_path / "log"
@@ -135,7 +133,6 @@ def test_the_time_of_a_converter_is_taken_from_the_next(
     assert log.read_text().split() == ["3.0", "2.75", "2.5"]
 
 
-@pytest.mark.slow
 def test_the_converter_bounds_its_own_processor_time(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -167,7 +164,6 @@ def test_a_document_is_converted_once(tmp_path: Path, monkeypatch: pytest.Monkey
     assert log.read_text() == "x"
 
 
-@pytest.mark.slow
 def test_the_number_of_converted_documents_is_limited(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

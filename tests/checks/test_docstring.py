@@ -4,6 +4,8 @@ import pytest
 
 from grader.lab.checks.check import Documentation, documentation
 
+pytestmark = pytest.mark.slow
+
 WHOLE = """A robot has wheels.
 
     They may be

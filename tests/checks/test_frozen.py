@@ -11,6 +11,8 @@ from grader.lab.grading.subjects import Subjects
 from grader.ros.urdf.reader import read_urdf
 from tests.samples import LAB6, opened
 
+pytestmark = pytest.mark.slow
+
 NAMED = """
     Submission Tree File Package Read Reading Problem Kind Location LazyLocation Configuration Robot Link Joint Limit Mimic Dynamics
     SafetyController Calibration Visual Collision Inertial Box Cylinder Sphere Mesh Origin Material Transform Outcome

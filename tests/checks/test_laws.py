@@ -53,6 +53,8 @@ from tests.checks.robots import (
 from tests.examples import examples
 from tests.work import limited_work
 
+pytestmark = pytest.mark.slow
+
 SIZE = (0.6, 0.4, 0.2)
 PLATE, ROD, BALL = Box(SIZE), Cylinder(0.1, 0.5), Sphere(0.1)
 TEXTS = {PLATE: box(*SIZE), ROD: cylinder(0.1, 0.5), BALL: sphere(0.1)}

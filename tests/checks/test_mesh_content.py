@@ -9,6 +9,8 @@ from grader.base.errors import InputError, NotDecided
 from grader.files.tree import File
 from grader.ros.package.mesh_content import content_fault
 
+pytestmark = pytest.mark.slow
+
 BINARY = b"\0" * 80 + struct.pack("<I", 1) + b"\0" * 50
 
 

@@ -19,6 +19,8 @@ from grader.base.toml_types import (
     toml_type,
 )
 
+pytestmark = pytest.mark.slow
+
 NUMBER, TEXT, WHOLE = {"type": "number"}, {"type": "string"}, {"type": "integer"}
 SCALAR = {"anyOf": [TEXT, NUMBER, {"type": "boolean"}]}
 CONTENT = {"anyOf": [*SCALAR["anyOf"], {"type": "array", "items": SCALAR, "minItems": 1}]}

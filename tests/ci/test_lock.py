@@ -12,6 +12,8 @@ from packaging.utils import canonicalize_name
 
 from tests.command_line import ROOT
 
+pytestmark = pytest.mark.slow
+
 PYTHONS = ("3.11", "3.12", "3.13", "3.14")
 SYSTEMS = {"linux": ("Linux", "posix"), "darwin": ("Darwin", "posix"), "win32": ("Windows", "nt")}
 TEXT = (ROOT / "requirements.lock").read_text(encoding="utf-8")

@@ -13,6 +13,8 @@ from grader.app.cli.changed_packages import main
 from tests.ci.conftest import git, repository
 from tests.command_line import HANG_TIMEOUT, ROOT
 
+pytestmark = pytest.mark.slow
+
 PAGE = (ROOT / "docs/ci.md").read_text(encoding="utf-8")
 SAMPLES = ROOT / "submissions/lab6"
 

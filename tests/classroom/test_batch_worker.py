@@ -14,6 +14,8 @@ from grader.lab.checks.outcome import Outcome, failed, how_far_off, judged, meas
 from tests.classroom.class_runs import report_in_process
 from tests.samples import LAB6, ROOT
 
+pytestmark = pytest.mark.slow
+
 URDF = (ROOT / "submissions/lab6/lidar-buried/my_robot/urdf/my_robot.urdf").read_bytes()
 LARGE = URDF + b" " * 1024 * 1024
 

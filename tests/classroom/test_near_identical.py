@@ -8,6 +8,8 @@ import pytest
 from tests.classroom.gradebooks import grader
 from tests.samples import ROOT
 
+pytestmark = pytest.mark.slow
+
 URDF = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
 OWN = URDF.replace("0.15 0 0.225", "0.15 0 0.2")  # a mistake
 PARTS = "the same links, joints and materials"

@@ -16,6 +16,8 @@ from tests.checks.submissions import jpeg
 from tests.classroom.gradebooks import PNG, batch, grader, lab_text, urdf, write_submission
 from tests.documents.files import docx, pdf
 
+pytestmark = pytest.mark.slow
+
 ANSWERS = {
     "ash": "The roots.",
     "birch": "No.",

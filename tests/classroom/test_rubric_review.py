@@ -2,9 +2,13 @@
 
 from pathlib import Path
 
+import pytest
+
 from grader.classroom.results.results import Results
 from tests.classroom.gradebooks import grader
 from tests.samples import ROOT
+
+pytestmark = pytest.mark.slow
 
 URDF = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
 LOW = ("0.15 0 0.225", "0.15 0 0.2")

@@ -19,6 +19,8 @@ from grader.classroom.marks.gradebook_folder import (
 )
 from tests.examples import examples
 
+pytestmark = pytest.mark.slow
+
 TEXT = st.text(st.characters(codec="utf-8"), max_size=8)
 TEXTS = st.lists(TEXT, max_size=3).map(tuple)
 SETTINGS = st.builds(

@@ -15,6 +15,8 @@ from grader.classroom.tables import CellValue
 from tests.classroom.class_runs import grader
 from tests.command_line import ROOT
 
+pytestmark = pytest.mark.slow
+
 _MAIN = "{http://schemas.openxmlformats.org/spreadsheetml/2006/main}"
 SMALL = ROOT / "tests/corpus/class/small"
 

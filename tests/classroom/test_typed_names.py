@@ -11,6 +11,8 @@ from grader.base.errors import InputError
 from grader.classroom.roster.roster import Student
 from grader.classroom.roster.typed_names import as_number, find_typed, number_in, read_points
 
+pytestmark = pytest.mark.slow
+
 ASH = Student("s1", "Ash, Ann Marie", "ann.ash@example.org", "aash", canvas="101")
 BIRCH = Student("s2", "Jörg Birch-Müller", "JM@example.org", "jm2", moodle="77")
 CEDAR = Student("s3", "Ann Cedar", "cedar@example.org", "cedar")

@@ -9,6 +9,8 @@ import pytest
 from tests.classroom.gradebooks import batch, grader, lab_text, urdf, write_submission
 from tests.report.class_pages import ClassPageReader
 
+pytestmark = pytest.mark.slow
+
 
 def adjusted(text: str, name: str, action: str) -> str:
     """Return a rubric with an adjustment."""

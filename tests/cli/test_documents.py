@@ -9,6 +9,8 @@ from tests.classroom.gradebooks import grader
 from tests.command_line import run
 from tests.documents.files import PICTURE, docx
 
+pytestmark = pytest.mark.slow
+
 
 def test_without_the_extra_one_line_says_what_was_not_searched(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch

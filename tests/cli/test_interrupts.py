@@ -6,6 +6,8 @@ import sys
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 SCRIPT = """
 import signal, sys, time
 from grader.app.cli.ending import quiet_interrupts

@@ -18,6 +18,8 @@ from grader.workers.queue import Progress as State
 from tests.classroom.gradebooks import ENVIRONMENT, make_class
 from tests.samples import ROOT
 
+pytestmark = pytest.mark.slow
+
 
 def on_terminal(*arguments: object) -> str:
     """Return what a command writes to a terminal of 80 columns and 24 lines, without control sequences."""

@@ -8,6 +8,8 @@ from hypothesis import strategies as st
 
 from grader.classroom.reports.class_reports import file_names
 
+pytestmark = pytest.mark.slow
+
 AWKWARD = st.text(
     st.sampled_from('aA.-/\\:*?"<>| \u202e\u00e9e\u0301שß測😀\tcon01'), min_size=1, max_size=300
 )

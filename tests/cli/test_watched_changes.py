@@ -10,6 +10,8 @@ from grader.lab.checks.outcome import Status
 from grader.lab.grading.report import Report, Result
 from tests.samples import SAMPLES
 
+pytestmark = pytest.mark.slow
+
 SHORT = SAMPLES["lidar-offset-in-visual"].alone.grade()  # 64 of 70: lidar-frame fails
 Change = Callable[[Result], Result]
 

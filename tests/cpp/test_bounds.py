@@ -5,10 +5,11 @@ import pytest
 from grader.ros.cpp.syntax import MAX_BYTES, parse_cpp
 from grader.ros.python.budget import Budget
 
+pytestmark = pytest.mark.slow
+
 TOO_LONG = ["a<" * 20_000, "a<b," * 10_000, "f(" * 20_000]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("text", TOO_LONG)
 def test_work_of_the_grammar(text: str) -> None:
     """What the grammar reads in too many ways is not read."""

@@ -12,6 +12,8 @@ from grader.ros.python.budget import Budget
 from tests.cpp.test_values import evaluated
 from tests.examples import examples
 
+pytestmark = pytest.mark.slow
+
 _WORDS = st.sampled_from(
     [
         *(
@@ -37,7 +39,6 @@ _WORDS = st.sampled_from(
 )
 
 
-@pytest.mark.slow
 @examples(150)
 @given(st.lists(_WORDS, max_size=60).map(" ".join))
 @example("class A : public A { A() : A(a) { a = a; } A a = a; };")

@@ -8,6 +8,8 @@ from tests.differential.compared import Compared, summary
 from tests.oracles import colcon_builds, urdfdom
 from tests.robot.edge_cases import EDGE_CASES
 
+pytestmark = pytest.mark.slow
+
 needs_urdfdom = pytest.mark.skipif(
     not urdfdom.is_available(), reason="needs Linux on x86-64, and urdfdom: .[test]"
 )
@@ -50,7 +52,6 @@ def test_the_library_gives_the_verdicts_of_the_program() -> None:
     assert wrong == []
 
 
-@pytest.mark.slow
 @needs_urdfdom
 def test_mutated_urdfs() -> None:
     """The verdict on each mutant is that of ROS 2; the mutants are the same in every run, and some of them load."""

@@ -2,9 +2,13 @@
 
 from collections.abc import Mapping
 
+import pytest
+
 from grader.lab.documents.evidence import FoundEvidence, find_evidence
 from tests.checks.submissions import REFERENCE, URDF, Submitted, png
 from tests.documents.files import PICTURE, docx, pdf
+
+pytestmark = pytest.mark.slow
 
 STEP_8 = ["task 1 step 8"]
 WEBCAM = ["task 3 step 3", "task 3", "webcam", "camera"]

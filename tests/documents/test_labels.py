@@ -7,6 +7,8 @@ from hypothesis import strategies as st
 from grader.lab.documents.headings import matches, read_label
 from tests.work import limited_work
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize(
     ("text", "task", "steps"),

@@ -9,6 +9,8 @@ from grader.files.tree import File
 from grader.lab.documents import pictures
 from grader.lab.documents.pictures import EmbeddedPicture, NotShown, read_picture
 
+pytestmark = pytest.mark.slow
+
 SHOWN = {
     "PNG": b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR",
     "JPEG": b"\xff\xd8\xff\xe0",

@@ -13,6 +13,8 @@ from grader.ros.urdf.resting import body_of, find_rest
 from grader.ros.urdf.standing_robot import StandingRobot
 from tests.examples import examples
 
+pytestmark = pytest.mark.slow
+
 _SIZES = st.floats(0.05, 1.0)
 _SHIFTS = st.floats(-0.6, 0.6)
 _INSIDE = st.floats(-0.5, 0.5)  # of the size of a box
@@ -44,7 +46,6 @@ def base(size: str, mass_at: str) -> str:
     return f'<link name="base">{visual}{inertial}</link>'
 
 
-@pytest.mark.slow
 @examples(60)
 @example(
     size=(1.0, 1.0, 0.3046875),

@@ -17,6 +17,8 @@ from tests.driving.test_edges import BALL, LEFT, RIGHT
 from tests.driving.test_laws import base, configuration, part
 from tests.samples import SAMPLES
 
+pytestmark = pytest.mark.slow
+
 BODY = base("0.4 0.2 0.05", "-0.05 0 0")
 
 

@@ -15,6 +15,8 @@ from grader import __version__
 from grader.app.cli.lsp import lsp
 from tests.command_line import HANG_TIMEOUT, ROOT, run
 
+pytestmark = pytest.mark.slow
+
 EXTENSION = ROOT / "editors/vscode"
 MANIFEST: dict[str, Any] = json.loads((EXTENSION / "package.json").read_text(encoding="utf-8"))
 LOCK: dict[str, Any] = json.loads((EXTENSION / "package-lock.json").read_text(encoding="utf-8"))

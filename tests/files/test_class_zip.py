@@ -16,6 +16,8 @@ from grader.files.class_source import ClassZip
 from grader.files.tree import Tree
 from tests.classroom.class_runs import Item, bomb, tarred
 
+pytestmark = pytest.mark.slow
+
 NAMES = st.lists(
     st.text(st.sampled_from("ab./\\ é"), min_size=1, max_size=12).filter(
         lambda name: not name.endswith(("/", "\\"))
@@ -124,7 +126,6 @@ def test_an_encrypted_member_is_ignored(tmp_path: Path) -> None:
         opened.read("ann/a.urdf", 100)
 
 
-@pytest.mark.slow
 def test_a_zip_bomb_affects_its_student_only(tmp_path: Path) -> None:
     """A member that would unpack to more than the limit is refused before it is unpacked."""
     zeros = bytes(64 * 1024 * 1024)

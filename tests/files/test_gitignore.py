@@ -16,6 +16,8 @@ from grader.files.gitignore import without_git_ignored
 from tests.examples import examples
 from tests.work import limited_work
 
+pytestmark = pytest.mark.slow
+
 FILES = (
     "a",
     "b.c",
@@ -82,7 +84,6 @@ def make_files(root: Path, places: Mapping[str, str]) -> None:
         (root / folder / ".gitignore").write_text(text, encoding="utf-8", newline="")
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("git") is None, reason="needs git")
 @given(PLACES)
 @example({"": "*.c\n!b.c\nd/\n"})

@@ -9,6 +9,8 @@ import pytest
 
 from tests.command_line import ROOT, run
 
+pytestmark = pytest.mark.slow
+
 REFERENCE = ROOT / "tests/corpus/grading/arm.urdf"
 HEAD = """\
 id = "arm"
@@ -54,7 +56,6 @@ def test_a_class(lab: Path) -> None:
         assert {row["id"]: row["moves"] for row in DictReader(file)} == {"ash": "4", "birch": "0"}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("check", "is_needed"), [(CHECK, True), ('check = "urdf_loads"\n', False)])
 def test_the_bundle_contains_the_reference(lab: Path, check: str, is_needed: bool) -> None:
     """Also where hints, for which it is needed otherwise, are off; without such a check they decide."""

@@ -7,6 +7,8 @@ from grader.lab.checks.outcome import failed
 from grader.lab.grading.explanation import explain
 from grader.ros.urdf.reader import read_urdf
 
+pytestmark = pytest.mark.slow
+
 TEXT = '<robot name="a">\n<link name="x"><visual><orign/></visual></link>\n</robot>\n'
 
 

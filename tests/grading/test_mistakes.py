@@ -6,6 +6,8 @@ from grader.lab.grading.grade import grade
 from grader.lab.submission.opening import read_submission
 from tests.samples import LAB6, ROOT
 
+pytestmark = pytest.mark.slow
+
 SAMPLES = (
     "lidar-buried",
     "right-wheel-mirrored",

@@ -19,6 +19,8 @@ from grader.lab.submission.submission import Opening
 from tests.checks.submissions import Submitted, gif, png
 from tests.conversion import convert_here
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(autouse=True)
 def _convert_here(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,6 +19,8 @@ from tests.grading.slips import (
 )
 from tests.samples import LAB6
 
+pytestmark = pytest.mark.slow
+
 SLIPS = [*written_slips()]
 KINDS = [*dict.fromkeys((slip.rubric.id, slip.kind) for slip in SLIPS)]
 _PAIRED = 29  # every so many slips are tried beside mistakes of values
@@ -79,7 +81,6 @@ def test_there_are_enough() -> None:
     assert len({kind for _, kind in KINDS}) >= 6
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("rubric", "kind"), KINDS)
 def test_a_slip_costs_one_criterion(rubric: str, kind: str) -> None:
     """At most one criterion loses points, nothing is open, and the report names the line at the one that pays."""
@@ -103,7 +104,6 @@ def test_a_slip_costs_one_criterion(rubric: str, kind: str) -> None:
     assert paid
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("slip", SLIPS[::_PAIRED], ids=lambda slip: f"{slip.rubric.id}-{slip.name}")
 def test_a_slip_hides_no_mistake(slip: WrittenSlip) -> None:
     """Beside a mistake of a value elsewhere the costs add, unless one criterion pays for both."""
@@ -149,7 +149,6 @@ def test_a_package_without_a_robot() -> None:
     assert [paid.payer for paid in report.meant.paid] == ["setup-imports"]
 
 
-@pytest.mark.slow
 def test_what_is_ignored_without_harm_costs_nothing() -> None:
     """A robot that is right as written keeps its points, beside a mistake elsewhere as well."""
     files = solution(LAB6).whole_tree.files

@@ -11,6 +11,8 @@ from grader.base.toml_file import read_toml
 from grader.lab.rubric.rubric import shipped_rubrics
 from tests.examples import examples
 
+pytestmark = pytest.mark.slow
+
 SHIPPED = next(iter(shipped_rubrics().values())).read_text(encoding="utf-8")[:3000]
 
 

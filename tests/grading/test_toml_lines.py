@@ -12,6 +12,8 @@ from grader.base.toml_file import TomlPath as Path
 from grader.base.toml_file import key_lines, line_of
 from tests.examples import examples
 
+pytestmark = pytest.mark.slow
+
 
 def test_a_missing_key_has_the_line_of_its_table() -> None:
     """A missing key has the line of its table, or the first line of the file, which an empty one has too."""
@@ -192,7 +194,6 @@ def paths_of(data: Any, path: Path = ()) -> Iterator[Path]:
             yield from paths_of(value, (*path, index))
 
 
-@pytest.mark.slow
 @examples(40)
 @given(documents(), st.booleans())
 def test_every_key_has_its_line(document: tuple[str, dict[Path, int]], windows: bool) -> None:

@@ -15,6 +15,8 @@ from tests.hints.trials import BASES, graded, reference_draft, search_for
 from tests.samples import LAB6, ROOT, RUBRICS
 from tests.work import limited_work
 
+pytestmark = pytest.mark.slow
+
 REFERENCE = BASES["reference"].text
 MANY = 150
 _ARM = (ROOT / "rubrics" / "arm" / "arm.urdf").read_text()
@@ -63,7 +65,6 @@ HOSTILE = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", spread(HOSTILE, 1))
 def test_a_large_robot_is_searched_with_bounded_work(name: str) -> None:
     """Hundreds of anything that a search looks at take a bounded number of lines of Python."""

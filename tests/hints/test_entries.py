@@ -10,6 +10,8 @@ from grader.report.content import failures
 from tests.hints.trials import BASES
 from tests.samples import LAB6, SAMPLES
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("name", ["caster-misnamed"])
 def test_an_earlier_edit_is_named_by_the_entry_that_shows_it(name: str) -> None:

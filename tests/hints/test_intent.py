@@ -12,6 +12,8 @@ from grader.lab.submission.submission import Submission
 from tests.hints.trials import BASES, hints_for
 from tests.samples import LAB6
 
+pytestmark = pytest.mark.slow
+
 REFERENCE = BASES["reference"].text
 BOX, LIDAR = 'size="0.6 0.4 0.2"', 'xyz="0.15 0 0.225"'
 LEFT, RIGHT = 'xyz="-0.15 0.2 0" rpy="-1.57 0 0"', 'xyz="-0.15 -0.2 0" rpy="-1.57 0 0"'

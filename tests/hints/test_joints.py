@@ -8,6 +8,8 @@ import pytest
 
 from tests.command_line import run
 
+pytestmark = pytest.mark.slow
+
 ARM = Path(__file__).parent / "arm"
 REFERENCE = (ARM / "arm.urdf").read_text(encoding="utf-8")
 SHOULDER = 'lower="-1.5708" upper="0.7854" effort="10" velocity="2"'
@@ -136,7 +138,6 @@ def graded(path: Path, *options: str) -> dict[str, Any]:
     return data
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", MISTAKES)
 def test_a_mistake_is_undone(name: str, tmp_path: Path) -> None:
     """The smallest edit is found, and the file with it gets full marks; the cause is named without the edit."""

@@ -15,6 +15,8 @@ from tests.hints.broken_urdfs import BROKEN, REFERENCE, Broken
 from tests.hints.trials import graded, search_for
 from tests.samples import LAB6_SAMPLES, SAMPLES, opened
 
+pytestmark = pytest.mark.slow
+
 # Samples whose text is what is wrong; an empty file has no hint.
 REJECTED = [
     name
@@ -116,7 +118,6 @@ def test_xacro_in_a_urdf_is_not_repaired_number_by_number() -> None:
     )
 
 
-@pytest.mark.slow
 def test_no_hint_loses_a_point(tmp_path: Path) -> None:
     """Random damage: every hint, graded from scratch, keeps what passed and gains what it says."""
     random = Random(14)

@@ -9,6 +9,8 @@ from tests.hints.students import MISTAKES
 from tests.hints.trials import BASES, hints_for
 from tests.samples import SAMPLES
 
+pytestmark = pytest.mark.slow
+
 REFERENCE = BASES["reference"]
 _MUTANTS = 8  # of each correct robot; all of them take minutes: python -m tests.hints.measure
 
@@ -66,7 +68,6 @@ def test_sample_mistakes_get_hints_that_lead_to_full_marks() -> None:
     assert left == without_a_file | without_a_part | of_diffdrive | of_several_numbers
 
 
-@pytest.mark.slow
 def test_mistakes_of_students_get_hints_that_lead_to_full_marks() -> None:
     """At least 95 % of mistakes that cost points lose nothing with all edits, and 90 % become the correct robot."""
     found = list(of_students())
@@ -106,7 +107,6 @@ def test_a_wrong_count_of_numbers_is_corrected(written: str) -> None:
     assert hints.is_full
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "change"),
     [
@@ -141,7 +141,6 @@ def test_a_number_near_the_expected_one_becomes_the_expected_one(written: str) -
     assert [[edit.new for edit in found.edits] for found in hints.found] == [['xyz="0 0 0.025"']]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "link"), [("arm/diameter-for-radius", "shoulder"), ("arm/box-lying", "forearm")]
 )

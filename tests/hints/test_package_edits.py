@@ -12,6 +12,8 @@ from grader.lab.submission.submission import Submission
 from tests.examples import spread
 from tests.samples import LAB6, SAMPLES, reference
 
+pytestmark = pytest.mark.slow
+
 _REFERENCE = reference()
 SETUP, LAUNCH, RVIZ, MANIFEST = (
     "setup.py",
@@ -220,7 +222,6 @@ def test_a_mistake_is_undone(mistake: str) -> None:
     assert content(after, path) == content(_REFERENCE, path)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("mistake", spread(CORRECTED, 3))
 def test_a_mistake_is_corrected(mistake: str) -> None:
     """There is an edit with which everything passes that passes for the reference."""

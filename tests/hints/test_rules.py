@@ -13,6 +13,8 @@ from grader.lab.submission.submission import Submission
 from tests.hints.trials import BASES, Hints, hints_for
 from tests.samples import LAB6, SAMPLES
 
+pytestmark = pytest.mark.slow
+
 REFERENCE = BASES["reference"].text
 MACROS = BASES["equivalent-xacro-macros"]
 
@@ -30,7 +32,6 @@ def changed(*changes: tuple[str, str], text: str = REFERENCE) -> Submission:
     return read_submission(text.encode(), identity="robot", path="my_robot.urdf")
 
 
-@pytest.mark.slow
 def test_a_call_without_its_parameter_gets_the_parameter() -> None:
     """A macro call that lacks a parameter is completed; no link is added beside it."""
     call = next(
@@ -73,7 +74,6 @@ def test_no_edit_pleases_a_tolerance(size: str) -> None:
     assert new == {'size="0.6 0.4 0.2"'}
 
 
-@pytest.mark.slow
 def test_no_edit_adds_a_problem() -> None:
     """With all edits, ROS 2 rejects and drops nothing that it loaded before."""
     for name in ("several-mistakes", "caster-misnamed", "footprint-below-the-base", "box-sunk"):

@@ -16,6 +16,8 @@ from grader.lab.submission.submission import Submission
 from tests.hints.trials import graded, search_for
 from tests.samples import LAB6, RUBRICS, SAMPLES, reference
 
+pytestmark = pytest.mark.slow
+
 INERTIALS = SAMPLES["equivalent-xacro-inertials"].alone
 MACROS = SAMPLES["equivalent-xacro-macros"]
 WHEEL = "my_robot/urdf/wheel.xacro"
@@ -46,7 +48,6 @@ def mutant(path: str, old: str, new: str) -> tuple[Submission, str]:
     return submission.reopen(overlaid(submission.whole_tree, {path: text.encode()})), text
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("path", "old", "new"),
     [
@@ -86,7 +87,6 @@ def test_a_mistake_in_xacro_is_undone(path: str, old: str, new: str) -> None:
         assert edited(text, name, first.edits) is not None
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("left", "right", "expected"),
     [
@@ -110,7 +110,6 @@ def test_an_expression_in_a_call_is_corrected_there(
 _LEFT, _RIGHT = 'y="${wheel_separation / 2}"', 'y="${-wheel_separation / 2}"'
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
@@ -136,7 +135,6 @@ def test_a_value_that_a_macro_gets_computed_is_corrected_where_it_is_given(
     assert set(texts(found.edits)) == expected
 
 
-@pytest.mark.slow
 def test_a_mistake_in_a_macro_is_not_corrected_in_its_calls() -> None:
     """Each call could get another value, but all of them are wrong for what the macro does with it."""
     submission, _ = mutant(WHEEL, "wheel_width / 2}", "wheel_width}")
@@ -144,7 +142,6 @@ def test_a_mistake_in_a_macro_is_not_corrected_in_its_calls() -> None:
     assert not [edit for edit in found.edits if edit.path == URDF]
 
 
-@pytest.mark.slow
 def test_a_value_that_a_call_lacks_on_a_side_that_nothing_tells() -> None:
     """Both values are named and none is given, if the wheel is wrong with either: a half correct edit misleads."""
     submission, text = mutant(URDF, 'side="right" outward="-1"', 'side="right"')
@@ -169,7 +166,6 @@ def texts(edits: Sequence[Edit]) -> list[str]:
     return [edit.renamed or edit.new for edit in edits]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sample", "expected"),
     [
@@ -214,7 +210,6 @@ READ = "    with open(os.path.join(share, 'my_robot.urdf')) as file:\n        ro
 PATH = "os.path.join(share, 'my_robot.urdf')"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("reading", "expected"),
     [

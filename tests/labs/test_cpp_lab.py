@@ -11,6 +11,8 @@ from tests.command_line import run
 from tests.examples import spread
 from tests.labs.variants import make_variant, variants_of
 
+pytestmark = pytest.mark.slow
+
 LAB = "beacon"
 # The class of a component is no name of a program: the code of the node is wrong.
 FAMILIES = {"w10-component-class": "code"}
@@ -33,7 +35,6 @@ def statuses_of(rubric: Rubric, name: str, folder: Path) -> dict[str, str]:
     return {it.criterion.id: it.outcome.status for it in results}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", spread([name for name in variants_of(LAB) if name[0] == "w"], 6))
 def test_a_wrong_variant_fails_in_its_family(rubric: Rubric, name: str, tmp_path: Path) -> None:
     """The names of the family that is wrong do not agree."""

@@ -14,6 +14,8 @@ from tests.command_line import run
 from tests.examples import spread
 from tests.labs.variants import make_variant, variants_of
 
+pytestmark = pytest.mark.slow
+
 LAB = "laundry"
 # What needs manual grading: another function makes the node.
 PENDING = {
@@ -39,7 +41,6 @@ def graded(rubric: Rubric, name: str, folder: Path) -> Report:
     return grade(rubric, open_submission(str(make_variant(LAB, name, folder)), rubric.lab))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", spread([name for name in variants_of(LAB) if name[0] == "w"], 12))
 def test_a_wrong_variant_loses_the_criterion_of_its_family(
     rubric: Rubric, name: str, tmp_path: Path

@@ -9,6 +9,8 @@ from lxml import etree
 
 from tests.labs.variants import FOLDER, LABS, make_variant, variants_of
 
+pytestmark = pytest.mark.slow
+
 VARIANTS = [(lab, name) for lab in LABS for name in ("solution", *variants_of(lab))]
 FAMILIES = {
     *("files", "frames", "controllers", "parameters", "arguments"),

@@ -6,6 +6,8 @@ from grader.files.tree import make_tree, overlaid
 from grader.ros.package.finding import read_packages
 from grader.ros.package.found_problems import build_problems
 
+pytestmark = pytest.mark.slow
+
 _HEAD = "cmake_minimum_required(VERSION 3.8)\nproject(hub)\nfind_package(ament_cmake REQUIRED)\nfind_package(rclcpp_components REQUIRED)\n"
 _NODE = "#include <rclcpp/rclcpp.hpp>\nint main() {}\n"
 _PART = "#include <rclcpp/rclcpp.hpp>\nRCLCPP_COMPONENTS_REGISTER_NODE(Part)\n"

@@ -5,6 +5,8 @@ import pytest
 from grader.ros.nodes.node_facts import CodeFault
 from tests.package.test_cpp_nodes import nodes_of
 
+pytestmark = pytest.mark.slow
+
 _MAIN = "int main(int argc, char ** argv) {{ rclcpp::init(argc, argv); {} }}"
 _SPIN = _MAIN.format("rclcpp::spin(std::make_shared<Talker>());")
 

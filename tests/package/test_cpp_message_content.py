@@ -4,6 +4,8 @@ import pytest
 
 from tests.package.test_cpp_nodes import nodes_of
 
+pytestmark = pytest.mark.slow
+
 _HEAD = """
 #include <cv_bridge/cv_bridge.hpp>
 #include <rclcpp/rclcpp.hpp>

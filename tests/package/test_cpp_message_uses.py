@@ -7,6 +7,8 @@ import pytest
 from tests.package.test_cpp_nodes import nodes_of
 from tests.workspace.test_cpp_nodes import messages
 
+pytestmark = pytest.mark.slow
+
 _SCAN, _TWIST = "sensor_msgs.msg.LaserScan", "geometry_msgs.msg.Twist"
 
 

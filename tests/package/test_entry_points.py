@@ -7,6 +7,8 @@ from grader.ros.package.entry_points import entry_fault
 from grader.ros.package.finding import read_packages
 from grader.ros.package.package import Package
 
+pytestmark = pytest.mark.slow
+
 _SETUP = """
 from setuptools import setup
 setup(

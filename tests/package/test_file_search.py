@@ -23,6 +23,8 @@ from grader.ros.python.values import Undetermined, Unknown, Value
 from tests.examples import examples, spread
 from tests.work import limited_work
 
+pytestmark = pytest.mark.slow
+
 _NAMES = st.sampled_from(
     ["a", "b", "c", "ab", ".h", ".a", "[a]", "a*", "a.urdf", "b.urdf", "A", "a b"]
 )
@@ -130,7 +132,6 @@ def pythons_glob(pattern: str, root: str, *, recursive: bool = True) -> list[str
     return sorted(path for path in found if os.path.lexists(os.path.join(root, path)))
 
 
-@pytest.mark.slow
 @examples(30)
 @given(tree=trees(), pattern=_PATTERNS, recursive=st.booleans())
 @example(tree=make_tree("", [], ["a/.h", "a/b/c"]), pattern="**", recursive=True)
@@ -218,7 +219,6 @@ def test_paths_are_resolved_like_the_system(tree: Tree, parts: list[str]) -> Non
         assert reported == real
 
 
-@pytest.mark.slow
 @examples(20)
 @given(tree=trees(), folder=_FOLDERS)
 def test_listing_folders(tree: Tree, folder: str) -> None:
@@ -258,7 +258,6 @@ def test_patterns_that_lead_out_are_unknown(pattern: str) -> None:
         PackageListing(make_tree("", [], ["a/b/c", "a/d", "b/c"])).glob(pattern, recursive=True)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "expression",
     spread(

@@ -14,6 +14,8 @@ from grader.ros.launch.launch_file import read_launch
 from tests.command_line import ROOT
 from tests.package.launch_samples import Installed
 
+pytestmark = pytest.mark.slow
+
 _HERE = Path(__file__).parent
 _CASES = json.loads((_HERE / "launch_cases.json").read_text("utf-8"))
 _ACTIONS = json.loads((_HERE / "launch_outcomes.json").read_text("utf-8"))
@@ -133,7 +135,6 @@ def test_a_file(case: dict[str, Any]) -> None:
     assert outcome(text, case["language"]) in (case["starts"], None)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("language", ["py", "xml", "yaml"])
 def test_actions(language: str) -> None:
     """Each is judged as launch does; where `known` says so, it is judged."""

@@ -10,6 +10,8 @@ from grader.ros.launch.node_parameters import parameters_of
 from grader.ros.python.values import Unknown
 from tests.package.launch_samples import Installed, summarize
 
+pytestmark = pytest.mark.slow
+
 PACKAGE = "share/arm_moveit_config"
 FILES = {
     "arm.urdf.xacro": b"<robot name='arm'/>",

@@ -6,6 +6,8 @@ from grader.ros.nodes.python.node_slips import Program, node_slips
 from grader.ros.python.parse import Code, parse
 from tests.samples import ROOT
 
+pytestmark = pytest.mark.slow
+
 SCRIPT = (ROOT / "rubrics/diffdrive/diffdrive_robot/scripts/drive_circle.py").read_text()
 SEND = "        command = TwistStamped()\n"
 CREATE = "        self.publisher = self.create_publisher("

@@ -11,6 +11,8 @@ from grader.ros.package.finding import read_packages
 from grader.ros.package.trees import Search, TreeEntry, is_path, read_tree, steps_of
 from tests.examples import examples
 
+pytestmark = pytest.mark.slow
+
 
 def tree_of(text: str, file: str = "a.yaml") -> TreeEntry:
     """Return the tree of a file of a package."""
@@ -97,7 +99,6 @@ def test_a_path_has_closed_brackets() -> None:
     assert not any(map(is_path, ("a[b", "a[b]", "a]b", "a[b='c\"]")))
 
 
-@pytest.mark.slow
 def test_aliases_that_multiply_entries_are_not_looked_through() -> None:
     """A small file can have more entries than can be looked at."""
     rows = "\n".join(f"b{i}: &b{i} [{', '.join([f'{{x: *b{i - 1}}}'] * 9)}]" for i in range(1, 9))

@@ -7,6 +7,8 @@ from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
 from grader.report.formats import Format, render
 from tests.samples import opened, reference
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("kind", Format)
 @pytest.mark.parametrize("name", shipped_rubrics())

@@ -8,6 +8,8 @@ from grader.report.formats import Format, render
 from grader.report.locations import diff_lines
 from tests.report.reports import hinted
 
+pytestmark = pytest.mark.slow
+
 
 def test_a_manual_mark_leaves_no_hint() -> None:
     """What a person has graded is not to be changed."""

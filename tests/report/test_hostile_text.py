@@ -26,6 +26,8 @@ from tests.report.rewording import recast
 from tests.report.workflow_commands import commands
 from tests.samples import LAB6, SAMPLES, opened
 
+pytestmark = pytest.mark.slow
+
 TEXTS = st.dictionaries(st.sampled_from(SLOTS + BREAKING), TEXT, min_size=1, max_size=6)
 EVERYWHERE = {slot: "".join(PIECES[::7]) for slot in SLOTS}
 FENCES = {
@@ -73,7 +75,6 @@ def is_utf8(text: str) -> bool:
     return not any("\ud800" <= letter <= "\udfff" for letter in text)
 
 
-@pytest.mark.slow
 @given(TEXTS)
 @example(EVERYWHERE)
 @example(FENCES)
@@ -83,7 +84,6 @@ def test_text_of_a_submission_stays_text(texts: Mapping[str, str]) -> None:
     written(texts)
 
 
-@pytest.mark.slow
 @given(st.dictionaries(st.sampled_from(UNASKED), TEXT.filter(is_utf8), min_size=1))
 @examples(10)
 def test_irrelevant_text_does_not_affect_the_score(texts: Mapping[str, str]) -> None:
@@ -103,7 +103,6 @@ def structures_of(name: str, base: Base) -> dict[Format, Any]:
     return harmless_structures(report_of(name), base)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "base"),
     spread(
@@ -132,7 +131,6 @@ def cli(*arguments: str, **variables: str) -> tuple[int, str, str]:
     return done.returncode, done.stdout.decode(), done.stderr.decode()
 
 
-@pytest.mark.slow
 @given(TEXTS)
 @example(EVERYWHERE)
 @examples(5)

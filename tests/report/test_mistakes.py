@@ -15,6 +15,8 @@ from grader.report.criteria import Entry
 from tests.report.reports import half_points
 from tests.samples import REPORTED, RUBRICS, SAMPLES
 
+pytestmark = pytest.mark.slow
+
 ROBOTS = 1000
 
 

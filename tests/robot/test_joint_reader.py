@@ -10,6 +10,8 @@ from grader.ros.urdf.model import Calibration, Dynamics, Joint, Limit, Mimic, Sa
 from grader.ros.urdf.reader import read_urdf
 from tests.robot.builders import joint, links, one_joint, robot
 
+pytestmark = pytest.mark.slow
+
 
 def only_joint(body: str, kind: str = "continuous") -> Joint:
     """Return the joint that contains this, as it is read."""

@@ -9,6 +9,8 @@ from grader.ros.urdf.link_tree import parent_joints
 from grader.ros.urdf.model import Joint, Link, Robot
 from grader.ros.urdf.reader import read_urdf
 
+pytestmark = pytest.mark.slow
+
 
 def joint(name: str, parent: str, child: str) -> Joint:
     """Return a fixed joint."""
@@ -108,7 +110,6 @@ def test_joints_without_existing_links_connect_nothing() -> None:
         assert parent_joints(Robot("r", links, (broken,), rejected=True)) == {}
 
 
-@pytest.mark.slow
 def test_a_long_chain_in_any_order_is_read_at_once() -> None:
     """Paths to the root are shortened when they are walked: ten thousand links take no time, top down or bottom up."""
     chain = [joint(f"j{index}", f"l{index}", f"l{index + 1}") for index in range(10_000)]

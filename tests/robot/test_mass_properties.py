@@ -22,6 +22,8 @@ from grader.ros.urdf.mass_properties import (
 from grader.ros.urdf.model import Box, Cylinder, Sphere
 from grader.ros.urdf.shapes import Shape
 
+pytestmark = pytest.mark.slow
+
 _edge = st.floats(0.01, 3.0)
 _number = st.floats(-2.0, 2.0)
 _vector = st.tuples(_number, _number, _number)

@@ -4,6 +4,8 @@ import pytest
 
 from grader.ros.urdf.reader import read_urdf
 
+pytestmark = pytest.mark.slow
+
 JOINT = '<joint name="j{0}" type="fixed"><parent link="{1}"/><child link="{2}"/></joint>'
 
 

@@ -17,6 +17,8 @@ from grader.base.transforms import (
 from grader.ros.urdf.model import Box, Cylinder, Sphere
 from grader.ros.urdf.shapes import PlacedShape, Shape
 
+pytestmark = pytest.mark.slow
+
 TOLERANCE = 0.002
 BRICK, ROD, BALL = Box((0.6, 0.4, 0.2)), Cylinder(0.1, 0.5), Sphere(0.1)
 HALF_TURN = rotation_from_rpy((pi, 0.0, 0.0))

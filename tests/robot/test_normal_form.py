@@ -8,6 +8,8 @@ from grader.ros.urdf.normal_form import robot_hash
 from grader.ros.urdf.reader import read_urdf
 from tests.samples import LAB6, SAMPLES
 
+pytestmark = pytest.mark.slow
+
 REFERENCE = (LAB6.path.parent / LAB6.reference / LAB6.urdf).read_text(encoding="utf-8")
 
 

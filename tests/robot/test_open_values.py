@@ -7,6 +7,8 @@ from grader.base.source import LazyLocation, Source
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Joint, Link, Material, Robot, UnresolvedPart
 
+pytestmark = pytest.mark.slow
+
 OPEN = UnresolvedPart(
     "the argument is not known", LazyLocation(Source("robot.urdf", "<robot/>"), 0)
 )

@@ -16,6 +16,8 @@ from grader.ros.urdf.overlap import least_overlap, penetration
 from grader.ros.urdf.shapes import PlacedShape, Shape, UnknownShape
 from tests.examples import examples
 
+pytestmark = pytest.mark.slow
+
 slow = settings(deadline=None)  # the first depth of two tilted cylinders imports numpy
 
 NEAR = 1e-4  # metres; the documented accuracy
@@ -169,7 +171,6 @@ def test_closed_forms(
     assert penetration(b, T_w_b, a, T_w_a) == pytest.approx(max(0.0, -expected), abs=FINE)
 
 
-@pytest.mark.slow
 @examples(30)
 @given(a=shapes, T_w_a=poses, b=shapes, T_w_b=poses)
 def test_no_direction_has_a_smaller_overlap(
@@ -356,7 +357,6 @@ def random_pose(rng: random.Random, size: float) -> Transform:
     return at(x, y, z, (rpy[0], rpy[1], rpy[2]))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("second", [Box, Cylinder, Sphere])
 @pytest.mark.parametrize("first", [Box, Cylinder, Sphere])
 def test_coal_agrees(oracle: Oracle, first: type[Shape], second: type[Shape]) -> None:

@@ -5,6 +5,8 @@ import pytest
 from grader.ros.package.robot_file import read_as_ros
 from grader.ros.urdf.words import meant_value
 
+pytestmark = pytest.mark.slow
+
 _JOINT = '<link name="b"/><joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
 _MANY = " ".join(f'a{number}="1"' for number in range(60))
 

@@ -11,6 +11,8 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import parent_joints, selected_name
 from grader.ros.urdf.model import Joint, Link, Mimic, Robot
 
+pytestmark = pytest.mark.slow
+
 # base -fixed- mount -m1- upper -fixed- flange -m2- hand -fixed- tool, and a camera on the base
 ARM = ("bm:fixed", "mu:revolute", "uf:fixed", "fh:prismatic", "ht:fixed", "bc:fixed")
 
@@ -130,7 +132,6 @@ def test_links_that_may_exist_are_not_ignored() -> None:
         selected(Robot("r", (Link("a"),), incomplete="an argument is not known"), "@tip")
 
 
-@pytest.mark.slow
 def test_a_long_chain_takes_linear_time() -> None:
     """Thousands of links are no problem."""
     links = tuple(Link(str(number)) for number in range(20_000))

@@ -6,6 +6,8 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import read_urdf
 from grader.ros.urdf.wheel_sizes import WheelSize, measure_wheel
 
+pytestmark = pytest.mark.slow
+
 _ROUND = '<cylinder radius="0.1" length="0.04"/>'
 _BALL = '<sphere radius="0.1"/>'
 _BESIDE = '<origin xyz="0 0.02 0" rpy="1.5707963 0 0"/>'

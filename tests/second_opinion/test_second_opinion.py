@@ -19,6 +19,8 @@ from tests.second_opinion.compare import (
 )
 from tests.second_opinion.opinion import Rubric
 
+pytestmark = pytest.mark.slow
+
 CHECKER = (
     "elements",
     "robot",
@@ -79,7 +81,6 @@ def test_most_criteria_have_a_second_opinion() -> None:
     assert [len(Rubric(name).rows) for name in ("lab6", "arm", "sensors")] == [32, 55, 18]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("part", spread(range(12), 1))
 def test_random_robots(part: int) -> None:
     """Status, carried points and measured values of random robots are the same."""

@@ -9,6 +9,8 @@ from grader.lab.grading.grade import grade
 from grader.report.formats import Format, render
 from tests.samples import LAB6, ROOT, opened
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize("kind", [kind for kind in Format if kind.needs != "identity"])
 def test_a_report_is_no_answer(tmp_path: Path, kind: Format) -> None:

@@ -7,6 +7,8 @@ import pytest
 from grader.lab.submission.labs import is_part
 from tests.submission.trees import BOX, PICTURE, ROBOT, manifest, package, submission
 
+pytestmark = pytest.mark.slow
+
 LAB = {"lab", "6"}
 
 

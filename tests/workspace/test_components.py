@@ -7,6 +7,8 @@ from grader.files.tree import make_tree, overlaid
 from grader.ros.workspace.all_robots import read_workspace
 from grader.ros.workspace.rules.reading import read_agreement
 
+pytestmark = pytest.mark.slow
+
 _MANIFEST = """\
 <package format="3">
   <name>eyes</name>

@@ -5,6 +5,8 @@ import pytest
 from grader.ros.workspace.rules.names import Mismatch
 from tests.workspace.carts import agreement_of, edited
 
+pytestmark = pytest.mark.slow
+
 _ALARM, _LAUNCH, _ROBOT_LAUNCH = (
     "cart_nodes/alarm.py",
     "launch/cart.launch.py",
@@ -33,7 +35,6 @@ def topic_problems(
     return [it for it in agreement_of(edited(*edits)).mismatches if it.family == "topics"]
 
 
-@pytest.mark.slow
 def test_a_controller_gets_messages_of_its_type() -> None:
     """Stamped velocities agree with diff_drive_controller, by its full name or by the name below its own."""
     assert topic_problems("TwistStamped") == []

@@ -1,6 +1,10 @@
 """Names that are not known are counted, and a family in which nothing is compared is undecided."""
 
+import pytest
+
 from tests.workspace.carts import Edit, agreement_of, edited
+
+pytestmark = pytest.mark.slow
 
 _ALARM, _DETECTOR = "cart_nodes/alarm.py", "cart_nodes/detector.py"
 _COMPUTED: Edit = (_ALARM, '(Bool, "obstacle",', '(Bool, self.find_name() + "/obstacle",')

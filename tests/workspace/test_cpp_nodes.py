@@ -9,6 +9,8 @@ from grader.ros.workspace.opening import open_workspace
 from grader.ros.workspace.rules.reading import read_agreement
 from tests.labs.variants import make_variant
 
+pytestmark = pytest.mark.slow
+
 _ORBITER, _WATCHER = "beacon/src/orbiter.cpp", "beacon/src/watcher.cpp"
 
 

@@ -5,6 +5,8 @@ import pytest
 from grader.ros.workspace.rules.names import Correction
 from tests.workspace.carts import agreement_of, sure
 
+pytestmark = pytest.mark.slow
+
 _BRIDGE = """\
 - {topic_name: clock, ros_type_name: rosgraph_msgs/msg/Clock, gz_type_name: gz.msgs.Clock, direction: GZ_TO_ROS}
 - {topic_name: scan, ros_type_name: sensor_msgs/msg/LaserScan, gz_type_name: gz.msgs.LaserScan, direction: GZ_TO_ROS}

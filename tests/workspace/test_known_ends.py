@@ -4,6 +4,8 @@ import pytest
 
 from tests.workspace.rovers import CONTROLLERS, LAUNCH, MORE, PILOT, ROBOT, Edit, problems_of
 
+pytestmark = pytest.mark.slow
+
 _EKF = "Node(package='robot_localization', executable='ekf_node', parameters=[{{'publish_tf': False, {}}}]),"
 _CLOUD = (
     "Node(package='pointcloud_to_laserscan', executable='pointcloud_to_laserscan_node', "

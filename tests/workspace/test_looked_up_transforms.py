@@ -7,6 +7,8 @@ import pytest
 from tests.workspace.carts import agreement_of
 from tests.workspace.test_cpp_nodes import messages
 
+pytestmark = pytest.mark.slow
+
 _NODE = """\
 import rclpy
 from rclpy.node import Node

@@ -7,6 +7,8 @@ from grader.files.tree import make_tree, overlaid
 from grader.ros.workspace.all_robots import read_workspace
 from tests.mesh.mesh_files import CUBE, binary_stl, obj, text_stl
 
+pytestmark = pytest.mark.slow
+
 _MANIFEST = "<package format='3'><name>arm</name><version>1.0.0</version></package>"
 _BOX = '<collision><geometry><box size="0.3 0.2 0.1"/></geometry></collision>'
 _HEAD = '<link name="head"/><joint name="neck" type="fixed"><origin xyz="0 0 0.2"/><parent link="base"/><child link="head"/></joint>'

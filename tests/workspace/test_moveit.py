@@ -9,6 +9,8 @@ from grader.lab.submission.opening import submission_of
 from grader.lab.submission.submission import Lab
 from grader.ros.workspace.rules.reading import read_agreement
 
+pytestmark = pytest.mark.slow
+
 _ARM = Path(__file__).parent.parent / "corpus" / "given" / "moveit" / "arm"
 _CONTROLLERS = """\
 controller_manager:

@@ -1,5 +1,7 @@
 """What an editor offers and says of the parameters in a file."""
 
+import pytest
+
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
 from grader.ros.workspace.all_robots import read_workspace
@@ -7,6 +9,8 @@ from grader.ros.workspace.index.offered_parameters import parameter_text, parame
 from grader.ros.workspace.model.workspace import Workspace
 from tests.command_line import ROOT
 from tests.workspace.random_edits import files_of
+
+pytestmark = pytest.mark.slow
 
 
 def _workspace(folder: str) -> Workspace:

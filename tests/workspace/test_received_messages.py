@@ -4,6 +4,8 @@ import pytest
 
 from tests.workspace.rovers import HORN, LAUNCH, MORE, PILOT, Edit, problems_of
 
+pytestmark = pytest.mark.slow
+
 _NODES = "Node(package='rover', executable='pilot'), Node(package='rover', executable='horn'),"
 _FUSE = """\
         self.first = Subscriber(self, JointState, 'joints')

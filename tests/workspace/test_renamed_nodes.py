@@ -4,6 +4,8 @@ import pytest
 
 from tests.workspace.rovers import FILES, LAUNCH, MORE, PILOT, Edit, problems_of
 
+pytestmark = pytest.mark.slow
+
 _FILE, _SECOND = "config/pilot.yaml", "launch/second.launch.py"
 _GIVEN = "PathJoinSubstitution([share, 'config', 'pilot.yaml'])"
 _NODE = f"Node(package='rover', executable='pilot', name='front', parameters=[{_GIVEN}]),"

@@ -15,6 +15,8 @@ from tests.workspace.rovers import (
     problems_of,
 )
 
+pytestmark = pytest.mark.slow
+
 _TF = "Node(package='tf2_ros', executable='static_transform_publisher', arguments=[{}]),"
 _STATIC = _TF.format("'--frame-id', '{}', '--child-frame-id', '{}'")
 _EKF = "Node(package='robot_localization', executable='ekf_node', name='ekf', parameters=[{{{}}}]),"
@@ -586,7 +588,6 @@ CORRECT: list[tuple[str, list[Edit]]] = [
 ]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("edits", [it[1] for it in CORRECT], ids=[it[0] for it in CORRECT])
 def test_what_agrees_is_not_reported(edits: list[Edit]) -> None:
     """Another way to say the same, and what depends on something that is not known, is no problem."""
@@ -653,7 +654,6 @@ def test_a_parameter_without_a_value_is_given_one() -> None:
     )
 
 
-@pytest.mark.slow
 def test_a_robot_with_too_many_parts_is_not_compared() -> None:
     """More wheels than a robot drives, and more links than a footprint is compared with, are open."""
     names = ", ".join(["left_wheel_joint"] * 20)

@@ -4,6 +4,8 @@ import pytest
 
 from tests.workspace.carts import Edit, agreement_of, edited, sure
 
+pytestmark = pytest.mark.slow
+
 _LAUNCH, _CONTROLLERS = "launch/robot.launch.py", "config/controllers.yaml"
 _FIRST = 'Node(package="controller_manager", executable="spawner", arguments=["joint_state_broadcaster"]),\n        '
 _SECOND = """Node(
@@ -28,7 +30,6 @@ GIVEN = ", parameters=[controllers]"
 NO_TYPE = "the controller manager is not given the parameters with the type of"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("given", "more", "found"),
     [

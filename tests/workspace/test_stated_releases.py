@@ -13,6 +13,8 @@ from grader.ros.known.releases import RELEASES, Release, StatedReleases, other_n
 from grader.ros.workspace.model.stated_releases import stated_releases
 from grader.ros.workspace.rules.reading import read_agreement
 
+pytestmark = pytest.mark.slow
+
 _STATED = [
     ("Dockerfile", "FROM ros:humble-ros-base", "humble"),
     ("docker/Dockerfile.dev", "ARG ROS_DISTRO=jazzy\nFROM ros:${ROS_DISTRO}", "jazzy"),

@@ -2,10 +2,14 @@
 
 from collections.abc import Mapping
 
+import pytest
+
 from grader.files.tree import make_tree, overlaid
 from grader.lab.submission.opening import submission_of
 from grader.lab.submission.submission import Lab, Submission
 from grader.ros.workspace.rules.reading import read_agreement
+
+pytestmark = pytest.mark.slow
 
 _XACRO = """\
 <robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">

@@ -15,6 +15,8 @@ from grader.ros.workspace.index.written_names import Role, WrittenName, span_of_
 from grader.ros.workspace.opened import OpenedWorkspace
 from grader.ros.workspace.opening import open_workspace
 
+pytestmark = pytest.mark.slow
+
 _ROOT = Path(__file__).parent.parent.parent
 _CART = _ROOT / "tests" / "corpus" / "given" / "cartkit"
 _SAMPLES = sorted(path.parent for path in (_ROOT / "submissions").glob("*/*/expected.toml"))
@@ -259,7 +261,6 @@ _NOT_ALONE = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("folder", [*_LABS, _CART], ids=lambda it: it.name)
 def test_a_name_that_is_renamed_at_all_its_places_still_agrees(folder: Path) -> None:
     """Nothing is wrong that was not, whichever link, joint, material, argument or name of xacro is

@@ -13,6 +13,8 @@ from tests.xacro import comparing
 from tests.xacro.documents.document import Dependence, Document, robot
 from tests.xacro.oracle import Accepted, Refused
 
+pytestmark = pytest.mark.slow
+
 _ACCEPTED = Accepted(
     '<robot name="r"><link name="a"><visual><geometry><sphere radius="1.0"/></geometry></visual></link></robot>'
 )

@@ -9,6 +9,8 @@ from tests.xacro.comparing import difference, tree
 from tests.xacro.documents import GROUPS
 from tests.xacro.documents.document import Document, robot
 
+pytestmark = pytest.mark.slow
+
 _PREFIX = (
     "xacro writes a prefix that is not declared: ROS 2 reads it, the oracle's XML parser does not"
 )
@@ -27,7 +29,6 @@ KNOWN_DIFFERENCES = {
 """The documents on which the grader and xacro differ, and why that is accepted."""
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("group", "step"),
     light(

@@ -11,6 +11,8 @@ from tests.xacro import grammar
 from tests.xacro.comparing import expand
 from tests.xacro.documents.document import Document, named, part, robot
 
+pytestmark = pytest.mark.slow
+
 MACRO = (
     '<xacro:macro name="wheel" params="side *origin">\n'
     '<link name="${side}_wheel"><xacro:insert_block name="origin"/><xacro:mass/></link>\n'
@@ -34,7 +36,6 @@ def text_at(document: Document, location: Location) -> str:
     return "\n".join(text.split("\n")[location.line - 1 :])[location.column - 1 :]
 
 
-@pytest.mark.slow
 def test_every_element_is_where_it_is_written() -> None:
     """On random documents, each element's place is a tag of its name, or one that makes an element with a computed name."""
     count = 0

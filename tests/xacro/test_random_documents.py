@@ -7,11 +7,12 @@ from tests.differential.xacros import compare
 from tests.examples import spread
 from tests.xacro import collisions, grammar, oracle
 
+pytestmark = pytest.mark.slow
+
 PARTS = 10
 PART = 200
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("part", spread(range(PARTS), 1))
 def test_random_documents(part: int) -> None:
     """Two thousand random documents are expanded, or refused, as xacro does."""
@@ -19,7 +20,6 @@ def test_random_documents(part: int) -> None:
     assert differences == [], counted
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("write", "accepted"), [(grammar.document, 15), (collisions.document, 2)])
 def test_random_documents_are_the_same_in_every_run_and_often_accepted(
     write: type, accepted: int

@@ -16,6 +16,8 @@ from tests.command_line import ROOT, run
 from tests.examples import examples
 from tests.work import limited_work
 
+pytestmark = pytest.mark.slow
+
 TEXT = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_text(encoding="utf-8")
 
 
@@ -29,7 +31,6 @@ HOSTILE = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", HOSTILE)
 def test_recovery_is_linear_in_the_size_of_the_text(name: str, tmp_path: Path) -> None:
     """A megabyte of one broken tag, or of open ones, does not hang; what stands before it is graded."""
@@ -48,7 +49,6 @@ def test_a_path_without_quotes_is_read_whole() -> None:
     assert b'<mesh filename="package://my_robot/caster.stl"/>' in found.xml
 
 
-@pytest.mark.slow
 @examples(40)
 @given(st.data())
 def test_any_damage_is_read_with_its_places(data: st.DataObject) -> None:

@@ -4,6 +4,7 @@ import re
 from decimal import Decimal
 from pathlib import Path
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -12,6 +13,8 @@ from grader.lab.checks.outcome import Outcome
 from grader.lab.grading.report import ManualComment, ManualMark, Result
 from grader.lab.rubric.rubric import read_rubric
 from tests.samples import ROOT
+
+pytestmark = pytest.mark.slow
 
 SMALL = ROOT / "tests/corpus/class/small/small.toml"
 CRITERIA = {one.id: one for one in read_rubric(SMALL.read_bytes(), Path("small.toml")).criteria}

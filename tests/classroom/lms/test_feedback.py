@@ -12,6 +12,8 @@ import pytest
 from grader.classroom.lms.feedback import canvas_names, moodle_names, write_feedback
 from grader.classroom.roster.roster import Student
 
+pytestmark = pytest.mark.slow
+
 CASES = tomllib.loads(Path(__file__).with_name("canvas_names.toml").read_text(encoding="utf-8"))[
     "case"
 ]

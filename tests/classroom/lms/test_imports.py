@@ -2,11 +2,15 @@
 
 from decimal import Decimal
 
+import pytest
+
 from grader.classroom.lms.feedback import canvas_names, moodle_names, write_feedback
 from grader.classroom.lms.fill import Filled, FillOptions, fill
 from grader.classroom.lms.forms import FORMS
 from tests.classroom.lms import importers
 from tests.classroom.lms.lms_class import CELLS, CLASS, STUDENTS, canvas_file, moodle_file
+
+pytestmark = pytest.mark.slow
 
 KEPT = "Please come to my office."  # a comment that a person wrote in Moodle
 WITHOUT_EXCUSES = {key: cell for key, cell in CELLS.items() if cell}

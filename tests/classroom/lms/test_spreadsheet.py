@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 
 from grader.classroom.tables import CellValue, protected, spelt_out, unprotected, write_table
 
+pytestmark = pytest.mark.slow
+
 TRIGGERS = tuple("=+-@＝＋－＠")
 
 

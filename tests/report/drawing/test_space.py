@@ -18,6 +18,8 @@ from grader.ros.urdf.reader import read_urdf
 from tests.robot.builders import joint, links, robot
 from tests.samples import ROOT, SAMPLES
 
+pytestmark = pytest.mark.slow
+
 REFERENCE = (ROOT / "rubrics/lab6/my_robot/urdf/my_robot.urdf").read_text()
 NUMBER = re.compile(r'(?<=[" ])-?\d+(?:\.\d+)?(?=[" ])')
 
@@ -39,7 +41,6 @@ def changed_references() -> Iterator[str]:
             yield REFERENCE[: number.start()] + value + REFERENCE[number.end() :]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["several-mistakes", "centimetres", "lidar-missing"])
 def test_page_has_no_more_of_the_reference_than_the_views(name: str) -> None:
     """Where a change of the reference changes no byte of the drawing, it changes no byte of the page."""

@@ -12,6 +12,8 @@ from grader.ros.urdf.reader import read_urdf
 from tests.robot.builders import joint, robot
 from tests.samples import SAMPLES
 
+pytestmark = pytest.mark.slow
+
 
 def still(text: str) -> Still:
     """Return the picture of a URDF."""

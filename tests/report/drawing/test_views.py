@@ -24,6 +24,8 @@ from tests.report.drawing.shapes import (
     surface,
 )
 
+pytestmark = pytest.mark.slow
+
 DIRECTIONS = [np.array([cos(number * pi / 8.0), sin(number * pi / 8.0)]) for number in range(16)]
 
 
@@ -31,7 +33,6 @@ def panels(shapes: list[Shape], poses: list[Transform]) -> tuple[Panel, ...]:
     return panels_of(Picture(scene_with(shapes, poses), (), (), ()))
 
 
-@pytest.mark.slow
 @given(SHAPES, POSES)
 @example(
     Box((0.5, 0.5, 0.5)), Transform(rotation_from_rpy((pi / 2.0, 2.0, 0.0)))
