@@ -48,13 +48,16 @@ def _log(findings: Sequence[Finding], base: Base, source_of: SourceOf) -> str:
     """Return a log of one run, with the rules that have a result. Several rules may share a code,
     which is their id: `ruleIndex` says which of them is meant.
     """
-    rules = {(it.rule.id, it.rule.name): _rule(it) for it in reversed(findings)}
+    rules: dict[tuple[str, str], dict[str, Any]] = {}
+    for finding in findings:
+        rules.setdefault((finding.rule.id, finding.rule.name), _rule(finding))
     names = sorted(rules)
     results = []
     for finding, fingerprint in zip(findings, fingerprints(findings, base), strict=True):
+        index = names.index((finding.rule.id, finding.rule.name))
         result = {
             "ruleId": finding.rule.id,
-            "ruleIndex": names.index((finding.rule.id, finding.rule.name)),
+            "ruleIndex": index,
             "level": finding.severity,
             "message": {"text": message_in_repository(finding, base)},
             "locations": [{"physicalLocation": _physical_location(finding, base, source_of)}],

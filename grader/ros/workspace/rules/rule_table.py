@@ -123,10 +123,10 @@ FILE_USED = Rule(
 )
 
 _frame = _rules_of("frames", _NO_FRAME, _SIMILAR)
-FRAME_DEFINED = _frame("frame-defined", sentence="The frames that files name exist.")
-LINK_DEFINED = _frame("link-defined", sentence="The links that files name are in the robot.")
+_FRAME_DEFINED = _frame("frame-defined", sentence="The frames that files name exist.")
+_LINK_DEFINED = _frame("link-defined", sentence="The links that files name are in the robot.")
 JOINT_DEFINED = _frame("joint-defined", sentence="The joints that files name are in the robot.")
-GROUP_DEFINED = _frame("group-defined", sentence="The groups that files name are in the SRDF.")
+_GROUP_DEFINED = _frame("group-defined", sentence="The groups that files name are in the SRDF.")
 FRAME_PUBLISHED = _frame(
     "frame-published", sentence="The frame that a static transform publishes is one of the robot."
 )
@@ -139,10 +139,10 @@ DISABLED_PAIRS = _frame(
 )
 
 _controller = _rules_of("controllers", _NO_CONTROLLER, _SIMILAR)
-CONTROLLER_DEFINED = _controller(
+_CONTROLLER_DEFINED = _controller(
     "controller-defined", sentence="The controllers that files name are defined."
 )
-INTERFACE_DEFINED = _controller(
+_INTERFACE_DEFINED = _controller(
     "interface-defined", sentence="The interfaces that files name are in <ros2_control>."
 )
 CONTROLLER_TYPE = _controller(
@@ -186,10 +186,10 @@ MOVEIT_JOINTS = _controller(
 )
 
 _parameter = _rules_of("parameters", _NO_PARAMETER, _SIMILAR)
-PARAMETER_DEFINED = _parameter(
+_PARAMETER_DEFINED = _parameter(
     "parameter-defined", sentence="The parameters that a node gets are those that it declares."
 )
-PLUGIN_SECTION = _parameter(
+_PLUGIN_SECTION = _parameter(
     "plugin-section", sentence="The plugins of a list have a section beside it."
 )
 PLUGIN_NAME = _parameter("plugin-name", sentence="The class of a plugin is one that exists.")
@@ -252,10 +252,12 @@ NAME_RELEASE = Rule(
 )
 
 _argument = _rules_of("arguments", _NO_ARGUMENT, _SIMILAR)
-LAUNCH_ARGUMENT = _argument(
+_LAUNCH_ARGUMENT = _argument(
     "launch-argument", sentence="The arguments that an include passes are declared."
 )
-XACRO_ARGUMENT = _argument("xacro-argument", sentence="The arguments that xacro gets are declared.")
+_XACRO_ARGUMENT = _argument(
+    "xacro-argument", sentence="The arguments that xacro gets are declared."
+)
 
 _program = _rules_of("programs", _NO_PROGRAM, _SIMILAR)
 PROGRAM_EXISTS = _program(
@@ -263,14 +265,14 @@ PROGRAM_EXISTS = _program(
 )
 ENTRY_POINT = _program("entry-point", sentence="An entry point names a function that exists.")
 PROGRAM_RUNS = _program("program-runs", sentence="The first line of a script names an interpreter.")
-NODE_STARTED = _program("node-started", sentence="The nodes that files name are started.")
+_NODE_STARTED = _program("node-started", sentence="The nodes that files name are started.")
 COMPONENT_REGISTERED = _program(
     "component-registered", sentence="The package of a component registers it."
 )
 
 _topic = _rules_of("topics", _NO_TOPIC, _SIMILAR)
-TOPIC_DEFINED = _topic("topic-defined", sentence="The topics that files name are published.")
-GAZEBO_TOPIC = _topic("gazebo-topic", sentence="The topics of a bridge are those of Gazebo.")
+_TOPIC_DEFINED = _topic("topic-defined", sentence="The topics that files name are published.")
+_GAZEBO_TOPIC = _topic("gazebo-topic", sentence="The topics of a bridge are those of Gazebo.")
 TOPIC_TYPE = _topic(
     "topic-type",
     sentence="Publishers and subscriptions of a topic have one type.",
@@ -487,19 +489,19 @@ NAMES_COMPARED = Rule(
 
 # What is wrong where a name of a kind is not defined.
 DEFINED: Mapping[DefinedKind, Rule] = {
-    "frame": FRAME_DEFINED,
-    "link": LINK_DEFINED,
+    "frame": _FRAME_DEFINED,
+    "link": _LINK_DEFINED,
     "joint": JOINT_DEFINED,
-    "group": GROUP_DEFINED,
-    "controller": CONTROLLER_DEFINED,
-    "interface": INTERFACE_DEFINED,
-    "plugin section": PLUGIN_SECTION,
-    "parameter": PARAMETER_DEFINED,
-    "launch argument": LAUNCH_ARGUMENT,
-    "xacro argument": XACRO_ARGUMENT,
-    "node": NODE_STARTED,
-    "topic": TOPIC_DEFINED,
-    "Gazebo topic": GAZEBO_TOPIC,
+    "group": _GROUP_DEFINED,
+    "controller": _CONTROLLER_DEFINED,
+    "interface": _INTERFACE_DEFINED,
+    "plugin section": _PLUGIN_SECTION,
+    "parameter": _PARAMETER_DEFINED,
+    "launch argument": _LAUNCH_ARGUMENT,
+    "xacro argument": _XACRO_ARGUMENT,
+    "node": _NODE_STARTED,
+    "topic": _TOPIC_DEFINED,
+    "Gazebo topic": _GAZEBO_TOPIC,
 }
 RULES: Mapping[str, Rule] = {
     rule.name: rule for rule in [*globals().values()] if isinstance(rule, Rule)
