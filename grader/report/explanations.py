@@ -145,7 +145,7 @@ def explanation(name: str, rubric: Rubric) -> str:
 
 def rules_of(kind: Kind) -> list[Rule]:
     """Return the rules of workspaces that a kind of problem has."""
-    return [rule for rule in RULES.values() if kind in (rule.kind, rule.doubtful)]
+    return [rule for rule in RULES.values() if rule.has(kind)]
 
 
 def _rules_text(kind: Kind) -> str:

@@ -40,6 +40,7 @@ def test_every_rule_is_named_by_a_finder() -> None:
     ]
 
     assert unused == []
+    assert [kind for kind in rule_table.DEFINED if f'Use("{kind}"' not in uses] == []
 
 
 def test_every_kind_of_names_has_a_rule() -> None:

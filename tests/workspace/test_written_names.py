@@ -251,9 +251,7 @@ _NOT_ALONE = {
     # A topic and a controller, whose topics are named after it, are renamed on one side only: the
     # other side is in another node.
     "topic",
-    "Gazebo topic",
     "controller",
-    "interface",
     "parameter",
     "plugin section",
     "node",

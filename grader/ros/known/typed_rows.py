@@ -33,8 +33,14 @@ def read_row(kind: Callable[..., _Row], table: Mapping[str, Any]) -> _Row:
     for key, value in table.items():
         if key not in readings:
             raise ValueError(f"a {getattr(kind, '__name__', kind)} has no {key!r}")
-        values[key] = readings[key](value)
-    return kind(**values)
+        try:
+            values[key] = readings[key](value)
+        except ValueError as error:
+            raise ValueError(f"{key}: {error}") from None
+    try:
+        return kind(**values)
+    except TypeError:
+        raise ValueError(f"a {getattr(kind, '__name__', kind)} lacks a key") from None
 
 
 def read_file(kind: Callable[..., _Row], name: str) -> _Row:
@@ -69,16 +75,22 @@ def _reading_of(hint: Any) -> _Reading:
 
 def _items_of(arguments: Sequence[Any]) -> _Reading:
     read_item = _reading_of(arguments[0])
-    return lambda items: tuple(map(read_item, items))
+    return lambda items: tuple(map(read_item, _checked(items, list)))
 
 
 def _words_of(_: Sequence[Any]) -> _Reading:
-    return lambda words: frozenset(words.split())
+    return lambda words: frozenset(_checked(words, str).split())
 
 
 def _table_of(arguments: Sequence[Any]) -> _Reading:
     read_value = _reading_of(arguments[1])
-    return lambda table: {key: read_value(value) for key, value in table.items()}
+    return lambda table: {key: read_value(value) for key, value in _checked(table, dict).items()}
+
+
+def _checked(value: Any, kind: type) -> Any:
+    if not isinstance(value, kind):
+        raise ValueError(f"{value!r} is no {kind.__name__}")  # noqa: TRY004  a value of a file
+    return value
 
 
 _COLLECTIONS: Mapping[Any, Callable[[Sequence[Any]], _Reading]] = {

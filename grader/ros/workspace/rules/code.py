@@ -7,32 +7,32 @@ from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, Undecided
 from grader.ros.workspace.rules.rule_table import (
     BUFFER_LISTENER,
-    CALLBACK_CALLED,
-    CALLBACK_SLEEPS,
-    CALLBACK_WAITS,
+    CALLBACK_CALL,
+    CALLBACK_SLEEP,
+    CALLBACK_WAIT,
     CODE_SYNTAX,
-    CONTEXT_STARTED,
+    COMPONENT_MACRO,
     ENTITY_KEPT,
-    NODE_REGISTERED,
+    NAME_BINDING,
     NODE_SPINS,
+    RCLPY_INIT,
     ROTATION_SET,
     SERVICE_RESPONSE,
-    UNDEFINED_NAME,
     Rule,
 )
 
 _RULES: Mapping[CodeRule, Rule] = {
-    "undefined name": UNDEFINED_NAME,
-    "callback is called": CALLBACK_CALLED,
+    "undefined name": NAME_BINDING,
+    "callback is called": CALLBACK_CALL,
     "no response": SERVICE_RESPONSE,
     "nothing spins": NODE_SPINS,
-    "no rclpy.init": CONTEXT_STARTED,
-    "waits in a callback": CALLBACK_WAITS,
-    "sleeps in a callback": CALLBACK_SLEEPS,
+    "no rclpy.init": RCLPY_INIT,
+    "waits in a callback": CALLBACK_WAIT,
+    "sleeps in a callback": CALLBACK_SLEEP,
     "destroyed at once": ENTITY_KEPT,
     "no listener": BUFFER_LISTENER,
     "no rotation": ROTATION_SET,
-    "not registered": NODE_REGISTERED,
+    "not registered": COMPONENT_MACRO,
 }
 
 

@@ -22,7 +22,7 @@ from grader.ros.workspace.model.under_arguments import may_vary
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, warning
 from grader.ros.workspace.rules.rule_table import (
-    FOOTPRINT,
+    FOOTPRINT_SIZE,
 )
 
 _DIRECTIONS = 36  # horizontal directions in which the robot is measured
@@ -76,7 +76,7 @@ def footprint_facts(workspace: Workspace) -> Iterator[Fact]:
         )
         location = robots[0].robot.link(first.link).location
         at = location.resolve() if location is not None else None
-        yield warning(FOOTPRINT, message, room.location, at)
+        yield warning(FOOTPRINT_SIZE, message, room.location, at)
 
 
 def _rooms(workspace: Workspace) -> Iterator[_Room]:

@@ -34,7 +34,7 @@ from grader.ros.workspace.rules.names import (
 )
 from grader.ros.workspace.rules.rule_table import (
     FRAME_PARENT,
-    FRAME_PUBLISHED,
+    ROOT_FRAME,
 )
 from grader.ros.xml.parsing import Element
 
@@ -235,7 +235,7 @@ def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> It
         )
         either = corrections(each.name, at, meant, roots[meant])
         is_certain = each.node.when is True and len(robots) == 1
-        yield Mismatch(FRAME_PUBLISHED, message, at, roots[meant], is_certain, corrections=either)
+        yield Mismatch(ROOT_FRAME, message, at, roots[meant], is_certain, corrections=either)
 
 
 def _is_static(node: StartedNode) -> bool:

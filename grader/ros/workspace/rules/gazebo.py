@@ -17,7 +17,7 @@ from grader.ros.workspace.graph.gazebo_topics import roots, system_of
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Fact, Mismatch, corrections
 from grader.ros.workspace.rules.rule_table import (
-    BRIDGE_EMPTY,
+    BRIDGE_TOPICS,
     CREATE_OPTION,
     CREATED_FROM,
     CREATED_TOPIC,
@@ -165,4 +165,4 @@ def _bridges(workspace: Workspace) -> Iterator[Mismatch]:
                 message = (
                     "the bridge has no topics: neither arguments, nor the parameter config_file"
                 )
-                yield Mismatch(BRIDGE_EMPTY, message, node.location)
+                yield Mismatch(BRIDGE_TOPICS, message, node.location)

@@ -25,7 +25,7 @@ from grader.ros.workspace.rules.names import (
     Use,
     corrections,
 )
-from grader.ros.workspace.rules.rule_table import SERVICE_SERVED, TOPIC_HEARD, TOPIC_PUBLISHED
+from grader.ros.workspace.rules.rule_table import SERVICE_SERVED, TOPIC_PUBLISHED, TOPIC_SUBSCRIBED
 
 
 class _Offer(NamedTuple):
@@ -152,13 +152,7 @@ def _without_subscription(
                     f"nothing subscribes to {publisher.name}; did you mean {waiting.name} "
                     f"({place.file_and_line})?"
                 )
-                yield Mismatch(TOPIC_HEARD, message, at, place, is_certain)
-
-
-def _fitting(waiting: End, others: Sequence[End]) -> list[End]:
-    """Return the ends with the type of another one, in the same launch."""
-    in_launch = [end for end in others if end.launch == waiting.launch]
-    return [end for end in in_launch if end.type == waiting.type]
+                yield Mismatch(TOPIC_SUBSCRIBED, message, at, place, is_certain)
 
 
 def _last_names(end: End, count: int) -> list[str]:

@@ -20,12 +20,12 @@ from grader.ros.workspace.rules.names import (
     corrections,
 )
 from grader.ros.workspace.rules.rule_table import (
-    PARAMETER_BOUNDS,
     PARAMETER_EFFECT,
-    PARAMETER_MISSING,
+    PARAMETER_NAME,
     PARAMETER_RELEASE,
+    PARAMETER_REQUIRED,
     PARAMETER_TYPE,
-    PARAMETER_UNKNOWN,
+    PARAMETER_VALUE,
     Rule,
 )
 
@@ -122,7 +122,7 @@ def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismat
         before = here if found is None else found
         found = {key: mismatch for key, mismatch in before.items() if key in here}
     for (rule, name), mismatch in (found or {}).items():
-        if rule is PARAMETER_UNKNOWN:
+        if rule is PARAMETER_NAME:
             having = [release for release in COVERED if readers[release].has(name)]
             yield _of_other_release(given, name, mismatch, having, stated)
         else:
@@ -346,11 +346,11 @@ class _NodeReader:
             message = (
                 f"the parameter {shown!r} is {_shown(given.value)}; {self._given.said} {wrong}"
             )
-            yield self._certain(PARAMETER_BOUNDS, name, message, given.location)
+            yield self._certain(PARAMETER_VALUE, name, message, given.location)
         wrong = self._wrong_library(name, row, given.value)
         if wrong:
             message = f"{self._given.said} {wrong}"
-            yield self._certain(PARAMETER_BOUNDS, name, message, given.location)
+            yield self._certain(PARAMETER_VALUE, name, message, given.location)
 
     def _wrong_library(self, name: str, row: ParameterRow, value: Any) -> str:
         """Return, in words, that a node stops at a library of plugins; empty if it does not."""
@@ -411,7 +411,7 @@ class _NodeReader:
                 f"mean {quoted(self._given.shown(near_name))}?"
             )
             mismatch = Mismatch(
-                PARAMETER_UNKNOWN,
+                PARAMETER_NAME,
                 message,
                 at,
                 is_certain=False,
@@ -427,7 +427,7 @@ class _NodeReader:
         if similar and is_misspelling(section, similar) and are_of_one_side(section, similar):
             guess = f"; did you mean {quoted(similar)}?"
         message = f"{self._given.said} has no parameter {quoted(section)}{guess}"
-        mismatch = Mismatch(PARAMETER_UNKNOWN, message, at, is_certain=False)
+        mismatch = Mismatch(PARAMETER_NAME, message, at, is_certain=False)
         return _RowFinding(section, mismatch)
 
     def _first_unknown(self, name: str, table: _RowTable) -> str:
@@ -469,14 +469,14 @@ class _NodeReader:
                 )
                 wrong = meant.get(name) or closest(name, unread)
                 if wrong is None or wrong not in self._values:
-                    yield self._certain(PARAMETER_MISSING, name, message, at)
+                    yield self._certain(PARAMETER_REQUIRED, name, message, at)
                     continue
                 unread.pop(wrong, None)
                 value = self._values[wrong]
                 place = value.named_at or value.location
                 text = f"{message}; did you mean it by {wrong!r}?"
                 either = corrections(wrong.rpartition(".")[2], place, row.name.rpartition(".")[2])
-                mismatch = Mismatch(PARAMETER_MISSING, text, place, corrections=either)
+                mismatch = Mismatch(PARAMETER_REQUIRED, text, place, corrections=either)
                 yield _RowFinding(name, mismatch)
 
 

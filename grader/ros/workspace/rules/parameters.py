@@ -44,8 +44,8 @@ from grader.ros.workspace.rules.rule_table import (
     FILTER_SIZE,
     PARAMETER_FILE,
     PARAMETER_KEY,
-    PARAMETER_MISSING,
     PARAMETER_NODE,
+    PARAMETER_REQUIRED,
     PARAMETER_TYPE,
     PLUGIN_NAME,
     ROBOT_TEXT,
@@ -335,7 +335,7 @@ def _not_given(
             )
             is_certain = node.when is True and not own_node.doubts
             yield Mismatch(
-                PARAMETER_MISSING, message, node.location, parameter.location, is_certain
+                PARAMETER_REQUIRED, message, node.location, parameter.location, is_certain
             )
 
 

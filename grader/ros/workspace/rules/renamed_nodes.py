@@ -13,7 +13,7 @@ from grader.ros.launch.node_parameters import is_key_of
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, corrections
 from grader.ros.workspace.rules.rule_table import (
-    RENAMED_NODE,
+    NODE_SECTION,
 )
 
 _ANY_NAMES = ("*", "**")
@@ -78,7 +78,7 @@ def _unread_sections(
         )
         is_only_one = len(unread) == 1 and not is_read_elsewhere
         either = corrections(old, at, name if is_only_one else None)
-        yield Mismatch(RENAMED_NODE, message, at, node.location, node.when is True, either)
+        yield Mismatch(NODE_SECTION, message, at, node.location, node.when is True, either)
 
 
 def _names_read(workspace: Workspace, nodes: Sequence[StartedNode]) -> set[str | None]:

@@ -1,6 +1,7 @@
 """The rules of a workspace: one row each, by which reports, settings and `grader explain` name it.
 
-A row says what is right. The function that finds what is not names the row.
+A row says what is right, and its name is the subject of the rule. The function that finds what is
+not right names the row.
 """
 
 from collections.abc import Mapping
@@ -26,7 +27,7 @@ Family = Literal[
     "transforms",
 ]
 FAMILIES: tuple[Family, ...] = get_args(Family)
-# Of these, nothing is certain.
+# The families that are added here have only warnings, and no rubric can ask for them.
 AnyFamily = Family | Literal["wiring", "machine", "moveit", "words", "messages", "effects"]
 DefinedKind = Literal[
     "frame",
@@ -34,14 +35,12 @@ DefinedKind = Literal[
     "joint",
     "group",
     "controller",
-    "interface",
     "plugin section",
     "parameter",
     "launch argument",
     "xacro argument",
     "node",
     "topic",
-    "Gazebo topic",
 ]
 
 _error = partial(Kind, severity="error", effect="other")
@@ -55,7 +54,7 @@ _NO_ARGUMENT = _error("REF005", "Argument that nothing declares")
 _NO_PROGRAM = _error("REF006", "Program, entry point or node that does not exist")
 _NO_TOPIC = _error("REF007", "Topic with another name, type or quality of service")
 _NO_DEPENDENCY = _warning("REF008", "Package that package.xml does not declare")
-_SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
+SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
 _UNUSED = _warning("REF010", "File that no other file names")
 _OTHER_RELEASE = _warning("REF011", "Name of another release of ROS 2")
 _UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
@@ -96,6 +95,12 @@ class Rule(NamedTuple):
     sentence: str  # what is right
     is_of_type: bool = False  # whether a value or a topic has another type
 
+    def has(self, kind: Kind) -> bool:
+        """Return whether a kind of problem is one of the rule; that a name is similar to another
+        one, any rule may say.
+        """
+        return kind == self.kind or (kind == self.doubtful and kind != SIMILAR)
+
     def problem(
         self, message: str, at: Location, subject: str = "", *, is_certain: bool = True
     ) -> Problem:
@@ -108,42 +113,43 @@ def _rules_of(family: AnyFamily, kind: Kind, doubtful: Kind | None = None) -> "p
     return partial(Rule, family=family, kind=kind, doubtful=doubtful or kind)
 
 
-_file = _rules_of("files", _NO_FILE, _SIMILAR)
+_file = _rules_of("files", _NO_FILE, SIMILAR)
+_similar_file = _rules_of("files", SIMILAR)
 FILE_INSTALLED = _file(
     "file-installed", sentence="A build installs each file at the path that another file names."
 )
 FILE_PACKAGE = _file("file-package", sentence="The package of a path exists.")
 MAP_IMAGE = _file("map-image", sentence="The image of a map exists.")
 WORLD_MODEL = _file("world-model", sentence="The models that a world includes exist.")
-LAUNCH_FILE_NAME = _file(
-    "launch-file-name", sentence="The launch file that is included of another package exists."
+LAUNCH_FILE_NAME = _similar_file(
+    "launch-file-name", sentence="An included launch file of a well-known package exists."
 )
 FILE_USED = Rule(
     "file-used", "files", _UNUSED, _UNUSED, "Another file names each file of the robot."
 )
 
-_frame = _rules_of("frames", _NO_FRAME, _SIMILAR)
+_frame = _rules_of("frames", _NO_FRAME, SIMILAR)
+_similar_frame = _rules_of("frames", SIMILAR)
 _FRAME_DEFINED = _frame("frame-defined", sentence="The frames that files name exist.")
 _LINK_DEFINED = _frame("link-defined", sentence="The links that files name are in the robot.")
 JOINT_DEFINED = _frame("joint-defined", sentence="The joints that files name are in the robot.")
 _GROUP_DEFINED = _frame("group-defined", sentence="The groups that files name are in the SRDF.")
-FRAME_PUBLISHED = _frame(
-    "frame-published", sentence="The frame that a static transform publishes is one of the robot."
+ROOT_FRAME = _frame(
+    "root-frame",
+    sentence="A frame that code publishes is not a misspelling of the root of the robot.",
 )
 FRAME_PARENT = _frame("frame-parent", sentence="A link of the robot gets no second parent.")
 STATE_LIMITS = _frame(
     "state-limits", sentence="The states of an SRDF are within the limits of the joints."
 )
-DISABLED_PAIRS = _frame(
-    "disabled-pairs", sentence="Links that a joint connects are not compared for collisions."
+DISABLED_PAIRS = _similar_frame(
+    "disabled-pairs",
+    sentence="An SRDF disables the collisions between links that a joint connects.",
 )
 
-_controller = _rules_of("controllers", _NO_CONTROLLER, _SIMILAR)
+_controller = _rules_of("controllers", _NO_CONTROLLER, SIMILAR)
 _CONTROLLER_DEFINED = _controller(
     "controller-defined", sentence="The controllers that files name are defined."
-)
-_INTERFACE_DEFINED = _controller(
-    "interface-defined", sentence="The interfaces that files name are in <ros2_control>."
 )
 CONTROLLER_TYPE = _controller(
     "controller-type", sentence="The type of a controller is one that a package has."
@@ -175,7 +181,8 @@ MANAGER_SECTION = _controller(
     "manager-section", sentence="The types of controllers are below controller_manager."
 )
 CONTROLLER_STARTED = _controller(
-    "controller-started", sentence="A spawner starts the controllers that a launch file defines."
+    "controller-started",
+    sentence="A spawner starts one of the controllers that move joints, and one that publishes.",
 )
 MOVEIT_CONTROLLER = _controller(
     "moveit-controller", sentence="A spawner starts the controllers that MoveIt commands."
@@ -185,15 +192,19 @@ MOVEIT_JOINTS = _controller(
     "moveit-joints", sentence="MoveIt gives a controller the joints that it has."
 )
 
-_parameter = _rules_of("parameters", _NO_PARAMETER, _SIMILAR)
+_parameter = _rules_of("parameters", _NO_PARAMETER, SIMILAR)
 _PARAMETER_DEFINED = _parameter(
-    "parameter-defined", sentence="The parameters that a node gets are those that it declares."
+    "parameter-defined",
+    sentence="A node declares the parameters that it is given and those that its code reads.",
 )
 _PLUGIN_SECTION = _parameter(
     "plugin-section", sentence="The plugins of a list have a section beside it."
 )
 PLUGIN_NAME = _parameter("plugin-name", sentence="The class of a plugin is one that exists.")
-PARAMETER_FILE = _parameter("parameter-file", sentence="A parameter file is YAML that rcl reads.")
+PARAMETER_FILE = _parameter(
+    "parameter-file",
+    sentence="An installed YAML file can be parsed, and a parameter file has no aliases.",
+)
 PARAMETER_KEY = _parameter(
     "parameter-key", sentence="The parameters of a node are below one key ros__parameters."
 )
@@ -203,17 +214,17 @@ PARAMETER_NODE = _parameter(
 PARAMETER_NAMESPACE = _parameter(
     "parameter-namespace", sentence="The section of a node has the node's namespace."
 )
-RENAMED_NODE = _parameter(
-    "renamed-node", sentence="The section of a node has the name that its launch file gives it."
+NODE_SECTION = _parameter(
+    "node-section", sentence="The section of a node has the name that its launch file gives it."
 )
-PARAMETER_MISSING = _parameter(
-    "parameter-missing", sentence="A node gets the parameters without which it stops."
+PARAMETER_REQUIRED = _parameter(
+    "parameter-required", sentence="A node gets the parameters without which it stops."
 )
 PARAMETER_TYPE = _parameter(
     "parameter-type", sentence="A parameter has the type that its node declares.", is_of_type=True
 )
-PARAMETER_BOUNDS = _parameter(
-    "parameter-bounds", sentence="A parameter has a value that its node accepts."
+PARAMETER_VALUE = _parameter(
+    "parameter-value", sentence="A parameter has a value that its node accepts."
 )
 FILTER_SIZE = _parameter(
     "filter-size", sentence="An input of a robot_localization filter has 15 values."
@@ -222,24 +233,24 @@ ROBOT_TEXT = _parameter("robot-text", sentence="robot_description is the text of
 CREATED_FROM = _parameter(
     "created-from", sentence="The program that creates a robot in Gazebo gets its source."
 )
-PARAMETER_UNKNOWN = Rule(
-    "parameter-unknown",
+PARAMETER_NAME = Rule(
+    "parameter-name",
     "parameters",
-    _NO_PARAMETER,
+    _NO_SUCH_PARAMETER,
     _NO_SUCH_PARAMETER,
     "The parameters of a well-known node are those that it has.",
 )
 PARAMETER_EFFECT = Rule(
     "parameter-effect",
     "parameters",
-    _NO_PARAMETER,
+    _NO_EFFECT,
     _NO_EFFECT,
     "The parameters of a well-known node have an effect under the values of others.",
 )
 PARAMETER_RELEASE = Rule(
     "parameter-release",
     "parameters",
-    _NO_PARAMETER,
+    _OTHER_RELEASE,
     _OTHER_RELEASE,
     "The parameters of a well-known node are those of the stated release.",
 )
@@ -248,10 +259,10 @@ NAME_RELEASE = Rule(
     "words",
     _OTHER_RELEASE,
     _OTHER_RELEASE,
-    "The names of packages, programs, plugins and topics are those of the stated release.",
+    "Packages, programs, controllers, plugins and topics are of the stated release.",
 )
 
-_argument = _rules_of("arguments", _NO_ARGUMENT, _SIMILAR)
+_argument = _rules_of("arguments", _NO_ARGUMENT, SIMILAR)
 _LAUNCH_ARGUMENT = _argument(
     "launch-argument", sentence="The arguments that an include passes are declared."
 )
@@ -259,20 +270,25 @@ _XACRO_ARGUMENT = _argument(
     "xacro-argument", sentence="The arguments that xacro gets are declared."
 )
 
-_program = _rules_of("programs", _NO_PROGRAM, _SIMILAR)
+_program = _rules_of("programs", _NO_PROGRAM, SIMILAR)
 PROGRAM_EXISTS = _program(
     "program-exists", sentence="The package of a started node has its program."
 )
 ENTRY_POINT = _program("entry-point", sentence="An entry point names a function that exists.")
 PROGRAM_RUNS = _program("program-runs", sentence="The first line of a script names an interpreter.")
-_NODE_STARTED = _program("node-started", sentence="The nodes that files name are started.")
+_NODE_STARTED = _program(
+    "node-started", sentence="A launch file starts the nodes that a lifecycle manager manages."
+)
 COMPONENT_REGISTERED = _program(
-    "component-registered", sentence="The package of a component registers it."
+    "component-registered",
+    sentence="CMakeLists.txt of the package registers the component that a launch file loads.",
 )
 
-_topic = _rules_of("topics", _NO_TOPIC, _SIMILAR)
-_TOPIC_DEFINED = _topic("topic-defined", sentence="The topics that files name are published.")
-_GAZEBO_TOPIC = _topic("gazebo-topic", sentence="The topics of a bridge are those of Gazebo.")
+_topic = _rules_of("topics", _NO_TOPIC, SIMILAR)
+_TOPIC_DEFINED = _topic(
+    "topic-defined",
+    sentence="A node has the topic that a remapping replaces, and what code reads is published.",
+)
 TOPIC_TYPE = _topic(
     "topic-type",
     sentence="Publishers and subscriptions of a topic have one type.",
@@ -284,8 +300,8 @@ TOPIC_QUALITY = _topic(
 TOPIC_PUBLISHED = _topic(
     "topic-published", sentence="The topic that a node subscribes to is published."
 )
-TOPIC_HEARD = _topic(
-    "topic-heard",
+TOPIC_SUBSCRIBED = _topic(
+    "topic-subscribed",
     sentence="The topic that a node publishes is the one that a controller waits for.",
 )
 BRIDGE_FILE = _topic("bridge-file", sentence="A file of bridge rows is YAML.")
@@ -296,10 +312,13 @@ BRIDGE_ARGUMENT = _topic(
 BRIDGE_DIRECTION = _topic(
     "bridge-direction", sentence="A row of a bridge goes in the direction of its messages."
 )
-BRIDGE_TYPE = _topic("bridge-type", sentence="A bridge converts the types of its rows.")
+BRIDGE_TYPE = _topic(
+    "bridge-type",
+    sentence="A bridge converts the types of its rows, and a row has the type of Gazebo's topic.",
+)
 BRIDGE_TOPIC = _topic("bridge-topic", sentence="Gazebo has the topic of a row of a bridge.")
 BRIDGE_CLOCK = _topic("bridge-clock", sentence="A bridge takes the clock from Gazebo.")
-BRIDGE_EMPTY = _topic("bridge-empty", sentence="A bridge has topics.")
+BRIDGE_TOPICS = _topic("bridge-topics", sentence="A bridge has topics.")
 SENSOR_SYSTEM = _topic("sensor-system", sentence="A world has the systems that its sensors need.")
 CREATED_WORLD = _topic(
     "created-world", sentence="A robot is created in the world that Gazebo runs."
@@ -312,11 +331,11 @@ DEPENDENCY_DECLARED = Rule(
     "dependency-declared",
     "dependencies",
     _NO_DEPENDENCY,
-    _SIMILAR,
+    SIMILAR,
     "package.xml declares the packages that the files of the package use.",
 )
 
-_service = _rules_of("services", _NO_SERVICE, _SIMILAR)
+_service = _rules_of("services", _NO_SERVICE, SIMILAR)
 SERVICE_TYPE = _service(
     "service-type",
     sentence="A service or action is called with the type with which it is served.",
@@ -326,7 +345,7 @@ SERVICE_SERVED = _service(
     "service-served", sentence="The service or action that a node calls is served."
 )
 
-_interface = _rules_of("interfaces", _NO_INTERFACE, _SIMILAR)
+_interface = _rules_of("interfaces", _NO_INTERFACE, SIMILAR)
 INTERFACE_FILE = _interface(
     "interface-file", sentence="rosidl reads the files of messages, services and actions."
 )
@@ -339,7 +358,8 @@ INTERFACE_DEPENDENCY = _interface(
     sentence="rosidl_generate_interfaces() names the packages whose types fields have.",
 )
 INTERFACE_TYPE = _interface(
-    "interface-type", sentence="The messages, services and actions that code uses exist."
+    "interface-type",
+    sentence="The messages, services and actions that code and interface files use exist.",
 )
 INTERFACE_FIELD = _interface(
     "interface-field", sentence="The fields and constants that code uses exist."
@@ -349,47 +369,64 @@ FIELD_VALUE = _interface(
 )
 
 _code = _rules_of("code", _NO_RUN, _MAY_WAIT)
-CODE_SYNTAX = _code("code-syntax", sentence="Python reads the modules of nodes.")
-UNDEFINED_NAME = _code("undefined-name", sentence="Code that runs uses defined names.")
-CALLBACK_CALLED = _code(
-    "callback-called", sentence="A callback is given as a function, and not called."
+_slow_code = _rules_of("code", _MAY_WAIT)
+CODE_SYNTAX = _code("code-syntax", sentence="The Python modules of nodes have no syntax errors.")
+NAME_BINDING = _code(
+    "name-binding",
+    sentence="Names and attributes are defined, and format strings get their arguments.",
 )
-SERVICE_RESPONSE = _code("service-response", sentence="The callback of a service returns.")
+CALLBACK_CALL = _code(
+    "callback-call", sentence="A callback is given as a function, and not called."
+)
+SERVICE_RESPONSE = _code(
+    "service-response",
+    sentence="The callback of a service or action returns its response or result on every path.",
+)
 NODE_SPINS = _code("node-spins", sentence="A node with callbacks is spun.")
-CONTEXT_STARTED = _code("context-started", sentence="A node is made after rclpy.init().")
-CALLBACK_WAITS = _code("callback-waits", sentence="A callback waits for no other callback.")
-CALLBACK_SLEEPS = _code("callback-sleeps", sentence="A callback does not sleep.")
+RCLPY_INIT = _code("rclpy-init", sentence="A node is made after rclpy.init().")
+CALLBACK_WAIT = _code("callback-wait", sentence="A callback waits for no other callback.")
+CALLBACK_SLEEP = _slow_code("callback-sleep", sentence="A callback does not sleep.")
 ENTITY_KEPT = _code("entity-kept", sentence="A node keeps what it makes.")
 BUFFER_LISTENER = _code("buffer-listener", sentence="A buffer of transforms has a listener.")
 ROTATION_SET = _code("rotation-set", sentence="A transform that is sent has a rotation.")
-NODE_REGISTERED = _code("node-registered", sentence="A component is registered.")
+COMPONENT_MACRO = _code(
+    "component-macro", sentence="A source file registers the component that CMakeLists.txt names."
+)
 
 _value = _rules_of("values", _WRONG_VALUE, _OTHER_VALUE)
+_other_value = _rules_of("values", _OTHER_VALUE)
 WHEEL_SIDE = _value(
-    "wheel-side", sentence="The left and right wheels of a controller are on their sides."
+    "wheel-side",
+    sentence="The left and right wheels of a controller or a Gazebo plugin are on their sides.",
 )
-WHEEL_AXIS = _value("wheel-axis", sentence="A positive speed of a wheel drives forward.")
+WHEEL_AXIS = _other_value("wheel-axis", sentence="A positive speed of a wheel drives forward.")
 WHEEL_DISTANCE = _value(
-    "wheel-distance", sentence="The track and wheelbase of a controller are those of the robot."
+    "wheel-distance",
+    sentence="The track and wheelbase of a controller or a Gazebo plugin are those of the robot.",
 )
-WHEEL_RADIUS = _value(
-    "wheel-size", sentence="The radius of wheels of a controller is that of the robot."
+WHEEL_SIZE = _value(
+    "wheel-size",
+    sentence="The wheel radius of a controller or a Gazebo plugin is that of the robot.",
 )
-JOINT_LIMIT = _value(
+JOINT_LIMIT = _other_value(
     "joint-limit", sentence="The limits in a file are within those of the robot's joints."
 )
-FOOTPRINT = _value("footprint-size", sentence="The footprint of a costmap holds the robot.")
-OBSTACLE_RANGE = _value(
+FOOTPRINT_SIZE = _other_value(
+    "footprint-size", sentence="The footprint of a costmap holds the robot."
+)
+OBSTACLE_RANGE = _other_value(
     "obstacle-range", sentence="A costmap asks for no obstacles beyond the range of its lidar."
 )
-SCAN_RATE = _value(
+SCAN_RATE = _other_value(
     "scan-rate", sentence="A costmap expects scans no more often than its lidar measures."
 )
-PUBLISH_RATE = _value(
+PUBLISH_RATE = _other_value(
     "publish-rate", sentence="A controller publishes no more often than it is updated."
 )
-STATIC_POSE = _value("static-pose", sentence="A static transform of a link equals its fixed joint.")
-MESH_UNIT = _value("mesh-unit", sentence="Meshes are in metres.")
+STATIC_POSE = _other_value(
+    "static-pose", sentence="A static transform of a link equals its fixed joint."
+)
+MESH_UNIT = _other_value("mesh-unit", sentence="Meshes are in metres.")
 
 _transform = _rules_of("transforms", _WRONG_TRANSFORM, _OTHER_TRANSFORM)
 TRANSFORM_ROTATION = _transform(
@@ -398,11 +435,11 @@ TRANSFORM_ROTATION = _transform(
 TRANSFORM_OWNER = _transform(
     "transform-owner", sentence="One program publishes the transform of a frame."
 )
-TRANSFORM_CYCLE = _transform("transform-cycle", sentence="The frames of a robot are no cycle.")
+TRANSFORM_CYCLE = _transform("transform-cycle", sentence="The transforms of a robot have no cycle.")
 TRANSFORM_CONNECTED = Rule(
     "transform-connected",
     "transforms",
-    _WRONG_TRANSFORM,
+    _UNCONNECTED,
     _UNCONNECTED,
     "The frames between which a node looks up a transform are connected.",
 )
@@ -426,7 +463,7 @@ CONTAINER_STARTED = _companion(
     "container-started", sentence="The container of a component is started."
 )
 SENSOR_TOPIC = _companion(
-    "sensor-topic", sentence="A sensor publishes the topic that a bridge takes from Gazebo."
+    "sensor-topic", sentence="The sensor whose messages a bridge takes has a <topic>."
 )
 INPUT_TYPE = _companion(
     "input-type", sentence="A well-known program reads a topic with the type that it has."
@@ -481,7 +518,7 @@ GAIN_SET = Rule(
     "effects",
     _MOVES_NOTHING,
     _MOVES_NOTHING,
-    "A controller that commands efforts has gains.",
+    "A controller that computes efforts or velocities with gains has gains.",
 )
 NAMES_COMPARED = Rule(
     "names-compared", "files", _UNCOMPARED, _UNCOMPARED, "All names of a workspace are compared."
@@ -494,14 +531,12 @@ DEFINED: Mapping[DefinedKind, Rule] = {
     "joint": JOINT_DEFINED,
     "group": _GROUP_DEFINED,
     "controller": _CONTROLLER_DEFINED,
-    "interface": _INTERFACE_DEFINED,
     "plugin section": _PLUGIN_SECTION,
     "parameter": _PARAMETER_DEFINED,
     "launch argument": _LAUNCH_ARGUMENT,
     "xacro argument": _XACRO_ARGUMENT,
     "node": _NODE_STARTED,
     "topic": _TOPIC_DEFINED,
-    "Gazebo topic": _GAZEBO_TOPIC,
 }
 RULES: Mapping[str, Rule] = {
     rule.name: rule for rule in [*globals().values()] if isinstance(rule, Rule)

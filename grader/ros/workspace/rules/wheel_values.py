@@ -36,8 +36,8 @@ from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
     WHEEL_AXIS,
     WHEEL_DISTANCE,
-    WHEEL_RADIUS,
     WHEEL_SIDE,
+    WHEEL_SIZE,
     Rule,
 )
 from grader.ros.xml.parsing import Element
@@ -334,7 +334,8 @@ def _faults_of_number(
 ) -> Iterator[Mismatch]:
     """Yield that a number is not what the wheels of the robot have."""
     if value < 0.0:
-        yield Mismatch(WHEEL_DISTANCE, f"{key} is {value:g}: a length is not negative", at)
+        rule = WHEEL_SIZE if kind in ("radius", "diameter") else WHEEL_DISTANCE
+        yield Mismatch(rule, f"{key} is {value:g}: a length is not negative", at)
         return
     related = _place(wheels.all[0])
     if kind in ("radius", "diameter"):
@@ -382,7 +383,7 @@ def _faults_of_radius(
             continue
         name, size = quoted(wheel.joint.name), factor * wheel.radii[0]
         message = f"{key} is {value:g} m; the wheel of {name} has the {kind} {size:.4g} m"
-        yield warning(WHEEL_RADIUS, message, at, _place(wheel))
+        yield warning(WHEEL_SIZE, message, at, _place(wheel))
 
 
 def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:
