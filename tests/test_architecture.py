@@ -469,6 +469,12 @@ def test_no_test_replaces_a_name_that_another_module_imports() -> None:
     assert [pair for pair in sorted(replaced) if pair[0] in imported] == []
 
 
+def test_no_test_writes_into_the_folder_around_those_of_others() -> None:
+    """A package.xml there would make each folder of a later test a part of its package."""
+    name = "get" + "basetemp"
+    assert [path for path in TESTS.rglob("*.py") if name in path.read_text("utf-8")] == []
+
+
 def _names_by_from(tree: ast.Module) -> Iterator[str]:
     """Yield the names that a module keeps from its import on; an import in a function looks again in each call."""
     for node in tree.body:

@@ -115,7 +115,7 @@ def test_any_points_in_hundredths_add_up(
     tmp_path_factory: pytest.TempPathFactory, cents: list[int]
 ) -> None:
     """However many criteria share the points, the declared total is their exact sum, and one cent more is refused."""
-    folder = tmp_path_factory.getbasetemp()
+    folder = tmp_path_factory.mktemp("rubric")
     points = [f"{cent // 100}.{cent % 100:02d}" for cent in cents]
     total, wrong = (f"{cent // 100}.{cent % 100:02d}" for cent in (sum(cents), sum(cents) + 1))
     assert loaded(folder, worth(points, total)).points * 100 == sum(cents)

@@ -140,7 +140,7 @@ def test_package_xml_is_refused_where_catkin_pkg_refuses_it(
     text: str, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     """A package.xml is refused exactly where catkin_pkg raises, for the same reasons; else the build type is the same."""
-    _compare(text.encode(), tmp_path_factory.getbasetemp())
+    _compare(text.encode(), tmp_path_factory.mktemp("manifest"))
 
 
 @pytest.mark.parametrize(
