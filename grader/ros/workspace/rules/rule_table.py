@@ -54,7 +54,7 @@ _NO_ARGUMENT = _error("REF005", "Argument that nothing declares")
 _NO_PROGRAM = _error("REF006", "Program, entry point or node that does not exist")
 _NO_TOPIC = _error("REF007", "Topic with another name, type or quality of service")
 _NO_DEPENDENCY = _warning("REF008", "Package that package.xml does not declare")
-SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
+_SIMILAR = _warning("REF009", "Name that is similar to one that is defined")
 _UNUSED = _warning("REF010", "File that no other file names")
 _OTHER_RELEASE = _warning("REF011", "Name of another release of ROS 2")
 _UNCOMPARED = Kind("REF012", "Names that are not compared", severity="note", effect="other")
@@ -99,7 +99,7 @@ class Rule(NamedTuple):
         """Return whether a kind of problem is one of the rule; that a name is similar to another
         one, any rule may say.
         """
-        return kind == self.kind or (kind == self.doubtful and kind != SIMILAR)
+        return kind == self.kind or (kind == self.doubtful and kind != _SIMILAR)
 
     def problem(
         self, message: str, at: Location, subject: str = "", *, is_certain: bool = True
@@ -113,8 +113,8 @@ def _rules_of(family: AnyFamily, kind: Kind, doubtful: Kind | None = None) -> "p
     return partial(Rule, family=family, kind=kind, doubtful=doubtful or kind)
 
 
-_file = _rules_of("files", _NO_FILE, SIMILAR)
-_similar_file = _rules_of("files", SIMILAR)
+_file = _rules_of("files", _NO_FILE, _SIMILAR)
+_similar_file = _rules_of("files", _SIMILAR)
 FILE_INSTALLED = _file(
     "file-installed", sentence="A build installs each file at the path that another file names."
 )
@@ -128,8 +128,8 @@ FILE_USED = Rule(
     "file-used", "files", _UNUSED, _UNUSED, "Another file names each file of the robot."
 )
 
-_frame = _rules_of("frames", _NO_FRAME, SIMILAR)
-_similar_frame = _rules_of("frames", SIMILAR)
+_frame = _rules_of("frames", _NO_FRAME, _SIMILAR)
+_similar_frame = _rules_of("frames", _SIMILAR)
 _FRAME_DEFINED = _frame("frame-defined", sentence="The frames that files name exist.")
 _LINK_DEFINED = _frame("link-defined", sentence="The links that files name are in the robot.")
 JOINT_DEFINED = _frame("joint-defined", sentence="The joints that files name are in the robot.")
@@ -147,7 +147,7 @@ DISABLED_PAIRS = _similar_frame(
     sentence="An SRDF disables the collisions between links that a joint connects.",
 )
 
-_controller = _rules_of("controllers", _NO_CONTROLLER, SIMILAR)
+_controller = _rules_of("controllers", _NO_CONTROLLER, _SIMILAR)
 _CONTROLLER_DEFINED = _controller(
     "controller-defined", sentence="The controllers that files name are defined."
 )
@@ -192,7 +192,7 @@ MOVEIT_JOINTS = _controller(
     "moveit-joints", sentence="MoveIt gives a controller the joints that it has."
 )
 
-_parameter = _rules_of("parameters", _NO_PARAMETER, SIMILAR)
+_parameter = _rules_of("parameters", _NO_PARAMETER, _SIMILAR)
 _PARAMETER_DEFINED = _parameter(
     "parameter-defined",
     sentence="A node declares the parameters that it is given and those that its code reads.",
@@ -262,7 +262,7 @@ NAME_RELEASE = Rule(
     "Packages, programs, controllers, plugins and topics are of the stated release.",
 )
 
-_argument = _rules_of("arguments", _NO_ARGUMENT, SIMILAR)
+_argument = _rules_of("arguments", _NO_ARGUMENT, _SIMILAR)
 _LAUNCH_ARGUMENT = _argument(
     "launch-argument", sentence="The arguments that an include passes are declared."
 )
@@ -270,7 +270,7 @@ _XACRO_ARGUMENT = _argument(
     "xacro-argument", sentence="The arguments that xacro gets are declared."
 )
 
-_program = _rules_of("programs", _NO_PROGRAM, SIMILAR)
+_program = _rules_of("programs", _NO_PROGRAM, _SIMILAR)
 PROGRAM_EXISTS = _program(
     "program-exists", sentence="The package of a started node has its program."
 )
@@ -284,7 +284,7 @@ COMPONENT_REGISTERED = _program(
     sentence="CMakeLists.txt of the package registers the component that a launch file loads.",
 )
 
-_topic = _rules_of("topics", _NO_TOPIC, SIMILAR)
+_topic = _rules_of("topics", _NO_TOPIC, _SIMILAR)
 _TOPIC_DEFINED = _topic(
     "topic-defined",
     sentence="A node has the topic that a remapping replaces, and what code reads is published.",
@@ -331,11 +331,11 @@ DEPENDENCY_DECLARED = Rule(
     "dependency-declared",
     "dependencies",
     _NO_DEPENDENCY,
-    SIMILAR,
+    _SIMILAR,
     "package.xml declares the packages that the files of the package use.",
 )
 
-_service = _rules_of("services", _NO_SERVICE, SIMILAR)
+_service = _rules_of("services", _NO_SERVICE, _SIMILAR)
 SERVICE_TYPE = _service(
     "service-type",
     sentence="A service or action is called with the type with which it is served.",
@@ -345,7 +345,7 @@ SERVICE_SERVED = _service(
     "service-served", sentence="The service or action that a node calls is served."
 )
 
-_interface = _rules_of("interfaces", _NO_INTERFACE, SIMILAR)
+_interface = _rules_of("interfaces", _NO_INTERFACE, _SIMILAR)
 INTERFACE_FILE = _interface(
     "interface-file", sentence="rosidl reads the files of messages, services and actions."
 )
