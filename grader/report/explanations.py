@@ -140,7 +140,7 @@ def explanation(name: str, rubric: Rubric) -> str:
     else:
         similar = ""
     guess = similar or did_you_mean(name, known) or f"; {lists}"
-    raise InputError(f"there is no problem code, criterion or check {name!r}{guess}")
+    raise InputError(f"there is no problem code, rule, criterion or check {name!r}{guess}")
 
 
 def rules_of(kind: Kind) -> list[Rule]:

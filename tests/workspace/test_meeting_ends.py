@@ -73,7 +73,7 @@ WRONG: list[tuple[str, list[Edit]]] = [
 
 @pytest.mark.parametrize(("problem", "edits"), WRONG, ids=[row[0][:80] for row in WRONG])
 def test_another_type_is_one_problem(problem: str, edits: list[Edit]) -> None:
-    """It is named once, whoever opens the two ends, and nothing else is reported."""
+    """It is named once, for each source of the two ends, and nothing else is reported."""
     assert problems_of(*edits) == [problem]
 
 

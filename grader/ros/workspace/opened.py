@@ -50,7 +50,7 @@ class OpenedWorkspace:
     robots: tuple[Read | Unreadable, ...] = ()  # of a workspace, all of whose robots are read
     ros1_packages: tuple[Package, ...] = ()  # whose names are not compared
     besides: tuple[str, ...] = ()  # the paths of the files that a URDF on its own includes
-    distro: Release | None = None  # the release of ROS 2 that whoever opens it wants
+    distro: Release | None = None  # the release of ROS 2 that is asked for
     stated: StatedReleases = NOT_STATED  # those that a workspace is for
     around: "Around | None" = None  # of a URDF on its own: reads the packages around it
     neighbours: tuple[Package, ...] = ()  # the packages around a URDF on its own
