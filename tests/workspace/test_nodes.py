@@ -4,7 +4,7 @@ from functools import cache
 
 import pytest
 
-from grader.ros.workspace.graph.endpoints import opened_by
+from grader.ros.workspace.graph.code_ends import opened_by
 from grader.ros.workspace.rules.names import Mismatch
 from tests.labs.variants import FOLDER
 from tests.workspace.carts import Edit, agreement_of, cart

@@ -27,7 +27,7 @@ from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
-from grader.ros.workspace.graph.endpoints import opened_by
+from grader.ros.workspace.graph.code_ends import opened_by
 from grader.ros.workspace.rules.reading import read_agreement, wrong_names
 from grader.ros.workspace.rules.rule_table import FAMILIES, Family
 

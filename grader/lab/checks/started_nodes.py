@@ -208,7 +208,7 @@ class _NodeTopics:
     """The topics, services and actions of the nodes of a workspace that a launch file starts."""
 
     def __init__(self, launch: "Launch", workspace: "Workspace") -> None:
-        from grader.ros.workspace.graph.endpoints import opened_by  # late: few rubrics ask for it
+        from grader.ros.workspace.graph.code_ends import opened_by  # late: few rubrics ask for it
         from grader.ros.workspace.rules.reading import read_agreement
 
         self._topics: list[_NodeTopic] = []

@@ -8,8 +8,8 @@ from functools import cached_property, lru_cache
 from typing import TypeVar
 
 from grader.ros.nodes.node_facts import EndpointKind
-from grader.ros.workspace.graph.endpoints import End, EndSource
-from grader.ros.workspace.graph.ends import ends_of
+from grader.ros.workspace.graph.code_ends import End, EndSource
+from grader.ros.workspace.graph.node_ends import ends_of
 from grader.ros.workspace.graph.transform_edges import Edge, edges_in
 from grader.ros.workspace.model.workspace import Workspace
 

@@ -21,7 +21,7 @@ from grader.ros.package.static_transforms import (
 )
 from grader.ros.python.values import Unknown
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
-from grader.ros.workspace.graph.endpoints import frames_of
+from grader.ros.workspace.graph.code_ends import frames_of
 from grader.ros.workspace.graph.gazebo_topics import roots, system_of
 from grader.ros.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.ros.workspace.model.workspace import Workspace

@@ -10,7 +10,7 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.nodes.node_facts import EndpointKind
 from grader.ros.package.package import Package
 from grader.ros.workspace.graph.bridge_rows import BRIDGE
-from grader.ros.workspace.graph.endpoints import opened_by
+from grader.ros.workspace.graph.code_ends import opened_by
 from grader.ros.workspace.model.workspace import Workspace
 
 _SOURCES = (".cpp", ".cc", ".cxx", ".c", ".hpp", ".hh", ".h")

@@ -21,7 +21,14 @@ from grader.ros.workspace.graph.gazebo_topics import (
     sensor_topics,
 )
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, corrections, cost_of_guess
+from grader.ros.workspace.rules.names import (
+    Compared,
+    Fact,
+    Mismatch,
+    corrections,
+    cost_of_guess,
+    warning,
+)
 from grader.ros.workspace.rules.rule_table import (
     BRIDGE_ARGUMENT,
     BRIDGE_CLOCK,
@@ -123,7 +130,7 @@ def _without_topic(row: BridgeRow, nameless: dict[str, _NamelessSensor]) -> Iter
         f"<topic> ({at.file_and_line})"
     )
     # A model that is not in the workspace may publish it.
-    yield Mismatch(SENSOR_TOPIC, message, row.location, at, is_certain=False)
+    yield warning(SENSOR_TOPIC, message, row.location, at)
 
 
 def _unread_rows(workspace: Workspace) -> Iterator[Mismatch]:

@@ -18,6 +18,7 @@ from grader.ros.workspace.rules.names import (
     Undecided,
     corrections,
     cost_of_guess,
+    warning,
 )
 from grader.ros.workspace.rules.rule_table import (
     COMPONENT_REGISTERED,
@@ -97,7 +98,7 @@ def _no_container(workspace: Workspace, launch: Launch) -> Iterator[Mismatch]:
                 f"nothing starts a container {name}, for which launch waits without end; "
                 f"{meant} is started at {at.file_and_line}"
             )
-            yield Mismatch(CONTAINER_STARTED, message, component.loaded_at, at, is_certain=False)
+            yield warning(CONTAINER_STARTED, message, component.loaded_at, at)
 
 
 def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | None:

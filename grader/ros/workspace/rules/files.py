@@ -29,6 +29,7 @@ from grader.ros.workspace.rules.names import (
     Undecided,
     corrections,
     cost_of_guess,
+    warning,
 )
 from grader.ros.workspace.rules.rule_table import (
     FILE_INSTALLED,
@@ -220,7 +221,8 @@ def _misspelt_launch_file(package: str, file: str, at: Location) -> Iterator[Mis
     if stem is not None:
         meant = f"{stem}.{ending}"
         message = f"{package} is not known to have a launch file {file!r}; did you mean {meant!r}?"
-        yield Mismatch(LAUNCH_FILE_NAME, message, at, None, False, corrections(file, at, meant))
+        either = corrections(file, at, meant)
+        yield warning(LAUNCH_FILE_NAME, message, at)._replace(corrections=either)
 
 
 def _not_there(

@@ -18,7 +18,7 @@ from grader.ros.nodes.node_facts import NodeFrame
 from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
-from grader.ros.workspace.graph.endpoints import frames_of
+from grader.ros.workspace.graph.code_ends import frames_of
 from grader.ros.workspace.graph.gazebo_topics import roots, system_of
 from grader.ros.workspace.model.known_robots import KnownRobot
 from grader.ros.workspace.model.under_arguments import names_under_arguments

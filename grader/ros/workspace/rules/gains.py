@@ -10,7 +10,7 @@ from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.python.values import Unknown
 from grader.ros.workspace.graph.started_controllers import defined_controllers
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Compared, Fact, Mismatch
+from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
     GAIN_SET,
 )
@@ -67,4 +67,4 @@ def _moves_nothing(controller: str, lack: _LackingGains) -> Mismatch:
         f"{controller} commands the {lack.interface} of {quoted(lack.joint)} without gains, so it "
         f"moves nothing: give it gains.{lack.joint}.p"
     )
-    return Mismatch(GAIN_SET, message, lack.location, is_certain=False)
+    return warning(GAIN_SET, message, lack.location)

@@ -15,7 +15,7 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.graph.bridge_rows import BRIDGE
 from grader.ros.workspace.graph.gazebo_topics import roots, system_of
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Fact, Mismatch, corrections
+from grader.ros.workspace.rules.names import Fact, Mismatch, corrections, warning
 from grader.ros.workspace.rules.rule_table import (
     BRIDGE_TOPICS,
     CREATE_OPTION,
@@ -129,7 +129,7 @@ def _options_of_creator(node: StartedNode) -> Iterator[Mismatch]:
         meant = create_table().older.get(name) or similar
         guess = f"; did you mean -{meant}?" if meant else ""
         message = f"create has no option -{name}, and ignores it{guess}"
-        yield Mismatch(CREATE_OPTION, message, node.location, is_certain=False)
+        yield warning(CREATE_OPTION, message, node.location)
     if node.parameters == () and not set(given).intersection(create_table().sources):
         sources = enumerated([f"-{name}" for name in create_table().sources], word="or")
         message = f"create ends with an error: it needs {sources}"

@@ -12,9 +12,9 @@ from grader.base.text import quoted
 from grader.ros.known.package_rows import ProgramRow
 from grader.ros.known.package_tables import display_types
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.workspace.graph.endpoints import End
-from grader.ros.workspace.graph.ends import KnownProgram, programs_in
+from grader.ros.workspace.graph.code_ends import End
 from grader.ros.workspace.graph.graph import graph_of, grouped
+from grader.ros.workspace.graph.node_ends import KnownProgram, programs_in
 from grader.ros.workspace.graph.unread_ends import Sought, may_be_opened
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
@@ -166,7 +166,7 @@ def _remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:
                 f"{node.executable} has no topic {quoted(written)}, so its remapping does nothing; "
                 f"did you mean {meant}?"
             )
-            yield Mismatch(REMAPPED_TOPIC, message, node.location, is_certain=False)
+            yield warning(REMAPPED_TOPIC, message, node.location)
 
 
 def _displays(workspace: Workspace, published: _ByTopic) -> Iterator[Mismatch]:

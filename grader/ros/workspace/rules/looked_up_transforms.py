@@ -6,12 +6,12 @@ from typing import NamedTuple
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.known.gazebo_rows import gazebo
-from grader.ros.workspace.graph.endpoints import frames_of
+from grader.ros.workspace.graph.code_ends import frames_of
 from grader.ros.workspace.graph.gazebo_topics import roots, system_of
 from grader.ros.workspace.graph.graph import graph_of
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.frames import openings
-from grader.ros.workspace.rules.names import Compared, Mismatch
+from grader.ros.workspace.rules.names import Compared, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import TRANSFORM_CONNECTED
 
 
@@ -68,7 +68,7 @@ def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
                 "lookup fails"
             )
             at = lookup.location
-            yield Mismatch(TRANSFORM_CONNECTED, message, at, is_certain=False)
+            yield warning(TRANSFORM_CONNECTED, message, at)
 
 
 def _lookups(workspace: Workspace) -> Iterator[_Lookup]:

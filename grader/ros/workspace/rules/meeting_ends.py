@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 from grader.ros.nodes.node_facts import EndpointKind
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
-from grader.ros.workspace.graph.endpoints import End, EndSource
-from grader.ros.workspace.graph.ends import deciding_parameter
+from grader.ros.workspace.graph.code_ends import End, EndSource
 from grader.ros.workspace.graph.graph import Graph, distinct, graph_of, grouped
+from grader.ros.workspace.graph.node_ends import deciding_parameter
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.interfaces import is_absent
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch

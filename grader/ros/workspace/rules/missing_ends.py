@@ -7,7 +7,7 @@ from grader.base.names import closest
 from grader.base.source import Location
 from grader.ros.known.shared_names import shared_names
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
-from grader.ros.workspace.graph.endpoints import End
+from grader.ros.workspace.graph.code_ends import End
 from grader.ros.workspace.graph.graph import Graph, graph_of, grouped
 from grader.ros.workspace.graph.unread_ends import (
     Sought,

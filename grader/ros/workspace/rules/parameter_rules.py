@@ -18,6 +18,7 @@ from grader.ros.python.values import Unknown
 from grader.ros.workspace.rules.names import (
     Mismatch,
     corrections,
+    warning,
 )
 from grader.ros.workspace.rules.rule_table import (
     PARAMETER_EFFECT,
@@ -150,13 +151,13 @@ def _of_other_release(
     for owner in (f"{given.node}/", f"{given.node.rpartition('/')[2]}/"):
         other = other_name("parameter", owner + name, stated, shown=owner)
         if other is not None:
-            return Mismatch(PARAMETER_RELEASE, other.message, at, is_certain=False)
+            return warning(PARAMETER_RELEASE, other.message, at)
     if RELEASES.index(releases[-1]) < RELEASES.index(stated[0]):
         gone = RELEASES[RELEASES.index(releases[-1]) + 1]
         text = f"there is no parameter {name!r} from {gone.title()} on"
     else:
         text = f"there is no parameter {name!r} before {releases[0].title()}"
-    return Mismatch(PARAMETER_RELEASE, text, at, is_certain=False)
+    return warning(PARAMETER_RELEASE, text, at)
 
 
 class _NodeReader:
@@ -427,7 +428,7 @@ class _NodeReader:
         if similar and is_misspelling(section, similar) and are_of_one_side(section, similar):
             guess = f"; did you mean {quoted(similar)}?"
         message = f"{self._given.said} has no parameter {quoted(section)}{guess}"
-        mismatch = Mismatch(PARAMETER_NAME, message, at, is_certain=False)
+        mismatch = warning(PARAMETER_NAME, message, at)
         return _RowFinding(section, mismatch)
 
     def _first_unknown(self, name: str, table: _RowTable) -> str:
@@ -490,7 +491,7 @@ class _OffSwitch(NamedTuple):
         """Return that a parameter has no effect."""
         at = value.named_at or value.location
         message = f"{given.said} does not use {given.shown(name)}{self.words}"
-        mismatch = Mismatch(PARAMETER_EFFECT, message, at, is_certain=False)
+        mismatch = warning(PARAMETER_EFFECT, message, at)
         return _RowFinding(name, mismatch)
 
 

@@ -11,7 +11,7 @@ from grader.base.transforms import minus, turn_between
 from grader.ros.workspace.graph.graph import graph_of, grouped
 from grader.ros.workspace.graph.transform_edges import Edge, is_zero_rotation
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Compared, Fact, Mismatch
+from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
     STATIC_POSE,
     TRANSFORM_CYCLE,
@@ -65,7 +65,7 @@ def _owned_twice(edges: Sequence[Edge]) -> Iterator[Mismatch]:
                 f"{before.by} in {quoted(before.parent)} ({before.location.file_and_line}): a "
                 "frame has one parent"
             )
-        yield Mismatch(TRANSFORM_OWNER, message, edge.location, before.location, is_certain=False)
+        yield warning(TRANSFORM_OWNER, message, edge.location, before.location)
 
 
 def _children_of_robot(edges: Sequence[Edge], joints: Mapping[str, Edge]) -> Iterator[Mismatch]:
@@ -96,7 +96,7 @@ def _elsewhere(edge: Edge, joint: Edge) -> Iterator[Mismatch]:
         f"{edge.by} places {quoted(edge.child)} {1000.0 * away:.3g} mm and {turn:.3g} degrees from "
         f"where {joint.by} places it"
     )
-    yield Mismatch(STATIC_POSE, message, edge.location, joint.location, is_certain=False)
+    yield warning(STATIC_POSE, message, edge.location, joint.location)
 
 
 def _cycles(edges: Sequence[Edge]) -> Iterator[Mismatch]:

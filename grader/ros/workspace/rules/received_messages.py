@@ -9,7 +9,7 @@ from grader.base.text import quoted
 from grader.ros.interfaces.known_interfaces import known_interfaces
 from grader.ros.known.package_tables import colour_encodings
 from grader.ros.nodes.node_facts import EndpointKind, ImageEncoding
-from grader.ros.workspace.graph.endpoints import End
+from grader.ros.workspace.graph.code_ends import End
 from grader.ros.workspace.graph.graph import graph_of, grouped
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from grader.base.text import enumerated
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.graph.bridge_rows import bridge_rows
-from grader.ros.workspace.graph.endpoints import END_SOURCES, opened_by
+from grader.ros.workspace.graph.code_ends import END_SOURCES, opened_by
 from grader.ros.workspace.graph.graph import Graph, graph_of
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Counted, Definition, Fact, Open, Use

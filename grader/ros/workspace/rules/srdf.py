@@ -8,7 +8,7 @@ from contextlib import suppress
 from grader.base.text import quoted
 from grader.ros.urdf.model import Robot
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Definition, Fact, Mismatch, Open, Use
+from grader.ros.workspace.rules.names import Definition, Fact, Mismatch, Open, Use, warning
 from grader.ros.workspace.rules.rule_table import (
     DISABLED_PAIRS,
     SRDF_GROUP,
@@ -80,7 +80,7 @@ def _other_robot(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
     message = (
         f"the SRDF is of the robot {quoted(name)}, but the robot is named {quoted(robot.name)}"
     )
-    yield Mismatch(SRDF_ROBOT, message, file.location(file.root, "name"), is_certain=False)
+    yield warning(SRDF_ROBOT, message, file.location(file.root, "name"))
 
 
 def _empty_groups(file: XmlFile) -> Iterator[Mismatch]:
@@ -91,7 +91,7 @@ def _empty_groups(file: XmlFile) -> Iterator[Mismatch]:
                 f"the group {quoted(group.get('name', ''))} has no joint, link, chain or group: "
                 "MoveIt leaves it out"
             )
-            yield Mismatch(SRDF_GROUP, message, file.location(group), is_certain=False)
+            yield warning(SRDF_GROUP, message, file.location(group))
 
 
 def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
@@ -130,4 +130,4 @@ def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
             "does not name them"
         )
         # Wrong only if their shapes touch in some position, which is not computed.
-        yield Mismatch(DISABLED_PAIRS, message, file.location(file.root), is_certain=False)
+        yield warning(DISABLED_PAIRS, message, file.location(file.root))

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Sequence
 
 from grader.base.text import quoted
 from grader.ros.known.package_tables import transport_types
-from grader.ros.workspace.graph.endpoints import End
-from grader.ros.workspace.graph.ends import deciding_parameter
+from grader.ros.workspace.graph.code_ends import End
 from grader.ros.workspace.graph.graph import Graph, graph_of
+from grader.ros.workspace.graph.node_ends import deciding_parameter
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (

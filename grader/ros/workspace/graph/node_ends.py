@@ -11,7 +11,7 @@ from grader.ros.nodes.node_facts import Endpoint, EndpointKind
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
-from grader.ros.workspace.graph.endpoints import End, opened_by
+from grader.ros.workspace.graph.code_ends import End, opened_by
 from grader.ros.workspace.graph.started_controllers import controller_endpoints
 from grader.ros.workspace.model.workspace import Workspace
 

@@ -1,4 +1,4 @@
-"""What nodes open, with the full names that it has for each node as it is started."""
+"""The topics, services, actions and frames that own code opens, with full names for each node."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Literal, NamedTuple, get_args
