@@ -17,7 +17,7 @@ from typing import NamedTuple
 import pytest
 
 from grader.app.cli.streams import TERMINAL
-from grader.app.commands.repeating import repeat_on_change
+from grader.app.commands.repeating import changes, repeat_on_change
 from tests.classroom.class_runs import shell_code, started
 from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment, run
 
@@ -297,3 +297,29 @@ def test_an_inspection_is_repeated(tmp_path: Path, watch: Watch) -> None:
     assert start == f"grader: watching {robot}; stop with Ctrl-C\n"
     assert "does not exist" in gone
     assert (rest, done.code) == (["", "", ""], 130)
+
+
+@pytest.mark.parametrize("is_changed", [True, False])
+def test_a_change_while_a_file_is_read_for_the_first_time_is_seen(
+    tmp_path: Path, is_changed: bool
+) -> None:
+    """Which files are read besides is known only afterwards; one that changed meanwhile is read again, once."""
+    first, besides = tmp_path / "first.xacro", tmp_path / "part.xacro"
+    for file in (first, besides):
+        file.write_text("old")
+    time.sleep(0.05)  # the clock of the file system is a little behind
+    looks = iter(range(8))
+
+    def wait(_seconds: float) -> object:
+        if next(looks, None) is None:
+            raise KeyboardInterrupt
+        return None
+
+    reads = []
+    with pytest.raises(KeyboardInterrupt):
+        for read in changes([first], (), 0.0, wait):
+            reads.append(besides.read_text())
+            read[:] = [besides]
+            if is_changed and len(reads) == 1:
+                besides.write_text("new")
+    assert reads == (["old", "new"] if is_changed else ["old"])

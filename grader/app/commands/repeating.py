@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
+from time import time_ns
 from typing import TypeVar
 
 from rich.console import Console
@@ -21,6 +22,7 @@ from grader.report.writing import Terminal
 
 _POLL = 0.2  # seconds between two looks, at least
 _SHARE = 10  # a look at many files is followed by a pause of this many times its own time
+_OF_FOLDER = 3  # numbers in the stamp of a folder; that of a file ends with the time of its change
 _Stamps = dict[str, tuple[int, ...] | None]
 _Result = TypeVar("_Result")
 
@@ -107,16 +109,27 @@ def changes(
     looks = [math.inf]  # the times of the last two
     is_asked: object = False
     while True:
-        start = time.monotonic()
+        start, began = time.monotonic(), time_ns()
         now = _stamps([*watched, *besides], own)
         looks = [looks[-1], time.monotonic() - start]
         pause = max(poll, _SHARE * min(looks))  # a look that a busy machine interrupts is longer
         # What changed since the last look may be half written.
         if is_asked or seen is None or before == now != seen:
             yield besides
-            seen = {**_stamps(besides, own), **now}
+            seen = {**_stamps_before(began, _stamps(besides, own)), **now}
         before = now
         is_asked = (wait or time.sleep)(pause)
+
+
+def _stamps_before(began: int, stamps: _Stamps) -> _Stamps:
+    """Return stamps, but None for what changed since a time in nanoseconds: whether the change was
+    read is not known.
+    """
+    known = dict(stamps)
+    for path, stamp in stamps.items():
+        if stamp is not None and len(stamp) > _OF_FOLDER and stamp[-1] >= began:
+            known[path] = None
+    return known
 
 
 def _stamps(paths: Iterable[Path], own: Collection[str] = ()) -> _Stamps:
