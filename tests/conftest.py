@@ -6,6 +6,7 @@ import re
 import signal
 import sys
 from collections import Counter, defaultdict
+from collections.abc import Generator
 from pathlib import Path
 from random import Random
 
@@ -79,6 +80,18 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
         return None
     marked = _MARKED.search(collection_path.read_text(encoding="utf-8"))
     return True if marked is not None else None
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call() -> Generator[None]:
+    """Take back what the code under test does to the variables of the process, as starting workers does."""
+    before = dict(os.environ)
+    try:
+        return (yield)
+    finally:
+        if os.environ != before:
+            os.environ.clear()
+            os.environ.update(before)
 
 
 @pytest.hookimpl(tryfirst=True)  # before tests are selected by their marks

@@ -20,6 +20,7 @@ from grader.lab.submission.opening import open_submission
 from grader.lab.submission.submission import Lab, Submission
 from grader.report.examples import example_blocks
 from grader.report.explanations import explanation
+from grader.ros.known.releases import Release
 from grader.ros.package.found_problems import package_problems
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Absent, Read, read_as_ros
@@ -181,12 +182,12 @@ def files_of(name: str, side: str) -> tuple[dict[str, bytes], range]:
     }, lines
 
 
-def opened(folder: Path, files: dict[str, bytes]) -> Submission:
-    """Return the submission that consists of these files."""
+def opened(folder: Path, files: dict[str, bytes], distro: Release = "jazzy") -> Submission:
+    """Return the submission that consists of these files, for a release of ROS 2."""
     for path, data in files.items():
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
         (folder / path).write_bytes(data)
-    return open_submission(str(folder), Lab("urdf/rover.urdf", "rover", distro="jazzy"))
+    return open_submission(str(folder), Lab("urdf/rover.urdf", "rover", distro=distro))
 
 
 def test_every_code_and_check_has_an_example() -> None:
@@ -213,7 +214,7 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(
         monkeypatch.setattr(budget, "_OF_WORKSPACE", 5_000)
     for side in ("wrong", "right"):
         files, lines = files_of(code, side)
-        submission = opened(tmp_path / side, files)
+        submission = opened(tmp_path / side, files, ENTRIES[code].get("distro", "jazzy"))
         found: list[Problem] = []
         urdf = submission.urdf
         if isinstance(urdf, Absent) and urdf.blank:  # which is not graded

@@ -13,7 +13,7 @@ from grader.base.names import did_you_mean
 from grader.base.toml_file import KeyTable, TomlRowReader, complain_of, read_toml
 from grader.base.toml_types import simple_type, toml_type
 from grader.files.reading import read_capped
-from grader.ros.api import EVERY_KIND, RULES, Release
+from grader.ros.api import EVERY_KIND, RULES, Release, StatedReleases
 
 _NAMES = ("grader.toml", "pyproject.toml")
 _MAX_SIZE = 256 * 1024  # bytes of such a file
@@ -42,6 +42,13 @@ class Settings(NamedTuple):
     per_file_ignores: Mapping[str, tuple[str, ...]] = {}  # the same by patterns of paths
     distro: Release | None = None  # of ROS 2
     rubric: str | None = None  # an id or a file
+
+    @property
+    def stated(self) -> StatedReleases | None:
+        """The release that it gives, and the file that does; None without one."""
+        if self.file is None or self.distro is None:
+            return None
+        return StatedReleases((self.distro,), (self.file.name,))
 
 
 def read_settings(path: str) -> Settings:

@@ -150,6 +150,15 @@ def rotation_from_rpy(rpy: Vector) -> Rotation:
     )
 
 
+def rotation_from_quaternion(quaternion: tuple[float, float, float, float]) -> Rotation:
+    """Return the rotation of a quaternion x, y, z, w of any length; of one without, none."""
+    x, y, z, w = quaternion
+    axis = unit((x, y, z))
+    if axis is None:
+        return IDENTITY_ROTATION
+    return rotation_about(axis, 2.0 * atan2(hypot(x, y, z), w))
+
+
 def rotation_about(axis: Vector, angle: float) -> Rotation:
     """Return the rotation by `angle` radians about a unit axis, right-handed (Rodrigues)."""
     x, y, z = axis

@@ -31,6 +31,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from grader.ros.known.parameter_texts import parameter_explanation as parameter_explanation
     from grader.ros.known.releases import Release as Release
+    from grader.ros.known.releases import StatedReleases as StatedReleases
     from grader.ros.package.mesh_loading import MeshLoader as MeshLoader
     from grader.ros.package.package import MANIFEST as MANIFEST
     from grader.ros.package.package import SETUP as SETUP
@@ -44,6 +45,7 @@ if TYPE_CHECKING:
     from grader.ros.urdf.driving import plan_drive as plan_drive
     from grader.ros.urdf.kinematics import Configuration as Configuration
     from grader.ros.urdf.model import Box as Box
+    from grader.ros.urdf.model import Capsule as Capsule
     from grader.ros.urdf.model import Cylinder as Cylinder
     from grader.ros.urdf.model import Joint as Joint
     from grader.ros.urdf.model import Link as Link
@@ -74,14 +76,14 @@ if TYPE_CHECKING:
 else:
     _NAMES = {
         "known.parameter_texts": "parameter_explanation",
-        "known.releases": "Release",
+        "known.releases": "Release StatedReleases",
         "package.mesh_loading": "MeshLoader",
         "package.package": "MANIFEST SETUP Package",
         "package.robot_file": "Absent Read Unreadable",
         "package.robots": "is_robot",
         "urdf.driving": "Drive describe_driving plan_drive",
         "urdf.kinematics": "Configuration",
-        "urdf.model": "Box Cylinder Joint Link Mesh Origin Robot Sphere Visual",
+        "urdf.model": "Box Capsule Cylinder Joint Link Mesh Origin Robot Sphere Visual",
         "urdf.normal_form": "robot_hash written_form",
         "urdf.reader": "Reading read_urdf",
         "urdf.shapes": "Shape UnknownShape",

@@ -34,7 +34,7 @@ def _written(folder: Path, files: Files) -> str:
 
 
 def _inspect(folder: str) -> None:
-    opened = open_workspace(folder, URDF_LIMIT, {}).of_release(None, "")
+    opened = open_workspace(folder, URDF_LIMIT, {})
     opened.package_problems()
     opened.extent()
     for robot in opened.robots:

@@ -12,6 +12,7 @@ from tests.differential.compared import Compared, summary
 # What is compared, with how many seeds at once: processes of the oracle are started for each part.
 ORACLES = {
     "check_urdf": ("tests.differential.urdfs", 500),
+    "check_urdf of Lyrical": ("tests.differential.urdfs_of_lyrical", 500),
     "pinocchio": ("tests.differential.poses", 50),
     "colcon": ("tests.differential.colcons", 20),
     "xacro": ("tests.differential.xacros", 100),

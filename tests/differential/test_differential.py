@@ -6,6 +6,7 @@ from tests.differential import urdfs
 from tests.differential.__main__ import ORACLES, compared_part
 from tests.differential.compared import Compared, summary
 from tests.oracles import colcon_builds, urdfdom
+from tests.oracles.check_urdf import LYRICAL
 from tests.robot.edge_cases import EDGE_CASES
 
 pytestmark = pytest.mark.slow
@@ -17,9 +18,17 @@ needs_urdfdom = pytest.mark.skipif(
 needs_colcon = pytest.mark.skipif(
     not colcon_builds.is_available(), reason="needs colcon: see CONTRIBUTING.md"
 )
-_NEEDS = {"check_urdf": needs_urdfdom, "colcon": needs_colcon}
+needs_urdfdom_6 = pytest.mark.skipif(
+    not urdfdom.is_available(LYRICAL), reason="needs the oracle urdfdom 6: see CONTRIBUTING.md"
+)
+_NEEDS = {
+    "check_urdf": needs_urdfdom,
+    "check_urdf of Lyrical": needs_urdfdom_6,
+    "colcon": needs_colcon,
+}
 _COUNTS = {
     "check_urdf": 2000,
+    "check_urdf of Lyrical": 2000,
     "pinocchio": 1000,
     "colcon": 60,
     "xacro": 800,

@@ -6,7 +6,7 @@ import pytest
 
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import read_urdf
-from tests.oracles.check_urdf import check_urdf
+from tests.oracles.check_urdf import LYRICAL, check_urdf
 from tests.oracles.example_robots import MISSING, URDFS, each_robot
 
 pytestmark = pytest.mark.exhaustive
@@ -25,6 +25,14 @@ def test_verdict_is_that_of_ros(path: Path) -> None:
     for problem in read.problems:
         at = problem.location
         assert lines[at.line - 1][at.column - 1 :], problem
+
+
+@each_robot
+def test_verdict_is_that_of_lyrical(path: Path) -> None:
+    """`check_urdf` of Lyrical and the reader of its release agree."""
+    data = path.read_bytes()
+    oracle = check_urdf(data, seconds=20, release=LYRICAL)
+    assert read_urdf(data, path.name, (LYRICAL,)).verdict == oracle.verdict, oracle.stderr
 
 
 @each_robot

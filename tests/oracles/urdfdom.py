@@ -17,6 +17,7 @@ from functools import cache
 from itertools import takewhile
 from pathlib import Path
 
+from grader.ros.known.releases import Release
 from tests.oracles.check_urdf import check_urdf_path
 
 _PARSE = "_ZN4urdf9parseURDFERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEE"
@@ -31,14 +32,13 @@ _MAX_STEPS = 200_000  # of a walk through the tree, which ends only without a lo
 _VERDICTS = {b"c": "clean", b"d": "degraded", b"r": "rejected"}
 
 
-def is_available() -> bool:
-    """Return whether the library is installed, on a system whose layout of C++ objects is known."""
-    return (
-        sys.platform == "linux" and platform.machine() == "x86_64" and check_urdf_path() is not None
-    )
+def is_available(release: Release = "jazzy") -> bool:
+    """Return whether the library of a release is installed, on a system whose layout of C++ objects is known."""
+    is_known = sys.platform == "linux" and platform.machine() == "x86_64"
+    return is_known and check_urdf_path(release) is not None
 
 
-def verdicts(texts: Sequence[bytes]) -> list[str]:
+def verdicts(texts: Sequence[bytes], release: Release = "jazzy") -> list[str]:
     """Return the verdict on each text; a text that crashes the library, or never ends, is rejected.
 
     The library passes some values to printf as a format, where %n writes to memory: such texts have a process of their own.
@@ -47,14 +47,14 @@ def verdicts(texts: Sequence[bytes]) -> list[str]:
     while len(found) < len(texts):
         left = texts[len(found) :]
         group = list(takewhile(lambda text: b"%" not in text, left)) or left[:1]
-        done = _until_crash(group)
+        done = _until_crash(group, release)
         found += done
         if len(done) < len(group):
-            found += _until_crash(group[len(done) :][:1]) or ["rejected"]
+            found += _until_crash(group[len(done) :][:1], release) or ["rejected"]
     return found
 
 
-def _until_crash(texts: Sequence[bytes]) -> list[str]:
+def _until_crash(texts: Sequence[bytes], release: Release) -> list[str]:
     reading, writing = os.pipe()
     with warnings.catch_warnings():
         warnings.simplefilter(
@@ -74,7 +74,7 @@ def _until_crash(texts: Sequence[bytes]) -> list[str]:
                 os.dup2(errors.fileno(), 2)
                 for text in texts:
                     os.ftruncate(errors.fileno(), 0)
-                    is_read, is_whole = _read(text)
+                    is_read, is_whole = _read(text, release)
                     is_silent = os.fstat(errors.fileno()).st_size == 0
                     os.write(
                         writing, b"r" if not is_read else b"c" if is_whole and is_silent else b"d"
@@ -89,8 +89,8 @@ def _until_crash(texts: Sequence[bytes]) -> list[str]:
 
 
 @cache
-def _library() -> ctypes.CDLL:
-    binary = check_urdf_path()
+def _library(release: Release) -> ctypes.CDLL:
+    binary = check_urdf_path(release)
     assert binary is not None
     folder = binary.parent.parent / "lib"
     for name in ("libtinyxml2", "libconsole_bridge", "liburdfdom_world", "liburdfdom_model"):
@@ -99,13 +99,13 @@ def _library() -> ctypes.CDLL:
     return library
 
 
-def _read(text: bytes) -> tuple[bool, bool]:
+def _read(text: bytes, release: Release) -> tuple[bool, bool]:
     """Return whether a text is read, and whether its root reaches every link; a loop is followed for ever, so it is not read."""
     lines = b"".join(line + b"\n" for line in _lines(text))
     buffer = ctypes.create_string_buffer(lines, len(lines) + 1)
     string = (ctypes.c_uint64 * 4)(ctypes.addressof(buffer), len(lines), len(lines), 0)
     result = (ctypes.c_uint64 * 2)()
-    getattr(_library(), _PARSE)(ctypes.byref(result), ctypes.byref(string))
+    getattr(_library(release), _PARSE)(ctypes.byref(result), ctypes.byref(string))
     model = result[0]
     if not model:
         return False, False

@@ -3,6 +3,9 @@
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
+
+from grader.ros.known.releases import Release
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,6 +16,7 @@ class ProblemSample:
     name: str
     marked: str
     also: str = ""
+    distro: Release = "jazzy"
 
     @property
     def data(self) -> bytes:
@@ -26,7 +30,7 @@ class ProblemSample:
         return before.count("\n") + 1, len(before) - before.rfind("\n")
 
 
-def _sample(row: dict[str, str]) -> ProblemSample:
+def _sample(row: dict[str, Any]) -> ProblemSample:
     if "latin_1" in row:
         row["marked"] = row.pop("latin_1").encode("latin-1").decode("utf-8", "surrogateescape")
     return ProblemSample(**row)

@@ -19,7 +19,7 @@ from grader.ros.urdf.mass_properties import (
     turned,
     uniform_solid,
 )
-from grader.ros.urdf.model import Box, Cylinder, Sphere
+from grader.ros.urdf.model import Box, Capsule, Cylinder, Sphere
 from grader.ros.urdf.shapes import Shape
 
 pytestmark = pytest.mark.slow
@@ -31,6 +31,7 @@ _tensor = st.tuples(*[_number] * 6)
 shapes: st.SearchStrategy[Shape] = st.one_of(
     st.builds(Box, st.tuples(_edge, _edge, _edge)),
     st.builds(Cylinder, _edge, _edge),
+    st.builds(Capsule, _edge, _edge),
     st.builds(Sphere, _edge),
 )
 poses = st.builds(lambda rpy, xyz: Transform(rotation_from_rpy(rpy), xyz), _vector, _vector)
@@ -56,6 +57,7 @@ def matrix(inertia: Tensor) -> "np.ndarray[tuple[int, ...], np.dtype[np.float64]
         (Box((-1.0, 2.0, -3.0)), (13.0, 10.0, 5.0)),
         (Cylinder(2.0, 1.0), (13.0, 13.0, 24.0)),
         (Sphere(5.0), (120.0, 120.0, 120.0)),
+        (Capsule(5.0, 0.0), (120.0, 120.0, 120.0)),  # a sphere
     ],
 )
 def test_the_formulas_of_textbooks(shape: Shape, moments: Vector) -> None:

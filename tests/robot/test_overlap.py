@@ -11,7 +11,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from grader.base.transforms import IDENTITY, Transform, Vector, dot, minus, rotation_from_rpy
-from grader.ros.urdf.model import Box, Cylinder, Mesh, Sphere
+from grader.ros.urdf.model import Box, Capsule, Cylinder, Mesh, Sphere
 from grader.ros.urdf.overlap import least_overlap, penetration
 from grader.ros.urdf.shapes import PlacedShape, Shape, UnknownShape
 from tests.examples import examples
@@ -49,7 +49,7 @@ _sizes = st.floats(-3, 1).map(lambda power: 10.0**power) | st.sampled_from(
 boxes = st.builds(Box, st.tuples(_sizes, _sizes, _sizes))
 cylinders = st.builds(Cylinder, _sizes, _sizes)
 spheres = st.builds(Sphere, _sizes)
-shapes = boxes | cylinders | spheres
+shapes = boxes | cylinders | spheres | st.builds(Capsule, _sizes, _sizes)
 _places = st.floats(-1.5, 1.5) | st.sampled_from((0.0, 0.25, 1e-3, 30.0))
 _angles = st.floats(-4, 4) | st.sampled_from((0.0, pi / 2, 1.5708, -pi / 2, pi, 1e-5, 1e-8))
 poses = st.builds(at, _places, _places, _places, st.tuples(_angles, _angles, _angles))
@@ -158,6 +158,17 @@ def distance_along(
         (Cylinder(0, 0), at(0, 0, 0), Box((0, 0, 0)), at(0, 2, 0), 2.0),
         # a negative size counts like a positive one
         (Box((-2, 2, -2)), at(0, 0, 0), Cylinder(-1, -2), at(2.5, 0, 0), 0.5),
+        # a capsule by a box: beside a face, along an edge, at a corner, through it
+        (Box((2, 2, 2)), at(0, 0, 0), Capsule(0.5, 1), at(2, 0, 0), 0.5),
+        (Box((2, 2, 2)), at(0, 0, 0), Capsule(0.5, 1), at(1.3, 1.4, 0), 0.0),
+        (Box((2, 2, 2)), at(0, 0, 0), Capsule(0.1, 2), at(1.01, 1.02, 2.02), -0.07),
+        (Box((2, 2, 2)), at(0, 0, 0), Capsule(0.1, 4), at(0.8, 0, 0), -0.3),
+        # capsules by each other: side by side, end to end, crossed; by a sphere and a cylinder
+        (Capsule(0.1, 2), at(0, 0, 0), Capsule(0.2, 2), at(0.25, 0, 0.5), -0.05),
+        (Capsule(0.1, 2), at(0, 0, 0), Capsule(0.2, 2), at(0, 0, 2.2), -0.1),
+        (Capsule(0.1, 2), at(0, 0, 0), Capsule(0.2, 2), at(0, 0.5, 0, (0, pi / 2, 0)), 0.2),
+        (Capsule(0.1, 2), at(0, 0, 0), Sphere(0.2), at(0.12, 0.16, 0.9), -0.1),
+        (Capsule(0.1, 2), at(0, 0, 0), Cylinder(1, 2), at(0, 0, 2.05), -0.05),
         # far apart, and large
         (Sphere(0.1), at(-1000, 0, 0), Cylinder(0.1, 1), at(1000, 0, 0), 1999.8),
         (Box((1e9, 1e9, 1e9)), at(0, 0, 0), Box((1e9, 1e9, 1e9)), at(0, 0, 2e9), 1e9),
@@ -282,6 +293,7 @@ _extreme = st.floats(allow_nan=False, allow_infinity=False)
 _extreme_shapes = (
     st.builds(Box, st.tuples(_extreme, _extreme, _extreme))
     | st.builds(Cylinder, _extreme, _extreme)
+    | st.builds(Capsule, _extreme, _extreme)
     | st.builds(Sphere, _extreme)
 )
 
@@ -303,6 +315,9 @@ def test_any_finite_input_has_a_result(
     assert penetration(a, pose, b, Transform(pose.rotation, (x, y, z))) >= 0.0
 
 
+_KINDS = (Box, Cylinder, Capsule, Sphere)
+
+
 class Oracle:
     """Signed distances by coal (github.com/coal-library/coal), another implementation of the same question."""
 
@@ -317,6 +332,8 @@ class Oracle:
             return self._coal.Box(*shape.size)
         if isinstance(shape, Cylinder):
             return self._coal.Cylinder(shape.radius, shape.length)
+        if isinstance(shape, Capsule):
+            return self._coal.Capsule(shape.radius, shape.length)
         return self._coal.Sphere(shape.radius)
 
     def distance(self, a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform) -> float:
@@ -341,7 +358,7 @@ def random_shape(rng: random.Random, kind: type[Shape]) -> Shape:
     one, two, three = (10 ** rng.uniform(-2.5, 0.5) for _ in range(3))
     if kind is Box:
         return Box((one, two, three))
-    return Cylinder(one, two) if kind is Cylinder else Sphere(one)
+    return kind(one, two) if kind in (Cylinder, Capsule) else Sphere(one)
 
 
 def random_pose(rng: random.Random, size: float) -> Transform:
@@ -357,8 +374,8 @@ def random_pose(rng: random.Random, size: float) -> Transform:
     return at(x, y, z, (rpy[0], rpy[1], rpy[2]))
 
 
-@pytest.mark.parametrize("second", [Box, Cylinder, Sphere])
-@pytest.mark.parametrize("first", [Box, Cylinder, Sphere])
+@pytest.mark.parametrize("second", _KINDS)
+@pytest.mark.parametrize("first", _KINDS)
 def test_coal_agrees(oracle: Oracle, first: type[Shape], second: type[Shape]) -> None:
     """No depth differs from coal's, except depths of coal that coal itself refutes.
 

@@ -85,7 +85,7 @@ def test_every_link_has_a_pose_or_a_reason(raw: bytes) -> None:
 @pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: f"{sample.code}-{sample.name}")
 def test_a_problem_has_its_location(sample: ProblemSample) -> None:
     """Its line and column are those of its attribute or tag, and there are no other problems."""
-    read = read_urdf(sample.data, "sample.urdf")
+    read = read_urdf(sample.data, "sample.urdf", (sample.distro,))
     locations = [
         (problem.location.line, problem.location.column)
         for problem in read.problems
@@ -108,8 +108,10 @@ def test_a_problem_has_its_location(sample: ProblemSample) -> None:
 )
 def test_a_problem_moves_with_its_line(sample: ProblemSample) -> None:
     """Three lines of comment before it, with CR LF, move it by three lines and change nothing else."""
-    first = read_urdf(sample.data).problems
-    second = read_urdf(b"<!--\r\n\r\n-->\r\n" + sample.data.replace(b"\n", b"\r\n")).problems
+    moved = b"<!--\r\n\r\n-->\r\n" + sample.data.replace(b"\n", b"\r\n")
+    first, second = (
+        read_urdf(data, releases=(sample.distro,)).problems for data in (sample.data, moved)
+    )
     assert [
         (problem.code, problem.location.line - 3, problem.location.column) for problem in second
     ] == [(problem.code, problem.location.line, problem.location.column) for problem in first]

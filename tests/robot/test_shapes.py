@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.base.transforms import IDENTITY, Transform, Vector, dot, rotation_from_rpy, unit
-from grader.ros.urdf.model import Box, Cylinder, Geometry, Mesh, Sphere
+from grader.ros.urdf.model import Box, Capsule, Cylinder, Geometry, Mesh, Sphere
 from grader.ros.urdf.shapes import (
     PlacedShape,
     Shape,
@@ -22,6 +22,7 @@ _sizes = st.floats(-3, 1).map(lambda power: 10.0**power) | st.sampled_from((0.0,
 shapes = (
     st.builds(Box, st.tuples(_sizes, _sizes, _sizes))
     | st.builds(Cylinder, _sizes, _sizes)
+    | st.builds(Capsule, _sizes, _sizes)
     | st.builds(Sphere, _sizes)
 )
 _coordinates = st.floats(-2, 2)
@@ -56,10 +57,12 @@ def surface(shape: Shape) -> list[Vector]:
         ]
     rings = [turn * pi / 36 for turn in range(37)]
     r = shape.radius
+    ends = (shape.length / 2, -shape.length / 2) if isinstance(shape, Capsule) else (0.0,)
     return [
-        (r * sin(ring) * x, r * sin(ring) * y, r * cos(ring))
+        (r * sin(ring) * x, r * sin(ring) * y, r * cos(ring) + end)
         for x, y in around[::10]
         for ring in rings
+        for end in ends
     ]
 
 
@@ -72,6 +75,8 @@ def inside(shape: Shape, point: Vector) -> bool:
         )
     if isinstance(shape, Cylinder):
         return hypot(x, y) <= abs(shape.radius) + 1e-12 and abs(z) <= abs(shape.length) / 2 + 1e-12
+    if isinstance(shape, Capsule):
+        z = max(abs(z) - abs(shape.length) / 2, 0.0)
     return hypot(x, y, z) <= abs(shape.radius) + 1e-12
 
 
@@ -171,6 +176,7 @@ def test_a_cylinder_tilted_by_a_nanoradian() -> None:
         (Box((2.0, 0.0, 4.0)), 0.0),
         (Cylinder(2.0, 3.0), 12 * pi),
         (Cylinder(-2.0, -3.0), 12 * pi),
+        (Capsule(-3.0, -2.0), 54 * pi),
         (Sphere(3.0), 36 * pi),
         (Sphere(-3.0), 36 * pi),
     ],

@@ -18,6 +18,7 @@ from grader.base.transforms import (
     dot,
     minus,
     rotation_about,
+    rotation_from_quaternion,
     rotation_from_rpy,
     unit,
 )
@@ -252,6 +253,16 @@ def test_quaternions_are_the_rotation(rpy: Vector) -> None:
     bent = cross((x, y, z), double)
     turned = tuple(point[axis] + w * double[axis] + bent[axis] for axis in range(3))
     assert pose.rotate(point) == pytest.approx(turned, abs=1e-12)
+
+
+@given(rpy=rpys, scale=st.sampled_from((1.0, -1.0, 3.0, 1e-200, 1e150)))
+@example(rpy=(pi, 0.0, 0.0), scale=1.0)
+def test_a_quaternion_of_any_length_is_its_rotation(rpy: Vector, scale: float) -> None:
+    """The rotation of a quaternion is the one that it was computed from, whatever its length and sign; zero turns nothing."""
+    rotation = rotation_from_rpy(rpy)
+    x, y, z, w = (scale * component for component in Transform(rotation).quaternion)
+    assert rotation_from_quaternion((x, y, z, w)) == pytest.approx(rotation, abs=1e-12)
+    assert rotation_from_quaternion((0.0, 0.0, 0.0, 0.0)) == IDENTITY_ROTATION
 
 
 @given(pose=transforms, point=vectors)

@@ -31,7 +31,7 @@ _EMPTY = make_tree("ws", (), ())
 
 def _found(files: Mapping[str, bytes], memory: Memory | None) -> list[Problem]:
     tree = overlaid(_EMPTY, files)
-    opened = read_workspace(tree, "ws", URDF_LIMIT, {}, memory).of_release(None, "")
+    opened = read_workspace(tree, "ws", URDF_LIMIT, {}, memory)
     found = opened.package_problems()
     for robot in opened.robots:
         if isinstance(robot, Read):

@@ -4,6 +4,7 @@ import pytest
 
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import make_tree, overlaid
+from grader.ros.known.releases import StatedReleases
 from grader.ros.workspace.all_robots import read_workspace
 from grader.ros.workspace.index.offered_parameters import parameter_text, parameters_below
 from grader.ros.workspace.model.workspace import Workspace
@@ -15,7 +16,7 @@ pytestmark = pytest.mark.slow
 
 def _workspace(folder: str) -> Workspace:
     tree = overlaid(make_tree("ws", (), ()), files_of(ROOT / folder))
-    return read_workspace(tree, "ws", URDF_LIMIT, {}).of_release("jazzy", "--distro").workspace
+    return read_workspace(tree, "ws", URDF_LIMIT, {}, stated=StatedReleases(("jazzy",))).workspace
 
 
 def test_those_of_a_controller() -> None:

@@ -32,7 +32,7 @@ def _text_at(tree: Tree, at: Location) -> str:
 
 def _opened(files: dict[str, str]) -> OpenedWorkspace:
     tree = overlaid(make_tree("ws", (), ()), {path: text.encode() for path, text in files.items()})
-    return read_workspace(tree, "ws", _SIZE, {}).of_release(None, "")
+    return read_workspace(tree, "ws", _SIZE, {})
 
 
 @pytest.mark.parametrize("folder", [*_LABS, _CART, *_SAMPLES], ids=lambda it: it.name)
@@ -50,7 +50,7 @@ def test_the_text_at_a_place_is_the_name(folder: Path) -> None:
 @pytest.mark.parametrize("folder", [*_LABS, _CART, *_SAMPLES], ids=lambda it: it.name)
 def test_what_a_finding_is_about_is_in_the_file(folder: Path) -> None:
     """The end of each finding of a lab or sample is in its file, and not before its start."""
-    opened = open_workspace(str(folder), _SIZE, {}).of_release(None, "")
+    opened = open_workspace(str(folder), _SIZE, {})
     problems = [*opened.package_problems()]
     for robot in opened.robots:
         if isinstance(robot, Read):
@@ -264,7 +264,7 @@ def test_a_name_that_is_renamed_at_all_its_places_still_agrees(folder: Path) -> 
     """Nothing is wrong that was not, whichever link, joint, material, argument or name of xacro is
     renamed: no use is missed that anything compares.
     """
-    opened = open_workspace(str(folder), _SIZE, {}).of_release(None, "")
+    opened = open_workspace(str(folder), _SIZE, {})
     names, before = opened.names(), _problems(opened)
     renamed: set[frozenset[Location]] = set()
     for name in names.names:
@@ -292,7 +292,7 @@ def _renamed(opened: OpenedWorkspace, group: tuple[WrittenName, ...], new: str) 
             text = text[: source.offset(at.line, at.column)] + new + text[end:]
         texts[path] = text.encode()
     tree = overlaid(opened.whole_tree, texts)
-    return read_workspace(tree, opened.id, _SIZE, {}).of_release(None, "")
+    return read_workspace(tree, opened.id, _SIZE, {})
 
 
 def _problems(opened: OpenedWorkspace) -> Counter[tuple[str, str, int]]:

@@ -27,6 +27,7 @@ from grader.ros.api import (
     Read,
     Reading,
     Release,
+    StatedReleases,
     Unreadable,
     open_workspace,
 )
@@ -55,11 +56,11 @@ class InspectRequest(NamedTuple):
         """The files to write, with their formats. Raises GraderError."""
         return read_saves(self.save or (), InspectFormat)
 
-    def release(self, settings: Settings) -> tuple[Release | None, str]:
+    def stated(self, settings: Settings) -> StatedReleases | None:
         """Return the release that the option, or else a setting, gives, and its place."""
-        if self.distro is not None or settings.file is None:
-            return self.distro, "--distro"
-        return settings.distro, settings.file.name
+        if self.distro is not None:
+            return StatedReleases((self.distro,), ("--distro",))
+        return settings.stated
 
     def selection(self, folder: Path) -> Selection:
         """Return which problems are shown, of files whose paths begin in a folder. Raises
@@ -115,7 +116,8 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
     """
     path, joints, relative_to = request.path, request.joint or (), request.relative_to
     selection = request.selection(Path(os.path.realpath(path)))
-    opened = open_workspace(path, request.max_size, read_arguments(request.arg or ()))
+    stated = request.stated(selection.settings)
+    opened = open_workspace(path, request.max_size, read_arguments(request.arg or ()), stated)
     if opened.is_single:
         return _inspect_file(opened, request, selection, warn)
     read = [it for it in opened.robots if isinstance(it, Read)]
@@ -135,7 +137,6 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
     robots = tuple(_inspected(opened, it, joints, relative_to) for it in read)
-    opened = opened.of_release(*request.release(selection.settings))
     found, extent = opened.package_problems(), opened.extent()
     found += opened.mesh_size_problems()  # last: it takes what is left of the budget
     inspection = Inspection(opened.id, robots, tuple(found), extent, opened.source, base)

@@ -96,8 +96,7 @@ def look_at(
         grade: Grades the files when it is asked for.
         again: Looks at other files.
     """
-    opened = read_workspace(tree, tree.name, URDF_LIMIT, {}, memory)
-    opened = opened.of_release(settings.distro, settings.file.name if settings.file else "")
+    opened = read_workspace(tree, tree.name, URDF_LIMIT, {}, memory, settings.stated)
     robots = []
     for robot in opened.robots:
         if isinstance(robot, Read):

@@ -81,7 +81,11 @@ class OpenedSubmission(NamedTuple):
         opening = opening._replace(max_size=self.max_size)
         if self.tree is None:
             return read_submission(
-                self.data or b"", identity=self.name, path=self.shown, opening=opening
+                self.data or b"",
+                identity=self.name,
+                path=self.shown,
+                lab=rubric.lab,
+                opening=opening,
             )
         return submission_of(
             with_inner(self.tree, LabFolders(rubric.folders).is_lab),

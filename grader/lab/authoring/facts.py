@@ -20,6 +20,7 @@ from grader.ros.package.mesh_files import mesh_file
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import (
     Box,
+    Capsule,
     Collision,
     Cylinder,
     Joint,
@@ -178,7 +179,7 @@ def _centre_title(link: str, visual: Visual, centre: Fact) -> str:
     return f"the {shape} of {link!r} is centred {where}{along}"
 
 
-def _size(link: str, visual: Visual) -> Fact:
+def _size(link: str, visual: Visual) -> Fact | Omission:
     match visual.geometry:
         case Box(size=size):  # along the axes of the link, whichever of its own they are
             first, *others = [
@@ -191,6 +192,8 @@ def _size(link: str, visual: Visual) -> Fact:
             )
         case Sphere(radius=radius):
             return _link_fact(link, "shows_sphere", radius=round(radius, 6))
+        case Capsule():
+            return Omission(f"{link} size", "no check measures a capsule that a link shows")
         case mesh:
             file = "/".join(mesh_file(mesh.filename, is_expanded=True).steps)
             xyz, rpy = _rounded(visual.origin.xyz), _rounded(visual.origin.rpy)
@@ -247,6 +250,8 @@ def _collision(link: str, collision: Collision, only: Mapping[str, bool]) -> Fac
             shape: dict[str, Any] = {"box": _rounded(size)}
         case Cylinder(radius=radius, length=length):
             shape = {"cylinder": _rounded((radius, length))}
+        case Capsule(radius=radius, length=length):
+            shape = {"capsule": _rounded((radius, length))}
         case Sphere(radius=radius):
             shape = {"sphere": round(radius, 6)}
         case _:
@@ -265,6 +270,8 @@ def _shape_text(collision: Collision) -> str:
             return f"a box of {x:g} x {y:g} x {z:g} m"
         case Cylinder(radius=radius, length=length):
             return f"a cylinder of radius {radius:g} and length {length:g} m"
+        case Capsule(radius=radius, length=length):
+            return f"a capsule of radius {radius:g} and length {length:g} m"
         case Sphere(radius=radius):
             return f"a sphere of radius {radius:g} m"
     return "a mesh"

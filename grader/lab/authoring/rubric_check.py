@@ -21,7 +21,7 @@ from grader.lab.grading.subjects import check_selectors, joints_at
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric, load_rubric, shipped_rubrics, unknown_causes
 
-_SIZES = ("size", "box", "cylinder", "sphere", "radius", "length", "mass")
+_SIZES = ("size", "box", "cylinder", "capsule", "sphere", "radius", "length", "mass")
 _PLACES, _NEAR = (
     ("xyz", "height"),
     0.05,

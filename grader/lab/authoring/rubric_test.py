@@ -35,7 +35,7 @@ from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric, read_rubric
 from grader.lab.submission.edited import content, with_files, with_urdf
 from grader.lab.submission.opening import read_submission
-from grader.lab.submission.submission import Submission
+from grader.lab.submission.submission import Lab, Submission
 from grader.ros.package.package import MANIFEST
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.link_tree import JOINT_OF
@@ -331,7 +331,9 @@ def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Sub
     if not equivalent.is_xacro or (urdf.is_expanded and urdf.as_it_stands is None):
         return with_urdf(reference, {urdf.path: data})
     name = urdf.path.rpartition("/")[2]
-    return read_submission(data, identity=reference.id, path=f"{name.removesuffix('.xacro')}.xacro")
+    path = f"{name.removesuffix('.xacro')}.xacro"
+    lab = Lab(path, distro=reference.distro)
+    return read_submission(data, identity=reference.id, path=path, lab=lab)
 
 
 def _names_in(rubric: Rubric) -> Iterator[str]:

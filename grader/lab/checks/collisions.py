@@ -14,7 +14,17 @@ from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.checks.visuals import MAX_SHAPES
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Box, Collision, Cylinder, Geometry, Mesh, Origin, Sphere, Visual
+from grader.ros.urdf.model import (
+    Box,
+    Capsule,
+    Collision,
+    Cylinder,
+    Geometry,
+    Mesh,
+    Origin,
+    Sphere,
+    Visual,
+)
 from grader.ros.urdf.shapes import PlacedShape, Shape, ShapeDifference
 from grader.ros.urdf.visuals import visuals
 
@@ -75,22 +85,25 @@ def collides_as(
     tolerance: NonNegative,
     box: Size | None = None,
     cylinder: RadiusAndLength | None = None,
+    capsule: RadiusAndLength | None = None,
     sphere: NonNegative | None = None,
     xyz: Vector | None = None,
     rpy: Vector | None = None,
     relative_to: str = "",
     only: bool = False,
 ) -> Outcome:
-    """A link collides as a box, a cylinder or a sphere of the given size in the given place.
+    """A link collides as a box, a cylinder, a capsule or a sphere of the given size in the given
+    place.
 
-    Exactly one of `box`, `cylinder` and `sphere` is given. They are compared as solids: turning a
-    cylinder about its axis changes nothing. Shapes without a size do not count.
+    Exactly one of `box`, `cylinder`, `capsule` and `sphere` is given. They are compared as solids:
+    turning a cylinder about its axis changes nothing. Shapes without a size do not count.
 
     Args:
         link: The link that is examined.
         tolerance: How far the centre, a size or a point of the surface may be off, in metres.
         box: The lengths of the edges along the box's own x, y and z axes, in metres.
         cylinder: The radius and the length, in metres.
+        capsule: The radius, and the length without the half spheres at its ends, in metres.
         sphere: The radius, in metres.
         xyz: The centre, in metres.
         rpy: The orientation: roll, pitch and yaw about fixed axes, in radians.
@@ -102,10 +115,12 @@ def collides_as(
         shapes.append(Box(box))
     if cylinder is not None:
         shapes.append(Cylinder(*cylinder))
+    if capsule is not None:
+        shapes.append(Capsule(*capsule))
     if sphere is not None:
         shapes.append(Sphere(sphere))
     if len(shapes) != 1:
-        raise RubricError(("collides_as takes exactly one of box, cylinder and sphere",))
+        raise RubricError(("collides_as takes exactly one of box, cylinder, capsule and sphere",))
     [wanted] = shapes
     what = _shape_text(wanted)
     what += f" at {point(xyz)} m" if xyz else ""
@@ -230,6 +245,8 @@ def _shape_text(geometry: Geometry) -> str:
             return f"a box {point(size)} m"
         case Cylinder(radius=radius, length=length):
             return f"a cylinder of radius {point((radius,))} m and length {point((length,))} m"
+        case Capsule(radius=radius, length=length):
+            return f"a capsule of radius {point((radius,))} m and length {point((length,))} m"
         case Sphere(radius=radius):
             return f"a sphere of radius {point((radius,))} m"
         case mesh:

@@ -49,6 +49,7 @@ _WITH_NUMBERS = (
     "color",
     "box",
     "cylinder",
+    "capsule",
     "sphere",
     "mass",
 )

@@ -71,7 +71,7 @@ class ReferenceSolution:
         """Its URDF; the rest is not read where the URDF is known and is no xacro."""
         file = self._path / self._lab.urdf
         if file.suffix == ".urdf" and file.is_file():
-            reading = read_urdf(read_capped(file), self._lab.urdf)
+            reading = read_urdf(read_capped(file), self._lab.urdf, self._lab.releases)
             if find_xacro(reading.source.text) is None:
                 return reading
         try:

@@ -35,19 +35,22 @@ _MAX_BLANK = 4000  # bytes of a file without a robot
 
 
 def read_submission(
-    data: bytes, *, identity: str, path: str, opening: Opening = DEFAULTS
+    data: bytes, *, identity: str, path: str, lab: Lab = _NO_LAB, opening: Opening = DEFAULTS
 ) -> Submission:
     """Return the submission that consists of the bytes of one URDF; a URDF without content is
     none.
     """
     if _is_blank(data):
         return Submission(identity, Absent(path), opening=opening)
-    if not opening.arguments and b"xacro" not in data:
-        return Submission(identity, read_as_ros(data, path))
-    return _as_submission(read_alone(data, identity, path, opening.arguments), opening)
+    return _as_submission(read_alone(data, identity, path, _alone(lab, opening)), lab, opening)
 
 
-def _as_submission(opened: OpenedWorkspace, opening: Opening) -> Submission:
+def _alone(lab: Lab, opening: Opening) -> Surroundings:
+    """Return the surroundings of a URDF with no files around it."""
+    return Surroundings(Budget(), arguments=opening.arguments, releases=lab.releases)
+
+
+def _as_submission(opened: OpenedWorkspace, lab: Lab, opening: Opening) -> Submission:
     """Return the submission that is a URDF on its own."""
     return Submission(
         opened.id,
@@ -55,6 +58,7 @@ def _as_submission(opened: OpenedWorkspace, opening: Opening) -> Submission:
         whole_tree=opened.whole_tree,
         notes=opened.notes,
         besides=opened.besides,
+        distro=lab.distro,
         neighbours=opened.neighbours,
         around=opened.around,
         budget=opened.budget,
@@ -83,13 +87,15 @@ def open_submission(
                 )
             refuse_empty(tree, printable_path(place), first_step(tree, place, lab.package))
             return submission_of(tree, identity, lab, opening)
-    opened = open_file(path, opening.max_size, opening.arguments, with_neighbours=with_neighbours)
+    opened = open_file(
+        path, opening.max_size, _alone(lab, opening), with_neighbours=with_neighbours
+    )
     urdf = opened.urdf
     if isinstance(urdf, Read) and lab is not _NO_LAB:
         has_neighbours = with_neighbours and path != STANDARD_INPUT and b"xacro" in urdf.data
         if not has_neighbours and _is_blank(urdf.data):
             opened = replace(opened, urdf=Absent(urdf.path))
-    return _as_submission(opened, opening)
+    return _as_submission(opened, lab, opening)
 
 
 def open_with_packages(path: str) -> Submission:
@@ -137,7 +143,9 @@ def submission_of(
     chosen = select(tree, lab, opening)
     urdf: Urdf = Absent()
     budget = Budget()
-    surroundings = Surroundings(budget, tree, chosen.package, chosen.packages, opening.arguments)
+    surroundings = Surroundings(
+        budget, tree, chosen.package, chosen.packages, opening.arguments, releases=lab.releases
+    )
     was_read = chosen.choice.read_in(surroundings)
     if was_read is not None:
         urdf, budget = was_read

@@ -473,7 +473,12 @@ class UrdfSearch(NamedTuple):
             bytes_left -= min(robot.size, opening.max_size) + _COST_OF_FILE
             around = package_around(self.packages, robot.path)
             surroundings = Surroundings(
-                Budget(parts_left), self.tree, around, self.packages, opening.arguments
+                Budget(parts_left),
+                self.tree,
+                around,
+                self.packages,
+                opening.arguments,
+                releases=lab.releases,
             )
             if bytes_left < 0:
                 found[robot.path] = _ReadCandidate(surroundings, is_another=bool(lab.links))

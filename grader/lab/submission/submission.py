@@ -52,6 +52,11 @@ class Lab(NamedTuple):
     distro: Release | None = None  # of ROS 2; None for any
 
     @property
+    def releases(self) -> tuple[Release, ...]:
+        """Its release, if it has one."""
+        return (self.distro,) if self.distro is not None else ()
+
+    @property
     def package_names(self) -> tuple[str, ...]:
         """The names of its packages."""
         return self.packages or (self.package,)
@@ -309,6 +314,7 @@ class Submission(OpenedWorkspace):
             self.packages or self.neighbours,
             self.opening.arguments,
             is_single=self.is_single,
+            releases=(self.distro,) if self.distro is not None else (),
         )
 
     def _refuse_unopened(self, missing: str) -> None:

@@ -13,6 +13,7 @@ from grader.base.text import counted, enumerated, quoted, quoted_end
 from grader.base.transforms import Z_AXIS, Transform, Vector
 from grader.ros.api import (
     Box,
+    Capsule,
     Configuration,
     Cylinder,
     Link,
@@ -197,6 +198,8 @@ def _body(link: str, visual: Visual, pose: Transform, meshes: "MeshLoader | None
             sizes, drawn = (x, y, z), Box((abs(x), abs(y), abs(z)))
         case Cylinder(radius=radius, length=length):
             sizes, drawn = (radius, length, 0.0), Cylinder(abs(radius), abs(length))
+        case Capsule(radius=radius, length=length):
+            sizes, drawn = (radius, length, 0.0), Capsule(abs(radius), abs(length))
         case Sphere(radius=radius):
             sizes, drawn = (radius, 0.0, 0.0), Sphere(abs(radius))
     if visual.geometry.is_empty or not _is_drawable(sizes) or not _is_drawable(place.translation):

@@ -10,8 +10,8 @@ from typing import Any
 
 from grader.base.transforms import Transform, unit
 from grader.report.drawing.drive import drive_data, rounded
-from grader.report.drawing.picture import Body, Picture
-from grader.ros.api import Box, Configuration, Cylinder, Joint, Mesh
+from grader.report.drawing.picture import Body, Picture, Scene
+from grader.ros.api import Box, Capsule, Configuration, Cylinder, Joint, Mesh, Shape, Sphere
 
 _MAX_LINKS = 500  # in software, a browser moves more only in seconds
 _WITHOUT_LIMITS = {"prismatic": 1.0}  # metres to each side; the other joints turn by half a turn
@@ -28,10 +28,7 @@ def space_data(
     scene = picture.scene
     if len(scene.poses) > _MAX_LINKS or len(scene.robot.known.joints) > _MAX_LINKS:
         return None
-    shapes: dict[str, list[dict[str, Any]]] = {}
-    for body in scene.bodies:
-        T_link_frame = scene.poses[body.link].inverse()
-        shapes.setdefault(body.link, []).append(_shape(body, T_link_frame, meshes))
+    shapes = _shapes_by_link(scene, meshes)
     joints = [_joint(joint, scene.robot, scene.poses) for joint in scene.robot.known.joints]
     leaders = {joint["mimic"][0] for joint in joints if "mimic" in joint}
     for joint in joints:
@@ -94,6 +91,33 @@ def without_names(space: Mapping[str, Any]) -> dict[str, Any]:
         driven = [numbers[joint] for joint in space["drive"]["joints"]]
         robot["drive"] = {**space["drive"], "joints": driven, "text": ""}
     return robot
+
+
+def _shapes_by_link(scene: Scene, meshes: Mapping[Mesh, str]) -> Mapping[str, list[dict[str, Any]]]:
+    shapes: dict[str, list[dict[str, Any]]] = {}
+    for body in scene.bodies:
+        T_link_frame = scene.poses[body.link].inverse()
+        for part in _scalable_parts(body):
+            shapes.setdefault(body.link, []).append(_shape(part, T_link_frame, meshes))
+    return shapes
+
+
+def _scalable_parts(body: Body) -> list[Body]:
+    """Return a body as shapes that scaling makes of a unit shape: a capsule is three."""
+    shape, pose = body.shape, body.T_frame_shape
+    if not isinstance(shape, Capsule):
+        return [body]
+    half = shape.length / 2.0
+    parts: list[tuple[Shape, float]] = [
+        (Cylinder(shape.radius, shape.length), 0.0),
+        (Sphere(shape.radius), half),
+        (Sphere(shape.radius), -half),
+    ]
+    bodies = []
+    for part, height in parts:
+        place = Transform(translation=(0.0, 0.0, height))
+        bodies.append(body._replace(shape=part, T_frame_shape=pose @ place))
+    return bodies
 
 
 def _shape(body: Body, T_link_frame: Transform, meshes: Mapping[Mesh, str]) -> dict[str, Any]:

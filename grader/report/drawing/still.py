@@ -18,7 +18,7 @@ from grader.report.drawing.views import (
     hull,
     points_of,
 )
-from grader.ros.api import Box, Cylinder
+from grader.ros.api import Box, Capsule, Cylinder, Sphere
 
 Still = tuple[tuple[str, str], ...]  # the colour and the path data of each face
 
@@ -116,7 +116,7 @@ def _face(body: Body, panel: Panel, normal: Vector, points: Any) -> tuple[str, s
     channels = [*(light * channel for channel in rgb), alpha]
     fill = "".join(f"{round(255.0 * channel):02x}" for channel in channels)
     outline = hull(np.round(panel.places(points)))
-    if normal == _NEAR and len(points) == 6:  # a sphere
+    if normal == _NEAR and isinstance(body.shape, Capsule | Sphere):
         outline = hull(np.round(panel.outline(body)))
     data = " ".join(f"{x:.0f} {y:.0f}" for x, y in outline)
     return f"#{fill.removesuffix('ff') if alpha == 1.0 else fill}", f"M{data}Z"

@@ -1,8 +1,8 @@
 """Three orthographic views of a scene at one scale, as in third-angle projection, and free places
 for labels in them.
 
-A box, a cylinder and a sphere are convex, so the outline of each in a view is the convex hull of
-its projected points. Lengths on the sheet are pixels, and y points down.
+A box, a cylinder, a capsule and a sphere are convex, so the outline of each in a view is the convex
+hull of its projected points. Lengths on the sheet are pixels, and y points down.
 """
 
 from collections.abc import Iterable
@@ -14,7 +14,7 @@ import numpy as np
 
 from grader.base.transforms import Transform, Vector
 from grader.report.drawing.picture import Body, Picture
-from grader.ros.api import Box, Sphere
+from grader.ros.api import Box, Capsule, Sphere
 
 Place = tuple[float, float]
 _Points = Any  # an array of shape (n, 3), or (n, 2) in a view
@@ -73,26 +73,34 @@ class Panel(NamedTuple):
 
     def outline(self, body: Body) -> list[Place]:
         """Return the corners of the outline of a body."""
-        if isinstance(body.shape, Sphere):
-            return hull(
-                self.places(body.T_frame_shape.translation)
-                + CIRCLE * body.shape.radius * self.scale
-            )
+        if isinstance(body.shape, Capsule | Sphere):
+            circle = CIRCLE * body.shape.radius * self.scale
+            return hull(np.vstack([self.places(end) + circle for end in _ball_centres(body)]))
         return hull(self.places(points_of(body)))
 
 
 def points_of(body: Body) -> _Points:
-    """Return points of the frame whose hull is a body; of a sphere, those that are farthest
-    along the axes.
+    """Return points of the frame whose hull is a body; of a sphere and of the ends of a capsule,
+    those that are farthest along the axes.
     """
     pose, shape = body.T_frame_shape, body.shape
-    if isinstance(shape, Sphere):
-        return pose.translation + shape.radius * np.vstack([np.eye(3), -np.eye(3)])
+    if isinstance(shape, Capsule | Sphere):
+        around = shape.radius * np.vstack([np.eye(3), -np.eye(3)])
+        return np.vstack([np.add(end, around) for end in _ball_centres(body)])
     if isinstance(shape, Box):
         points = CORNERS * shape.size
     else:
         points = _CAPS * (shape.radius, shape.radius, shape.length)
     return points @ np.reshape(pose.rotation, (3, 3)).T + pose.translation
+
+
+def _ball_centres(body: Body) -> list[Vector]:
+    """Return the centre of a sphere, or those of the two ends of a capsule."""
+    pose, shape = body.T_frame_shape, body.shape
+    if not isinstance(shape, Capsule):
+        return [pose.translation]
+    half = shape.length / 2.0
+    return [pose.apply((0.0, 0.0, end)) for end in (half, -half)]
 
 
 def hull(points: _Points) -> list[Place]:

@@ -17,11 +17,14 @@ from grader.base.slips import Slip
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree, parents
+from grader.ros.known.releases import Release
 from grader.ros.package.package import Package
 from grader.ros.python.budget import Budget
 from grader.ros.python.values import Undetermined
 from grader.ros.urdf.reader import Reading, find_xacro, read_robot, read_urdf
 from grader.ros.urdf.urdf_problems import OF_SLIPS, RAW_XACRO
+from grader.ros.urdf.versions import UrdfVersion, newest_version
+from grader.ros.xml.parsing import read_document
 from grader.ros.xml.xml_problems import DOCTYPE, NOT_WELL_FORMED
 
 if TYPE_CHECKING:
@@ -137,6 +140,7 @@ class Surroundings(NamedTuple):
         None
     )  # is called with the name of each other file that xacro reads
     memory: Memory | None = None  # of robots that were read before
+    releases: Collection[Release] = ()  # of ROS 2 that read the robot; Jazzy without any
 
     def robot_references(self, path: str) -> "list[NamedFile]":
         """Return where launch files of the graded package, else of others, read a URDF; or those in
@@ -310,12 +314,13 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
     Other xacro is loaded as it stands; unless that makes no difference, everything but that is
     graded on its expansion.
     """
+    surroundings = surroundings or Surroundings(Budget())
+    releases = surroundings.releases
     if not _needs_xacro(data):
-        reading = read_urdf(data, path)
+        reading = read_urdf(data, path, releases)
         if not any(problem.kind in (DOCTYPE, NOT_WELL_FORMED) for problem in reading.problems):
             return Read(path, data, reading)
     name = path.rpartition("/")[2].lower()
-    surroundings = surroundings or Surroundings(Budget())
     launched = surroundings.robot_references(path)
     programs = {reference.by for reference in launched}
     # Nothing loads a file of another name as a URDF; standard input is one.
@@ -331,7 +336,7 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
             is_expanded=True,
             has_xacro=True,
         )
-    reading = read_urdf(data, path)
+    reading = read_urdf(data, path, releases)
     if reading.raw_xacro is None:
         return Read(path, data, reading, has_xacro=True)
     expanded = _expand_xacro(data, path, surroundings, [])
@@ -404,7 +409,7 @@ def _expand_xacro(
             given[name] = f"{INSTALLED}/{package}/share/{package}/{inside}".rstrip("/")
     arguments = {**surroundings.launch_arguments, **given, **surroundings.arguments}
     others = surroundings.other_arguments(path, references)
-    key = (data, path, tuple(arguments.items()), others)
+    key = (data, path, tuple(arguments.items()), others, newest_version(surroundings.releases))
     if surroundings.memory is None:
         return _read_expanded(*key, surroundings)
 
@@ -422,6 +427,7 @@ def _read_expanded(
     path: str,
     arguments: "tuple[tuple[str, str | None], ...]",
     others: "OtherArguments",
+    newest: UrdfVersion,
     files: "SurroundingFiles",
 ) -> Reading:
     """Return the robot that xacro makes of a file with these arguments, as `_expand_xacro` does."""
@@ -430,19 +436,20 @@ def _read_expanded(
     read = partial(expand, data, path, files, dict(arguments), others)
     expansion = read()
     if expansion.root is None and expansion.recovered is None and expansion.problems:
-        raw = read_urdf(data, path)
+        raw = read_robot(read_document(data, path), newest)
         problems = [
             problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)
         ]
         return Reading("rejected", raw.robot, (*expansion.problems, *problems), raw.source)
-    reading = read_robot(expansion.document)
+    reading = read_robot(expansion.document, newest)
     if reading.verdict == "rejected" and expansion.meant is None and expansion.source.is_expanded:
         unmarked = cast("ExpandedSource", expansion.source).unmarked
         changed = read(unmarked) if unmarked else expansion
-        if changed.meant is not None and read_robot(changed.meant.document).verdict != "rejected":
-            expansion = changed
+        if changed.meant is not None:
+            reread = read_robot(changed.meant.document, newest)
+            expansion = changed if reread.verdict != "rejected" else expansion
     if expansion.meant is None:
         return reading
-    meant = read_robot(expansion.meant.document)
+    meant = read_robot(expansion.meant.document, newest)
     found = dict.fromkeys([*causes(reading.problems), *expansion.assumed, *meant.problems])
     return meant._replace(verdict="rejected", problems=in_order(found))

@@ -11,10 +11,11 @@ from grader.base.names import MAX_GUESSES, closest, did_you_mean
 from grader.base.problems import Effect, Kind, Problem
 from grader.base.source import LazyLocation
 from grader.base.text import cut, quoted
-from grader.base.transforms import FULL_TURN, Vector
+from grader.base.transforms import FULL_TURN, Transform, Vector, rotation_from_quaternion
 from grader.ros.urdf import urdf_problems
 from grader.ros.urdf.model import Joint, Origin, UnresolvedPart, UnresolvedParts
-from grader.ros.urdf.numbers import NumberError, number, vector
+from grader.ros.urdf.numbers import NumberError, number, quaternion, vector
+from grader.ros.urdf.versions import WITH_CAPSULES, UrdfFormat, UrdfVersion, in_words
 from grader.ros.xml.parsing import Element, XmlDocument
 from grader.ros.xml.urdf_format import TAGS
 from grader.ros.xml.xml_problems import RECOVERED
@@ -23,7 +24,7 @@ _FORMAT_DIRECTIVE = re.compile(r"%[-+ #0-9.$*'hlLqjzt]*n")  # %n, %1$n, %hhn
 _MAX_PROBLEMS = 1000
 NO_GUESSES = 0
 _PRINTED = frozenset(
-    {"origin", "box", "cylinder", "sphere", "mass"}
+    {"origin", "box", "cylinder", "capsule", "sphere", "mass"}
 )  # whose values urdfdom uses as printf's format
 _OF_MISSING = (
     urdf_problems.UNKNOWN_LINK,
@@ -36,14 +37,23 @@ _OF_MISSING = (
 _ZERO: Vector = (0.0, 0.0, 0.0)
 _NOTHING: UnresolvedParts = {}
 
+_FIRST_FORMAT = UrdfFormat()
+
 _Value = TypeVar("_Value")
 
 
 class Problems:
     """The problems of one file, and the locations of its elements."""
 
-    def __init__(self, document: XmlDocument, root: Element, guesses: int = MAX_GUESSES) -> None:
+    def __init__(
+        self,
+        document: XmlDocument,
+        root: Element,
+        guesses: int = MAX_GUESSES,
+        urdf_format: UrdfFormat = _FIRST_FORMAT,
+    ) -> None:
         """`guesses` is how many names are compared with known ones."""
+        self.format = urdf_format
         self.source = document.source
         self.root = root
         self.unresolved = document.unresolved
@@ -130,6 +140,27 @@ class Problems:
         else:
             self.unlisted += 1
 
+    def ignores(self, element: Element, attribute: str, since: UrdfVersion) -> bool:
+        """Return whether ROS 2 ignores an attribute because it is of a newer version than the
+        file, and add a problem then.
+        """
+        if self.format.version >= since:
+            return False
+        file_version = in_words(self.format.version)
+        if self.format.warns:
+            message = (
+                f"ROS 2 ignores {attribute} in a file of version {file_version}: write "
+                f'<robot version="{in_words(since)}">'
+            )
+            self.add(urdf_problems.NEWER_ATTRIBUTE, message, element, attribute)
+        elif attribute == "quat_xyzw":
+            message = (
+                "ROS 2 ignores quat_xyzw, which turns nothing: write rpy, or "
+                f"version {in_words(since)} for ROS 2 Lyrical and later"
+            )
+            self.add(urdf_problems.IGNORED_QUATERNION, message, element, attribute)
+        return True
+
     def assumed(self, element: Element, attribute: str | None, sentence: str) -> Problem:
         """Return what is assumed about a tag or an attribute for which ROS 2 rejects the file."""
         return Problem(RECOVERED, sentence, self.source.tag(self._indices[element], attribute))
@@ -161,8 +192,10 @@ class Problems:
 
     def check_printed(self, text: str, element: Element, attribute: str | None = None) -> None:
         """Add a problem if ROS 2 passes this text to printf and it contains a directive that can
-        crash it.
+        crash it, as on Jazzy.
         """
+        if self.format.warns:
+            return
         if "%" in text and _FORMAT_DIRECTIVE.search(text):
             message = (
                 "ROS 2 passes this value to printf as a format, where %n writes to memory: it "
@@ -222,10 +255,12 @@ class ElementReader:
         """Return an <origin>: the identity if there is none."""
         if element is None:
             return Origin()
-        xyz, rpy = (
-            self._value(element, "xyz", vector, _ZERO),
-            self._value(element, "rpy", vector, _ZERO),
-        )
+        xyz = self._value(element, "xyz", vector, _ZERO)
+        has_quaternion = "quat_xyzw" in element.attrib
+        if has_quaternion and not self._problems.ignores(element, "quat_xyzw", WITH_CAPSULES):
+            rpy = self._turn(element)
+        else:
+            rpy = self._value(element, "rpy", vector, _ZERO)
         if rpy != _ZERO and max(map(abs, rpy)) > FULL_TURN and not self.failed:
             angle = next(
                 (angle for angle in rpy if abs(angle) > FULL_TURN and angle % 15 == 0), None
@@ -236,6 +271,14 @@ class ElementReader:
                 )
                 self._problems.add(urdf_problems.DEGREES, message, element, "rpy")
         return Origin(xyz, rpy, self._problems.location(element))
+
+    def _turn(self, element: Element) -> Vector:
+        """Return the roll, pitch and yaw of a quaternion; a zero one turns nothing."""
+        if "rpy" in element.attrib:
+            self.fail("<origin> has both rpy and quat_xyzw", element, "quat_xyzw")
+            return _ZERO
+        value = self._value(element, "quat_xyzw", quaternion, (0.0, 0.0, 0.0, 1.0))
+        return Transform(rotation_from_quaternion(value)).rpy
 
     def _value(
         self, element: Element, attribute: str, parse: Callable[[str], _Value], default: _Value

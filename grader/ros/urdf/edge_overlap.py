@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from grader.base.transforms import Transform, Vector
-from grader.ros.urdf.model import Box, Cylinder
+from grader.ros.urdf.model import Box, Capsule, Cylinder
 from grader.ros.urdf.shapes import straight_edges
 
 _Array = np.ndarray[Any, np.dtype[np.float64]]
+_Edged = Box | Cylinder | Capsule
 
 # metres from a rim to the polygon that replaces it; two of these are less than 0.1 mm
 _SAGITTA = 4e-5
@@ -23,7 +24,7 @@ _ROUNDING = 1e-9  # the sine of an angle that counts as zero
 _STEPS = np.arange(-8, 9) / 8.0
 
 
-def least_edge_overlap(a: Box | Cylinder, b: Box | Cylinder, T_a_b: Transform) -> Vector:
+def least_edge_overlap(a: _Edged, b: _Edged, T_a_b: Transform) -> Vector:
     """Return the unit normal of least overlap among those that two straight edges, an edge and a
     rim, or two rims span.
 
@@ -82,12 +83,14 @@ def _angles_near(turns: _Array, middle: float) -> _Array:
     return closer
 
 
-def _half_widths(shape: Box | Cylinder, directions: _Array) -> _Array:
+def _half_widths(shape: _Edged, directions: _Array) -> _Array:
     """Return `half_width` for directions of shape (3, n)."""
     x, y, z = directions
     if isinstance(shape, Box):
         a, b, c = shape.size
         widths: _Array = (abs(a * x) + abs(b * y) + abs(c * z)) / 2.0
+    elif isinstance(shape, Capsule):
+        widths = abs(shape.radius) + abs(shape.length / 2.0 * z)
     else:
         widths = abs(shape.radius) * (x * x + y * y) ** 0.5 + abs(shape.length / 2.0 * z)
     return widths

@@ -2,6 +2,8 @@
 names they refer to.
 """
 
+from math import inf
+
 from grader.base.text import quoted
 from grader.base.transforms import FULL_TURN, X_AXIS, Vector, unit
 from grader.ros.urdf import urdf_problems
@@ -16,11 +18,13 @@ from grader.ros.urdf.model import (
     Robot,
     SafetyController,
 )
+from grader.ros.urdf.versions import WITH_CHECKED_VALUES
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import JOINT_TYPES
 
 MOVING_TYPES = ("continuous", "revolute", "prismatic", "planar", "floating")
 _WITH_LIMIT = ("revolute", "prismatic")
+_CHANGES = ("acceleration", "deceleration", "jerk")
 _REJECTED = "ROS 2 rejects the file"
 _MAX_NAMED = 12  # links in a message
 _MAX_STEPS = 20  # of a loop in a message
@@ -130,8 +134,14 @@ def _read_limit(
             problems.add(urdf_problems.LIMIT_MISSING, message, element, "type")
         return None
     reader = ElementReader(problems, urdf_problems.BAD_LIMIT)
-    lower, upper = reader.number(limit, "lower"), reader.number(limit, "upper")
-    effort, velocity = reader.number(limit, "effort"), reader.number(limit, "velocity")
+    if problems.format.version >= WITH_CHECKED_VALUES:
+        lower, upper, effort, velocity = _checked_limits(limit, kind, reader)
+    else:
+        lower, upper = reader.number(limit, "lower"), reader.number(limit, "upper")
+        effort, velocity = reader.number(limit, "effort"), reader.number(limit, "velocity")
+        for attribute in _CHANGES:
+            if attribute in limit.attrib:
+                problems.ignores(limit, attribute, WITH_CHECKED_VALUES)
     if kind in _WITH_LIMIT and lower >= upper and not reader.failed:
         message = f"lower {lower:g} is not below upper {upper:g}: the joint cannot move"
         problems.add(
@@ -143,6 +153,35 @@ def _read_limit(
     if kind == "revolute":
         _check_degrees(limit, {"lower": lower, "upper": upper}, problems)
     return Limit(lower, upper, effort, velocity, problems.location(limit))
+
+
+def _checked_limits(
+    limit: Element, kind: str, reader: ElementReader
+) -> tuple[float, float, float, float]:
+    """Return lower, upper, effort and velocity in a file of version 1.2: without limit if they are
+    not given, and never negative but for positions.
+    """
+    if kind in _WITH_LIMIT:
+        for attribute in ("lower", "upper"):
+            if attribute not in limit.attrib:
+                reason = f"<limit> has no {attribute}, which version 1.2 of URDF needs"
+                reader.fail(reason, limit)
+    lower = _given(limit, "lower", reader, -inf)
+    upper = _given(limit, "upper", reader, inf)
+    if lower > upper:
+        reader.fail(f"lower {lower:g} is above upper {upper:g}", limit, "lower")
+    values: dict[str, float] = {}
+    for attribute in ("effort", "velocity", *_CHANGES):
+        values[attribute] = _given(limit, attribute, reader, inf)
+        if values[attribute] < 0.0:
+            reader.fail(f"{attribute} is negative", limit, attribute)
+    return lower, upper, values["effort"], values["velocity"]
+
+
+def _given(limit: Element, attribute: str, reader: ElementReader, default: float) -> float:
+    if attribute in limit.attrib:
+        return reader.number(limit, attribute)
+    return default
 
 
 def _check_degrees(limit: Element, ends: dict[str, float], problems: Problems) -> None:

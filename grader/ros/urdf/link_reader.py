@@ -11,6 +11,7 @@ from grader.ros.urdf.diagnostics import ElementReader, Problems, first_children,
 from grader.ros.urdf.model import (
     INERTIA,
     Box,
+    Capsule,
     Collision,
     Cylinder,
     Geometry,
@@ -23,10 +24,12 @@ from grader.ros.urdf.model import (
     Visual,
 )
 from grader.ros.urdf.numbers import NumberError, rgba
+from grader.ros.urdf.versions import WITH_CAPSULES, WITH_CHECKED_VALUES
 from grader.ros.xml.parsing import Element
 
 _BLACK = (0.0, 0.0, 0.0, 1.0)
 _SHAPES = ("box", "cylinder", "sphere", "mesh")
+_CAPSULE = "capsule"
 # What is lost with an element that has a defect.
 _INERTIAL_LOST = "ROS 2 drops all visuals and collisions of link {}"
 _VISUAL_LOST = "ROS 2 drops this visual of link {}, the visuals after it and all collisions"
@@ -240,15 +243,19 @@ def _read_geometry(
         reader.fail("<geometry> is empty", element)
         return None
     shape = element[0]
-    if shape.tag not in _SHAPES:
-        guess = problems.did_you_mean(str(shape.tag), _SHAPES)
-        reader.fail(f"<{shape.tag}> is not a shape that ROS 2 knows{guess}", shape)
+    has_capsules = problems.format.version >= WITH_CAPSULES
+    if shape.tag not in _SHAPES and not (has_capsules and shape.tag == _CAPSULE):
+        _refuse_shape(shape, reader, problems)
         return None
     needed = {"box": "size", "mesh": "filename"}.get(shape.tag)
     if needed and shape.get(needed) is None:
         reader.fail(f"<{shape.tag}> has no {needed}", shape)
     geometry = _geometry_from(shape, reader, problems.location(shape))
     for attribute, value in _sizes_by_attribute(geometry):
+        if value <= 0.0 and problems.format.version >= WITH_CHECKED_VALUES:
+            reason = f"{attribute} of <{shape.tag}> is {value:g}, and version 1.2 needs more than 0"
+            reader.fail(reason, shape, attribute)
+            break
         if value < 0:
             message = (
                 f"{attribute} of <{shape.tag}> is negative ({value:g}), which ROS 2 does not check"
@@ -256,6 +263,18 @@ def _read_geometry(
             problems.add(urdf_problems.NEGATIVE_SIZE, message, shape, attribute)
             break
     return geometry
+
+
+def _refuse_shape(shape: Element, reader: ElementReader, problems: Problems) -> None:
+    """Report a shape that ROS 2 does not know, or not in a file of this version."""
+    if shape.tag == _CAPSULE and problems.format.warns:
+        reason = '<capsule> needs version 1.1 of URDF: write <robot version="1.1">'
+    elif shape.tag == _CAPSULE:
+        reason = "<capsule> is a shape that ROS 2 knows from Lyrical on"
+    else:
+        guess = problems.did_you_mean(str(shape.tag), _SHAPES)
+        reason = f"<{shape.tag}> is not a shape that ROS 2 knows{guess}"
+    reader.fail(reason, shape)
 
 
 def _geometry_from(shape: Element, reader: ElementReader, location: LazyLocation) -> Geometry:
@@ -266,6 +285,8 @@ def _geometry_from(shape: Element, reader: ElementReader, location: LazyLocation
             return Cylinder(
                 reader.number(shape, "radius"), reader.number(shape, "length"), location
             )
+        case "capsule":
+            return Capsule(reader.number(shape, "radius"), reader.number(shape, "length"), location)
         case "sphere":
             return Sphere(reader.number(shape, "radius"), location)
     return Mesh(
@@ -278,7 +299,7 @@ def _sizes_by_attribute(geometry: Geometry) -> list[tuple[str, float]]:
     match geometry:
         case Box(size=edges):
             return [("size", edge) for edge in edges]
-        case Cylinder(radius=radius, length=length):
+        case Cylinder(radius=radius, length=length) | Capsule(radius=radius, length=length):
             return [("radius", radius), ("length", length)]
         case Sphere(radius=radius):
             return [("radius", radius)]

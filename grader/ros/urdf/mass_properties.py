@@ -1,9 +1,9 @@
 """Mass, centre of mass and inertia of uniform solids, alone or together, and principal moments of
 an inertia tensor.
 
-The formulas for box, cylinder and sphere, the parallel axis theorem and the rotation of a tensor
-are those of textbooks of dynamics (Featherstone, Rigid Body Dynamics Algorithms, 2008, section
-2.13).
+The formulas for box, cylinder, sphere and half sphere, the parallel axis theorem and the rotation
+of a tensor are those of textbooks of dynamics (Featherstone, Rigid Body Dynamics Algorithms, 2008,
+section 2.13).
 """
 
 from collections.abc import Iterable
@@ -15,6 +15,7 @@ from grader.base.transforms import Rotation, Transform, Vector, dot, minus
 from grader.ros.urdf.model import (
     INERTIA,
     Box,
+    Capsule,
     Collision,
     Geometry,
     Inertial,
@@ -124,8 +125,22 @@ def solid_inertia(shape: Shape, mass: float) -> Tensor:
     if isinstance(shape, Sphere):
         every = 0.4 * mass * squared
         return (every, 0.0, 0.0, every, 0.0, every)
+    if isinstance(shape, Capsule):
+        return _capsule_inertia(abs(shape.radius), abs(shape.length), mass)
     across = mass * (3.0 * squared + shape.length * shape.length) / 12.0
     return (across, 0.0, 0.0, across, 0.0, 0.5 * mass * squared)
+
+
+def _capsule_inertia(radius: float, length: float, mass: float) -> Tensor:
+    """Return the inertia of a uniform capsule: a cylinder, and two half spheres at its ends."""
+    caps = mass * (4.0 * radius) / (4.0 * radius + 3.0 * length)
+    cylinder = mass - caps
+    squared = radius * radius
+    along = 0.5 * cylinder * squared + 0.4 * caps * squared
+    across = cylinder * (3.0 * squared + length * length) / 12.0
+    # The centre of mass of a half sphere is 3/8 of its radius from its flat side.
+    across += caps * (0.4 * squared + length * length / 4.0 + 3.0 / 8.0 * length * radius)
+    return (across, 0.0, 0.0, across, 0.0, along)
 
 
 def uniform_solid(shapes: Iterable[tuple[Shape, Transform]], mass: float) -> MassProperties:

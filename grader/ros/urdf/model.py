@@ -91,6 +91,29 @@ class Cylinder:
 
 
 @dataclass(frozen=True, slots=True)
+class Capsule:
+    """A cylinder about its centre with a half sphere at each end, its axis along z.
+
+    The length is that of the cylinder alone, as in SDF; lengths in metres.
+    """
+
+    radius: float
+    length: float
+    location: LazyLocation | None = field(default=None, compare=False, repr=False)
+
+    @property
+    def volume(self) -> float:
+        """The volume in cubic metres."""
+        radius = abs(self.radius)
+        return pi * radius * radius * (abs(self.length) + 4.0 / 3.0 * radius)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether it is invisible."""
+        return self.radius == 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Sphere:
     """A sphere about its centre; its radius in metres."""
 
@@ -124,7 +147,7 @@ class Mesh:
         return not any(self.scale)
 
 
-Geometry = Box | Cylinder | Sphere | Mesh
+Geometry = Box | Cylinder | Capsule | Sphere | Mesh
 
 
 class UnresolvedPart(NamedTuple):

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from grader.base.transforms import AXES, unit
 from grader.files.reading import sha256_of
 from grader.ros.urdf.model import (
+    Capsule,
     Collision,
     Cylinder,
     Dynamics,
@@ -169,7 +170,7 @@ class _Forms(NamedTuple):
         pose = origin.placed_in()
         rotation = self._normalise_direction(pose.rotation)
         match geometry:
-            case Cylinder():
+            case Cylinder() | Capsule():
                 line = self._normalise_direction(pose.rotate(AXES[2]))
                 rotation = max(line, tuple(-value + 0.0 for value in line))  # either way
             case Sphere():

@@ -74,6 +74,15 @@ def vector(text: str) -> Vector:
     return (values[0], values[1], values[2])
 
 
+@_cached_reader
+def quaternion(text: str) -> tuple[float, float, float, float]:
+    """Return the four numbers x, y, z, w as urdfdom 6 reads them; raises NumberError."""
+    values = numbers(text)
+    if len(values) != 4:
+        raise NumberError(f"it has {counted(len(values), 'number')}, expected 4")
+    return (values[0], values[1], values[2], values[3])
+
+
 def readable_numbers(text: str, count: int) -> list[str] | None:
     """Return the numbers that a list surely means, as texts, for one that ROS 2 cannot read; None
     if it can be read.
@@ -130,17 +139,17 @@ def rgba(text: str) -> tuple[float, float, float, float] | None:
     return (values[0], values[1], values[2], values[3])
 
 
-def is_version_one(text: str) -> bool:
-    """Return whether urdfdom's URDFVersion, which uses C's strtol, reads a robot's `version` as
-    1.0.
+def version_in(text: str) -> tuple[int, int] | None:
+    """Return a robot's `version` as urdfdom's URDFVersion reads it, by C's strtol.
+
+    None for a text that it refuses.
     """
     parsed = [re.fullmatch(_VERSION, piece) for piece in text.removesuffix(".").split(".")]
     values = [_strtol(match[1]) for match in parsed if match]
-    return (
-        len(values) == len(parsed)
-        and min(values) >= 0
-        and [value % 2**32 for value in values] == [1, 0]
-    )
+    if len(parsed) != 2 or len(values) != 2 or min(values) < 0:
+        return None
+    major, minor = values
+    return major % 2**32, minor % 2**32
 
 
 def _strtol(digits: str) -> int:

@@ -1,10 +1,10 @@
 """The depth to which two shapes overlap.
 
-Boxes, cylinders and spheres are convex and symmetric about their centres. Along a unit direction u
-two of them overlap by `half_width(a, u) + half_width(b, u) - |u . c|`, c being the vector between
-their centres. If no overlap is negative the shapes intersect, and the smallest one is the distance
-that b must move to separate them: the separating axis test (Ericson, Real-Time Collision Detection,
-2004, section 5.2.1). Everything is computed in a's frame.
+Boxes, cylinders, capsules and spheres are convex and symmetric about their centres. Along a unit
+direction u two of them overlap by `half_width(a, u) + half_width(b, u) - |u . c|`, c being the
+vector between their centres. If no overlap is negative the shapes intersect, and the smallest one
+is the distance that b must move to separate them: the separating axis test (Ericson, Real-Time
+Collision Detection, 2004, section 5.2.1). Everything is computed in a's frame.
 """
 
 from collections.abc import Iterator
@@ -12,11 +12,12 @@ from itertools import product
 from math import copysign, hypot, inf
 
 from grader.base.transforms import Transform, Vector, cross, dot, minus, unit
-from grader.ros.urdf.model import Box, Cylinder, Sphere
+from grader.ros.urdf.model import Box, Capsule, Cylinder, Sphere
 from grader.ros.urdf.shapes import Shape, bounding_radius, half_width, shrunk, straight_edges
 
 # metres that sums of coordinates may lose, so that shapes set side by side count as touching
 _ROUNDING = 1e-9
+_STEPS = 60  # each leaves two thirds of an axis
 _LEAN = 1e-5  # metres; cylinders that lean by less along their length count as parallel
 # metres; longer lengths are scaled down, for products of four of them could overflow
 _MAX_LENGTH = 1e6
@@ -105,6 +106,11 @@ def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]
         yield unit(_outside(a, c)) or (1.0, 0.0, 0.0)
     if isinstance(a, Sphere):
         yield T_a_b.rotate(unit(_outside(b, T_a_b.unrotate(c))) or (1.0, 0.0, 0.0))
+    if isinstance(b, Capsule):
+        yield unit(_outside(a, _nearest_of_axis(b, T_a_b, a))) or (1.0, 0.0, 0.0)
+    if isinstance(a, Capsule):
+        point = _nearest_of_axis(a, T_a_b.inverse(), b)
+        yield T_a_b.rotate(unit(_outside(b, point)) or (1.0, 0.0, 0.0))
     for p, q in product(edges_a, edges_b):
         normal = cross(p, q)
         length = hypot(*normal)
@@ -126,14 +132,37 @@ def _vector_from_nearest(shape: Shape, point: Vector) -> Vector:
 
 
 def _outside(shape: Shape, point: Vector) -> Vector:
-    """Return the vector to a point from the nearest point of a shape; zero for a point in a box or
-    cylinder.
+    """Return the vector to a point from the nearest point of a shape; zero for a point in it. Of a
+    sphere or capsule the centre or the axis counts alone.
     """
+    if isinstance(shape, Capsule):
+        x, y, z = point
+        return (x, y, copysign(max(abs(z) - abs(shape.length) / 2.0, 0.0), z))
     if not isinstance(shape, Cylinder):
         return _vector_from_nearest(shape, point)
     x, y, z = point
     out = max(1.0 - abs(shape.radius) / hypot(x, y), 0.0) if hypot(x, y) else 0.0
     return (x * out, y * out, copysign(max(abs(z) - abs(shape.length) / 2.0, 0.0), z))
+
+
+def _nearest_of_axis(capsule: Capsule, T_other_capsule: Transform, other: Shape) -> Vector:
+    """Return the point of a capsule's axis that is nearest to another shape, in the frame of that.
+
+    The distance to a convex shape is a convex function along a line: it is cut in three again and
+    again.
+    """
+    low, high = -abs(capsule.length) / 2.0, abs(capsule.length) / 2.0
+
+    def distance(z: float) -> float:
+        return hypot(*_outside(other, T_other_capsule.apply((0.0, 0.0, z))))
+
+    for _ in range(_STEPS):
+        third = (high - low) / 3.0
+        if distance(low + third) <= distance(high - third):
+            high -= third
+        else:
+            low += third
+    return T_other_capsule.apply((0.0, 0.0, (low + high) / 2.0))
 
 
 def _rims_matter(a: Shape, b: Shape, T_a_b: Transform) -> bool:
@@ -142,7 +171,7 @@ def _rims_matter(a: Shape, b: Shape, T_a_b: Transform) -> bool:
     The overlap with a cylinder parallel to an edge, as most are, is a problem in the plane, without
     rims.
     """
-    if isinstance(a, Box) and isinstance(b, Box):
+    if not isinstance(a, Cylinder) and not isinstance(b, Cylinder):
         return False
     edges = product(straight_edges(a), map(T_a_b.rotate, straight_edges(b)))
     tilt = min((hypot(*cross(p, q)) for p, q in edges), default=0.0)

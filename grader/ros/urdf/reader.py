@@ -1,10 +1,10 @@
-"""Read a URDF as ROS 2 (Jazzy) does, and report everything that is wrong with it, also names
+"""Read a URDF as a release of ROS 2 does, and report everything that is wrong with it, also names
 that look misspelt.
 """
 
 import os
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal, NamedTuple
@@ -15,13 +15,22 @@ from grader.base.source import Source
 from grader.base.text import enumerated, quoted
 from grader.files.limits import ROBOT_ENDINGS
 from grader.files.reading import read_capped
+from grader.ros.known.releases import Release
 from grader.ros.urdf import urdf_problems
 from grader.ros.urdf.diagnostics import NO_GUESSES, Problems
 from grader.ros.urdf.joint_reader import check_references, read_joint
 from grader.ros.urdf.link_reader import Materials, read_link
 from grader.ros.urdf.link_tree import check_tree
 from grader.ros.urdf.model import Joint, Link, Robot
-from grader.ros.urdf.numbers import is_version_one
+from grader.ros.urdf.numbers import version_in
+from grader.ros.urdf.versions import (
+    FIRST,
+    NEWEST,
+    UrdfFormat,
+    UrdfVersion,
+    in_words,
+    newest_version,
+)
 from grader.ros.xml.parsing import Element, Unresolved, XmlDocument, read_document
 from grader.ros.xml.python_xml import python_xml_error
 from grader.ros.xml.urdf_format import (
@@ -53,8 +62,7 @@ _EXTENSIONS = frozenset(
 
 
 class Reading(NamedTuple):
-    """A URDF as ROS 2 (Jazzy) reads it: the verdict, the robot, and everything that is wrong with
-    the file.
+    """A URDF as a release of ROS 2 reads it: the verdict, the robot, and all that is wrong with it.
 
     `read_urdf` makes it of any text, and never raises; xacro is expanded before, in
     `grader.ros.xacro`. Checks get it as `urdf`, reports list its problems, and hints edit what it
@@ -110,8 +118,12 @@ class Reading(NamedTuple):
         )
 
 
-def read_urdf(source: bytes | str | os.PathLike[str], path: str = "robot.urdf") -> Reading:
-    """Read a URDF as ROS 2 Jazzy does (urdfdom on TinyXML2).
+def read_urdf(
+    source: bytes | str | os.PathLike[str],
+    path: str = "robot.urdf",
+    releases: Collection[Release] = (),
+) -> Reading:
+    """Read a URDF as ROS 2 does (urdfdom on TinyXML2).
 
     The verdict is `clean`; `degraded`, if content is dropped or links are omitted of the tree; or
     `rejected`. Every problem is reported, sorted by location.
@@ -120,6 +132,7 @@ def read_urdf(source: bytes | str | os.PathLike[str], path: str = "robot.urdf") 
         source: The path of a file, or the text or bytes of one. A str that ends in `.urdf`,
             `.xacro` or `.xml` is a path. Xacro is not expanded.
         path: The name of the file in locations; default: that of `source`.
+        releases: The releases of ROS 2 that the robot is for; default: Jazzy.
 
     Raises:
         GraderError: There is no file at the path, or it cannot be read. No text raises.
@@ -135,15 +148,15 @@ def read_urdf(source: bytes | str | os.PathLike[str], path: str = "robot.urdf") 
         path = os.fspath(source)
         source = read_capped(path)
     given = source.encode("utf-8", "surrogatepass") if isinstance(source, str) else source
-    return read_robot(read_document(given, path))
+    return read_robot(read_document(given, path), newest_version(releases))
 
 
-def read_robot(document: XmlDocument) -> Reading:
+def read_robot(document: XmlDocument, newest: UrdfVersion = FIRST) -> Reading:
     """Read a document as `read_urdf` does; its list of problems is extended."""
     root, source, listed = document.root, document.source, document.problems
     for content in (root, document.recovered):
         if content is not None and content.tag == "robot":
-            return _read_content(document, content)
+            return _read_content(document, content, newest)
     effects = {problem.kind.effect for problem in listed}
     if effects.isdisjoint(_FATAL):
         effects.add("rejects")
@@ -161,12 +174,13 @@ def read_robot(document: XmlDocument) -> Reading:
     return Reading(_verdict(effects), None, in_order(listed), source, root, document.unresolved)
 
 
-def _read_content(document: XmlDocument, root: Element) -> Reading:
+def _read_content(document: XmlDocument, root: Element, newest: UrdfVersion) -> Reading:
     """Return what is read of a robot: if ROS 2 rejects it for words that surely stand for
     others, with these undone.
     """
     listed = document.problems
-    robot, problems = _read_robot(document, root)
+    read = partial(_read_robot, document, root, newest)
+    robot, problems = read()
     effects = {problem.kind.effect for problem in listed} | problems.effects
     found, incomplete = (
         problems.listed,
@@ -177,10 +191,10 @@ def _read_content(document: XmlDocument, root: Element) -> Reading:
     if document.is_meant and not is_meant and not incomplete and len(causes(found)) <= _MAX_CAUSES:
         from grader.ros.urdf.meant import read_as_meant  # late: few files are rejected
 
-        meant = read_as_meant(root, robot, partial(_read_robot, document, root))
+        meant = read_as_meant(root, robot, read)
         if meant is not None:
             is_meant, robot, undone = True, meant.robot, tuple(meant.words)
-            own = _without_other_guesses(document, root, causes(found), meant.problems)
+            own = _without_other_guesses(read, causes(found), meant.problems)
             found = [*own, *meant.problems]
     if document.root is None:
         broken = {problem.location.line for problem in listed}
@@ -230,13 +244,13 @@ def _verdict(effects: Collection[Effect]) -> Verdict:
 
 
 def _without_other_guesses(
-    document: XmlDocument, root: Element, found: list[Problem], assumed: list[Problem]
+    read: Callable[[int], tuple[Robot, Problems]], found: list[Problem], assumed: list[Problem]
 ) -> list[Problem]:
     """Return problems without guesses where words of another line are read as others: these tell
     what is meant.
     """
     lines = {problem.location.line for problem in assumed if problem.kind is RECOVERED}
-    _, problems = _read_robot(document, root, NO_GUESSES)
+    _, problems = read(NO_GUESSES)
     plain = {(problem.kind, problem.location): problem for problem in problems.listed}
     return [
         problem
@@ -247,16 +261,18 @@ def _without_other_guesses(
 
 
 def _read_robot(
-    document: XmlDocument, root: Element, guesses: int = MAX_GUESSES
+    document: XmlDocument, root: Element, newest: UrdfVersion, guesses: int = MAX_GUESSES
 ) -> tuple[Robot, Problems]:
-    problems = Problems(document, root, guesses)
+    version = version_in(root.get("version", "1.0"))
+    is_read = version is not None and FIRST <= version <= newest
+    urdf_format = UrdfFormat(newest, version if is_read and version is not None else newest)
+    problems = Problems(document, root, guesses, urdf_format)
     if root.get("name") is None:
         problems.add(
             urdf_problems.ROBOT_WITHOUT_NAME, "<robot> has no name; ROS 2 rejects the file", root
         )
-    version = root.get("version")
-    if version is not None and not is_version_one(version):
-        message = f'version="{version[:40]}" is not supported, expected 1.0; ROS 2 rejects the file'
+    if not is_read:
+        message = _refused_version(root.get("version", ""), version, newest)
         problems.add(urdf_problems.BAD_VERSION, message, root, "version")
     materials = Materials(problems)
     for element in root.iterchildren("material"):
@@ -286,6 +302,18 @@ def _read_robot(
     if root is document.root:
         _check_text(problems, is_expanded=document.is_expanded)
     return robot, problems
+
+
+def _refused_version(text: str, version: UrdfVersion | None, newest: UrdfVersion) -> str:
+    """Return in words that a release does not read a version, and which it reads."""
+    known = [in_words((1, minor)) for minor in range(newest[1] + 1)]
+    since = ""
+    if version is not None and newest < version <= NEWEST:
+        since = " in this release, but from Lyrical on"
+    return (
+        f'version="{text[:40]}" is not supported{since}, expected '
+        f"{enumerated(known, len(known), 'or')}; ROS 2 rejects the file"
+    )
 
 
 def _why_incomplete(document: XmlDocument, robot: Robot) -> str:

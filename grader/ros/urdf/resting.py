@@ -14,7 +14,7 @@ from typing import NamedTuple
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.transforms import X_AXIS, Z_AXIS, Vector, cross, degrees_between, dot, minus, unit
 from grader.ros.urdf.kinematics import Configuration
-from grader.ros.urdf.model import Box, Collision, Cylinder, Mesh, Visual
+from grader.ros.urdf.model import Box, Capsule, Collision, Cylinder, Mesh, Visual
 from grader.ros.urdf.shapes import PlacedShape, UnknownShape, bounding_radius
 
 _TOUCHING = 1e-4  # metres above the ground at which a link still touches it
@@ -367,7 +367,8 @@ def _measure_heights(
 
 def _low_points(shape: PlacedShape, up: Vector) -> Iterator[Vector]:
     """Yield the points with which a shape can touch the ground: the corners of a box, the lowest
-    point of a sphere and of each rim of a cylinder, or points around its rims if it is upright.
+    point of a sphere, of each end of a capsule and of each rim of a cylinder, or points around its
+    rims if it is upright.
     """
     geometry, pose = shape
     if isinstance(geometry, Box):
@@ -378,6 +379,11 @@ def _low_points(shape: PlacedShape, up: Vector) -> Iterator[Vector]:
         for x, y in _rim_directions(pose.unrotate(up)):
             for end in (0.5 * geometry.length, -0.5 * geometry.length):
                 yield pose.apply((abs(geometry.radius) * x, abs(geometry.radius) * y, end))
+    elif isinstance(geometry, Capsule):
+        down = minus((0.0, 0.0, 0.0), pose.unrotate(up))
+        x, y, z = (abs(geometry.radius) * component for component in down)
+        for end in (0.5 * geometry.length, -0.5 * geometry.length):
+            yield pose.apply((x, y, z + end))
     else:
         yield shape.farthest(minus((0.0, 0.0, 0.0), up))
 

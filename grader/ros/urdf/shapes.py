@@ -13,9 +13,9 @@ from typing import NamedTuple
 
 from grader.base.text import quoted
 from grader.base.transforms import AXES, Transform, Vector, dot, minus, turn_between, unit
-from grader.ros.urdf.model import Box, Cylinder, Geometry, Mesh, Sphere
+from grader.ros.urdf.model import Box, Capsule, Cylinder, Geometry, Mesh, Sphere
 
-Shape = Box | Cylinder | Sphere  # whose size is known, in metres
+Shape = Box | Cylinder | Capsule | Sphere  # whose size is known, in metres
 
 # relative to its length; a direction that leans less from a face's normal means the whole face
 _TIE = 1e-9
@@ -48,6 +48,8 @@ def half_width(geometry: Geometry, direction: Vector) -> float:
         return (abs(a * x) + abs(b * y) + abs(c * z)) / 2.0
     if isinstance(geometry, Cylinder):
         return abs(geometry.length * z) / 2.0 + abs(geometry.radius) * hypot(x, y)
+    if isinstance(geometry, Capsule):
+        return abs(geometry.length * z) / 2.0 + abs(geometry.radius)
     if isinstance(geometry, Sphere):
         return abs(geometry.radius)
     raise UnknownShape(geometry)
@@ -70,20 +72,23 @@ def support(geometry: Geometry, direction: Vector) -> Vector:
         radius = abs(geometry.radius)
         x, y, _ = outward or (0.0, 0.0, 0.0)
         return (radius * x, radius * y, _signed_half(geometry.length, z, tie))
-    if isinstance(geometry, Sphere):
+    if isinstance(geometry, Capsule | Sphere):
         radius = abs(geometry.radius)
+        end = 0.0
+        if isinstance(geometry, Capsule):
+            end = _signed_half(geometry.length, z, tie)
         x, y, z = unit(direction) or (0.0, 0.0, 0.0)
-        return (radius * x, radius * y, radius * z)
+        return (radius * x, radius * y, radius * z + end)
     raise UnknownShape(geometry)
 
 
 def straight_edges(geometry: Geometry) -> list[Vector]:
     """Return the directions of the straight edges of a shape, which are the normals of its flat
-    faces too.
+    faces too; of a capsule, that of its axis.
     """
     if isinstance(geometry, Box):
         return [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
-    if isinstance(geometry, Cylinder):
+    if isinstance(geometry, Cylinder | Capsule):
         return [(0.0, 0.0, 1.0)]
     return []
 
@@ -103,8 +108,8 @@ def shrunk(shape: Shape, scale: float) -> Shape:
     if isinstance(shape, Box):
         x, y, z = shape.size
         return Box((x / scale, y / scale, z / scale))
-    if isinstance(shape, Cylinder):
-        return Cylinder(shape.radius / scale, shape.length / scale)
+    if isinstance(shape, Cylinder | Capsule):
+        return type(shape)(shape.radius / scale, shape.length / scale)
     return Sphere(shape.radius / scale)
 
 
@@ -192,15 +197,22 @@ def _differences_by_pose(
     match a, b:
         case Sphere(), Sphere():
             yield _size_difference(a.radius, b.radius), 0.0, 0.0
-        case Cylinder(), Cylinder():
-            size = max(_size_difference(a.radius, b.radius), _size_difference(a.length, b.length))
-            lean = _nearest_chord(T_w_a.rotate(AXES[2]), T_w_b.rotate(AXES[2]))
-            yield size, hypot(*lean) * hypot(a.radius, a.length / 2.0), _chord_angle(lean)
+        case Cylinder() | Capsule(), Cylinder() | Capsule() if type(a) is type(b):
+            yield _long_difference(a, T_w_a, b, T_w_b)
         case Box(), Box():
             yield from _box_differences(a, T_w_a, b, T_w_b)
         case Mesh(), Mesh() if a == b:
             angle = turn_between(T_w_a.rotation, T_w_b.rotation)
             yield 0.0, 0.0 if angle <= _MESH_ANGLE else inf, angle
+
+
+def _long_difference(
+    a: Cylinder | Capsule, T_w_a: Transform, b: Cylinder | Capsule, T_w_b: Transform
+) -> tuple[float, float, float]:
+    """Return the size, turn and angle of the difference of two cylinders, or of two capsules."""
+    size = max(_size_difference(a.radius, b.radius), _size_difference(a.length, b.length))
+    lean = _nearest_chord(T_w_a.rotate(AXES[2]), T_w_b.rotate(AXES[2]))
+    return size, hypot(*lean) * bounding_radius(a), _chord_angle(lean)
 
 
 def _box_differences(

@@ -1,7 +1,7 @@
 """Read a workspace with all of its robots: every file that is one, and not a part of another."""
 
 import posixpath
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import TypeGuard
 
 from grader.base.errors import InputError, NotDecided
@@ -9,6 +9,7 @@ from grader.base.reuse import Memory
 from grader.base.source import Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree
+from grader.ros.known.releases import Release, StatedReleases
 from grader.ros.package.finding import (
     is_backup,
     launched_paths,
@@ -22,6 +23,7 @@ from grader.ros.package.robots import RobotFile, find_robots, parts_of
 from grader.ros.python.budget import READING, Budget
 from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME
 from grader.ros.workspace.model.known_robots import INCLUDED
+from grader.ros.workspace.model.stated_releases import stated_releases
 from grader.ros.workspace.opened import OpenedWorkspace
 
 _MAX_PACKAGES, _MAX_ROBOTS = 1000, 200
@@ -33,6 +35,7 @@ def read_workspace(
     max_size: int,
     arguments: Mapping[str, str],
     memory: Memory | None = None,
+    stated: StatedReleases | None = None,
 ) -> OpenedWorkspace:
     """Return the packages in a file tree, and their robots in the order of their paths.
 
@@ -42,7 +45,11 @@ def read_workspace(
         max_size: The largest size of a robot, in bytes.
         arguments: The arguments of xacro that the user gives.
         memory: What was read of an earlier state of the files.
+        stated: The release of ROS 2 that an option or a setting gives; without it, its files state
+            releases.
     """
+    if stated is None:
+        stated = stated_releases(tree)
     found = read_packages(tree, "", memory=memory, most=_MAX_PACKAGES, are_whole=True)
     packages = _outermost(found)
     ros1_packages = tuple(package for package in packages if package.is_of_ros1)
@@ -52,9 +59,10 @@ def read_workspace(
         packages=tuple(package for package in packages if package not in ros1_packages),
         whole_tree=tree,
         is_single=False,
-        robots=tuple(_read_robots(tree, packages, max_size, arguments, memory)),
+        robots=tuple(_read_robots(tree, packages, max_size, arguments, memory, stated.releases)),
         ros1_packages=ros1_packages,
         memory=memory,
+        stated=stated,
     )
 
 
@@ -75,6 +83,7 @@ def _read_robots(
     max_size: int,
     arguments: Mapping[str, str],
     memory: Memory | None,
+    releases: Collection[Release],
 ) -> list[Read | Unreadable]:
     found = find_robots(tree, max_size=max_size)
     launched = launched_paths(tree, packages, found)
@@ -93,6 +102,7 @@ def _read_robots(
             arguments,
             assumes_defaults=True,
             memory=memory,
+            releases=releases,
         )
         robot = _read(tree, file, max_size, surroundings)
         is_loaded = file.path in launched and file.path not in included

@@ -1,7 +1,7 @@
 """Opened files: their packages, and their robots."""
 
 from collections.abc import Collection
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -150,16 +150,6 @@ class OpenedWorkspace:
         from grader.ros.workspace.rules.reading import facts_once
 
         return read_names(self.workspace, facts_once(self.workspace).facts)
-
-    def of_release(self, distro: Release | None, place: str) -> "OpenedWorkspace":
-        """Return it for a release of ROS 2 that an option or a setting gives; without one, for
-        those that its files state.
-        """
-        from grader.ros.workspace.model.stated_releases import stated_releases  # late: as above
-
-        if distro is not None:
-            return replace(self, stated=StatedReleases((distro,), (place,)))
-        return replace(self, stated=stated_releases(self.whole_tree))
 
     def extent(self) -> "Extent":
         """Return how much of it was read."""

@@ -12,6 +12,7 @@ from grader.base.text import enumerated, printable, printable_path
 from grader.files.opening import open_tree, tree_name
 from grader.files.reading import read_capped, read_standard_input, read_start
 from grader.files.tree import File, Tree, make_tree, overlaid
+from grader.ros.known.releases import StatedReleases
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Surroundings, read_as_ros
 from grader.ros.python.budget import Budget
@@ -43,13 +44,17 @@ _MAX_LEVELS = 4  # above a package, at which its workspace may be
 _EXPECTED = "give a .urdf file, or the folder or archive that was submitted"
 
 
-def open_workspace(path: str, max_size: int, arguments: Mapping[str, str]) -> OpenedWorkspace:
+def open_workspace(
+    path: str, max_size: int, arguments: Mapping[str, str], stated: StatedReleases | None = None
+) -> OpenedWorkspace:
     """Return the packages and all robots at a path, or the URDF that it is.
 
     Args:
         path: A file, a folder, an archive, or `-` for a URDF on standard input.
         max_size: The largest size of a robot, in bytes.
         arguments: The arguments of xacro that the user gives, by name.
+        stated: The release of ROS 2 that an option or a setting gives; without it, the files of a
+            workspace state releases.
 
     Raises:
         InputError: The path cannot be read; the message is one sentence.
@@ -57,7 +62,10 @@ def open_workspace(path: str, max_size: int, arguments: Mapping[str, str]) -> Op
     place = Path(path)
     tree = open_tree(place) if path not in ("", STANDARD_INPUT) else None
     if tree is None:
-        return open_file(path, max_size, arguments, with_neighbours=True)
+        alone = Surroundings(Budget(), arguments=arguments)
+        if stated is not None:
+            alone = alone._replace(releases=stated.releases)
+        return open_file(path, max_size, alone, with_neighbours=True)
     # Late: a URDF on its own needs no search.
     from grader.files.gitignore import without_git_ignored
     from grader.ros.workspace.all_robots import read_workspace
@@ -66,19 +74,19 @@ def open_workspace(path: str, max_size: int, arguments: Mapping[str, str]) -> Op
     if place.is_dir():
         tree, identity = without_git_ignored(tree, place), tree.name
     refuse_empty(tree, printable_path(place), first_step(tree, place, ""))
-    return read_workspace(tree, identity, max_size, arguments)
+    return read_workspace(tree, identity, max_size, arguments, stated=stated)
 
 
 def open_file(
-    path: str, max_size: int, arguments: Mapping[str, str], *, with_neighbours: bool
+    path: str, max_size: int, alone: Surroundings, *, with_neighbours: bool
 ) -> OpenedWorkspace:
-    """Return the URDF in a file, or on standard input for `-`.
+    """Return the URDF in a file, or on standard input for `-`, where no files are around it.
 
     `with_neighbours` reads the files that a xacro file includes from the package around it, and
     meshes from there for a picture. Raises InputError as `open_workspace`.
     """
     if path == STANDARD_INPUT:
-        return read_alone(read_standard_input(max_size), "stdin", "-", arguments)
+        return read_alone(read_standard_input(max_size), "stdin", "-", alone)
     refuse_other_files(path)
     place = Path(path)
     if place.suffix.lower() in _NO_URDFS:
@@ -89,23 +97,18 @@ def open_file(
     data = read_capped(place, max_size)
     identity = printable_path(place.stem)
     if with_neighbours and b"xacro" in data:
-        opened = _read_with_neighbours(place, data, identity, arguments)
+        opened = _read_with_neighbours(place, data, identity, alone)
     else:
-        opened = read_alone(data, identity, printable_path(place.name), arguments)
+        opened = read_alone(data, identity, printable_path(place.name), alone)
     if with_neighbours:
         return replace(opened, around=partial(_read_around, place))
     return opened
 
 
-def read_alone(
-    data: bytes, identity: str, path: str, arguments: Mapping[str, str]
-) -> OpenedWorkspace:
+def read_alone(data: bytes, identity: str, path: str, alone: Surroundings) -> OpenedWorkspace:
     """Return what the bytes of one URDF are; xacro finds no other files."""
-    if not arguments and b"xacro" not in data:
-        return OpenedWorkspace(identity, read_as_ros(data, path))
-    surroundings = Surroundings(Budget(), arguments=arguments)
-    urdf = read_as_ros(data, path, surroundings)
-    return OpenedWorkspace(identity, urdf, budget=surroundings.budget)
+    urdf = read_as_ros(data, path, alone)
+    return OpenedWorkspace(identity, urdf, budget=alone.budget)
 
 
 def refuse_other_files(path: str) -> None:
@@ -118,7 +121,7 @@ def refuse_other_files(path: str) -> None:
 
 
 def _read_with_neighbours(
-    place: Path, data: bytes, identity: str, arguments: Mapping[str, str]
+    place: Path, data: bytes, identity: str, alone: Surroundings
 ) -> OpenedWorkspace:
     """Return one file of xacro, and what it reads from the package around it.
 
@@ -129,7 +132,7 @@ def _read_with_neighbours(
     from grader.files.folder import read_folder
 
     asked: list[str] = []
-    alone = Surroundings(Budget(), arguments=arguments, ask=asked.append)
+    alone = alone._replace(ask=asked.append)
     urdf = read_as_ros(data, printable_path(place.name), alone)
     opened = OpenedWorkspace(identity, urdf, budget=alone.budget)
     if not asked:

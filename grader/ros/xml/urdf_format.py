@@ -79,11 +79,16 @@ TAGS: dict[str, _TagFormat] = {
         {
             "xyz": _AttributeFormat("m", _XYZ, "0 0 0"),
             "rpy": _AttributeFormat("rad", ("roll", "pitch", "yaw"), "0 0 0"),
+            "quat_xyzw": _AttributeFormat("1", ("x", "y", "z", "w"), ""),  # from version 1.1 on
         },
         aliases={"pos": "xyz"},
     ),
     "box": _TagFormat({"size": _AttributeFormat("m", _XYZ)}),
     "cylinder": _TagFormat(
+        {"radius": _AttributeFormat("m", _ONE), "length": _AttributeFormat("m", _ONE)},
+        aliases={"height": "length"},
+    ),
+    "capsule": _TagFormat(  # from version 1.1 on
         {"radius": _AttributeFormat("m", _ONE), "length": _AttributeFormat("m", _ONE)},
         aliases={"height": "length"},
     ),
@@ -112,6 +117,10 @@ TAGS: dict[str, _TagFormat] = {
             "upper": _END,
             "effort": _AttributeFormat("N m or N", _ONE),
             "velocity": _AttributeFormat("rad/s or m/s", _ONE),
+            # from version 1.2 on
+            "acceleration": _AttributeFormat("rad/s^2 or m/s^2", _ONE, ""),
+            "deceleration": _AttributeFormat("rad/s^2 or m/s^2", _ONE, ""),
+            "jerk": _AttributeFormat("rad/s^3 or m/s^3", _ONE, ""),
         }
     ),
     "dynamics": _TagFormat(

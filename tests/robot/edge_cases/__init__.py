@@ -16,6 +16,9 @@ class EdgeCase:
     text: bytes
     verdict: Literal["clean", "degraded", "rejected"]
     oracle: Literal["agrees", "hangs", "aborts"] = "agrees"
+    lyrical: Literal["clean", "degraded", "rejected"] | None = (
+        None  # the verdict there, if it is another
+    )
 
 
 def _cases() -> Iterator[EdgeCase]:
@@ -23,7 +26,14 @@ def _cases() -> Iterator[EdgeCase]:
     for path in sorted(Path(__file__).parent.glob("*.toml")):
         for name, row in tomllib.loads(path.read_bytes().decode()).items():
             text = row["text"].encode() if "text" in row else row["latin_1"].encode("latin-1")
-            yield EdgeCase(name, row["rule"], text, row["verdict"], row.get("oracle", "agrees"))
+            yield EdgeCase(
+                name,
+                row["rule"],
+                text,
+                row["verdict"],
+                row.get("oracle", "agrees"),
+                row.get("lyrical"),
+            )
 
 
 EDGE_CASES = tuple(_cases())

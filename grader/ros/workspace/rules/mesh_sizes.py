@@ -15,7 +15,7 @@ from grader.files.tree import File
 from grader.ros.mesh.mesh_sample import SAMPLED, sample_size
 from grader.ros.package.mesh_files import mesh_file
 from grader.ros.package.robot_file import Read
-from grader.ros.urdf.model import Box, Cylinder, Geometry, Link, Mesh, Robot, Sphere
+from grader.ros.urdf.model import Box, Capsule, Cylinder, Geometry, Link, Mesh, Robot, Sphere
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.rule_table import MESH_UNIT
 
@@ -96,6 +96,8 @@ def _length_of(shape: Geometry) -> float:
             return max(map(abs, shape.size))
         case Cylinder():
             return max(abs(2.0 * shape.radius), abs(shape.length))
+        case Capsule():
+            return abs(2.0 * shape.radius) + abs(shape.length)
         case Sphere():
             return abs(2.0 * shape.radius)
     return 0.0
