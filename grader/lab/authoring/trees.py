@@ -5,7 +5,13 @@ from collections.abc import Iterable, Iterator
 
 from lxml import etree
 
-from grader.base.transforms import IDENTITY, Transform, Vector, rotation_from_rpy
+from grader.base.transforms import (
+    IDENTITY,
+    Transform,
+    Vector,
+    rotation_from_quaternion,
+    rotation_from_rpy,
+)
 from grader.ros.xacro.texts import INSTALLED
 from grader.ros.xml.elements import FOREIGN
 from grader.ros.xml.parsing import Element
@@ -66,7 +72,12 @@ def vector_of(element: Element | None, attribute: str, default: str = "0 0 0") -
 def pose(owner: Element) -> Transform:
     """Return the pose in the `<origin>` of a joint, a visual, a collision or an inertial."""
     found = owner.find("origin")
-    return origin(attribute_numbers(found, "xyz"), attribute_numbers(found, "rpy"))
+    place = origin(attribute_numbers(found, "xyz"), attribute_numbers(found, "rpy"))
+    version = owner.getroottree().getroot().get("version", "1.0")
+    if found is None or "quat_xyzw" not in found.attrib or version == "1.0":  # which ignores it
+        return place
+    x, y, z, w = attribute_numbers(found, "quat_xyzw")
+    return Transform(rotation_from_quaternion((x, y, z, w)), place.translation)
 
 
 def set_pose(owner: Element, transform: Transform) -> None:
@@ -78,6 +89,7 @@ def set_pose(owner: Element, transform: Transform) -> None:
         found = etree.SubElement(owner, "origin")
     found.set("xyz", attribute_text(transform.translation))
     found.set("rpy", attribute_text(transform.rpy))
+    found.attrib.pop("quat_xyzw", None)
 
 
 def end(joint: Element, role: str) -> Element:
