@@ -12,9 +12,10 @@ import posixpath
 import subprocess
 import sys
 import tarfile
+import tomllib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any, cast, get_args
 
 from grader.ros.interfaces.interface_file import INTERFACE_ENDINGS, read_interface
 from grader.ros.interfaces.interface_types import (
@@ -23,6 +24,7 @@ from grader.ros.interfaces.interface_types import (
     InterfaceKind,
     InterfaceSection,
 )
+from grader.ros.interfaces.known_interfaces import MORE_CONSTANTS
 from grader.ros.known.releases import RELEASES, Release
 from tests.known.tables import write_tables
 
@@ -55,6 +57,8 @@ PACKAGES = {
     "geometry2": ("tf2_msgs",),
     "unique_identifier_msgs": ("unique_identifier_msgs",),
 }
+# What a changelog says of releases whose branches no stored copy has; all else is as in the release before.
+CHANGES = Path(__file__).with_name("changelogs.toml")
 # Branches of other names than their releases.
 BRANCHES: Mapping[Release, tuple[str, ...]] = {
     "foxy": ("foxy", "foxy-devel"),
@@ -62,20 +66,44 @@ BRANCHES: Mapping[Release, tuple[str, ...]] = {
     "rolling": ("rolling", "master"),
 }
 Types = dict[str, Interface]  # by msg/Twist
+Changes = dict[Release, dict[str, dict[str, str]]]  # the texts by release, package and msg/Twist
 
 
 def main(checkouts: Iterable[str]) -> None:
     """Write the tables of the packages of these checkouts."""
+    changes = cast("Changes", tomllib.loads(CHANGES.read_text("utf-8")))
     for checkout in checkouts:
         repository = name_of(checkout)
-        by_release = {release: types_of(checkout, repository, release) for release in RELEASES}
+        read = [release for release in RELEASES if release not in changes]
+        by_release = {release: types_of(checkout, repository, release) for release in read}
         for package in PACKAGES[repository]:
             found = {release: types.get(package, {}) for release, types in by_release.items()}
             kilted = rosbags_types(package)
             if kilted:
                 services = {name: it for name, it in found["kilted"].items() if it.kind != "msg"}
                 found["kilted"] = {**kilted, **services}
-            write_tables(package, table_of(found, repository))
+            for release, packages in changes.items():
+                before = found[RELEASES[[*RELEASES].index(release) - 1]]
+                found[release] = changed(before, package, packages.get(package, {}))
+            in_order = {release: found[release] for release in RELEASES}
+            write_tables(package, table_of(in_order, repository))
+
+
+def changed(types: Types, package: str, changes: Mapping[str, str]) -> Types:
+    """Return the interfaces of a package with those of a changelog, by msg/Twist; an empty text
+    for one that is gone.
+    """
+    now = {**types}
+    for name, text in changes.items():
+        if text == MORE_CONSTANTS:
+            section, *rest = now[name].sections
+            more = section._replace(constants=section.constants | {text})
+            now[name] = now[name]._replace(sections=(more, *rest))
+        elif text:
+            now[name] = read_interface(text.encode(), f"{package}/{name}.msg", package)
+        else:
+            now.pop(name, None)
+    return now
 
 
 def name_of(checkout: str) -> str:

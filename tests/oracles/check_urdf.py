@@ -19,7 +19,7 @@ import pytest
 
 from grader.ros.known.releases import Release
 
-LYRICAL: Release = "rolling"  # whose urdfdom is that of URDFDOM_6
+LYRICAL: Release = "lyrical"  # whose urdfdom is that of URDFDOM_6
 _MISSING = "check_urdf is not installed: pip install --editable '.[test]'"
 _MISSING_6 = "needs the oracle urdfdom 6: see CONTRIBUTING.md"
 

@@ -7,13 +7,16 @@ not imported. The table is `grader/ros/launch/launch_classes.json`.
 import ast
 import json
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 TABLE = Path("grader/ros/launch/launch_classes.json")
 PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml")
-SOURCE = "github.com/ros2/launch and github.com/ros2/launch_ros, branch jazzy, by python -m tests.package.launch_api"
+SOURCE = (
+    "github.com/ros2/launch and github.com/ros2/launch_ros, branch jazzy (3.4.3 and 0.26.6), with what later versions add by "
+    "their changelogs, read in November 2026, by python -m tests.package.launch_api"
+)
 # What later releases export, so that a newer patch of Jazzy may: whether the name is there is not known.
 LATER = {
     "launch.actions": {"ForEach", "ForLoop"},
@@ -21,17 +24,105 @@ LATER = {
     "launch.substitutions.path_join_substitution": {"PathSubstitution"},
 }
 _PATHS = "launch.substitutions.path_join_substitution"
-# Those of them that are evaluated; the demos of ros2_control use this one on Jazzy.
-LATER_CLASSES = {
+_LOG = "launch.actions.log"
+_DECLARATION = "launch.actions.declare_launch_argument.DeclareLaunchArgument"
+_COMPONENT = "launch_ros.descriptions.composable_node.ComposableNode"
+_LIFECYCLE = "launch_ros.actions.lifecycle_node.LifecycleNode"
+Row = Mapping[str, Any]
+_TEXT, _CONDITION = {"check": "text"}, {"check": "condition", "can_be_none": True}
+_NEEDED_TEXT, _BOOL = {"required": True, "check": "text"}, {"check": "bool"}
+
+
+def _logging_class(name: str, **more: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the row of a class that logs a message."""
+    base = "launch.action.Action" if name == "Log" else f"{_LOG}.Log"
+    keywords = {"msg": _NEEDED_TEXT, **more, "condition": _CONDITION}
+    row = {"base": base, "positional": {}, "keyword_only": keywords, "methods": []}
+    return row | {"since": "lyrical"}
+
+
+# The classes of later versions that are evaluated, with the module that exports them. `since` is the first release that
+# has one; without it, an update of Jazzy has it, or may have it. Sources, read in November 2026:
+# - PathSubstitution: launch 3.4.5, https://github.com/ros2/launch/pull/868
+# - Log and those derived from it, DeclareBooleanLaunchArgument: launch 3.9, actions/log.py and
+#   actions/declare_boolean_launch_argument.py of ros2/launch; pull requests 858 and 944
+# - StringJoinSubstitution: launch 3.8.1 (Kilted), https://github.com/ros2/launch/pull/843
+# - ComposableLifecycleNode: launch_ros 0.28 (Kilted), descriptions/composable_lifecycle_node.py of ros2/launch_ros; whether
+#   0.26.7 (Jazzy), which has LifecycleNode(autostart=True), has it too was not found, so no release lacks it
+LATER_CLASSES: dict[str, dict[str, Any]] = {
     f"{_PATHS}.PathSubstitution": {
         "base": f"{_PATHS}.PathJoinSubstitution",
-        "positional": {"path": {"required": True, "check": "text"}},
+        "positional": {"path": _NEEDED_TEXT},
         "keyword_only": {},
         "methods": [],
-    }
+    },
+    f"{_LOG}.Log": _logging_class("Log", level=_NEEDED_TEXT),
+    f"{_LOG}.LogDebug": _logging_class("LogDebug"),
+    f"{_LOG}.LogWarning": _logging_class("LogWarning"),
+    f"{_LOG}.LogError": _logging_class("LogError"),
+    "launch.actions.declare_boolean_launch_argument.DeclareBooleanLaunchArgument": {
+        "base": _DECLARATION,
+        "positional": {"name": {"required": True}},
+        "keyword_only": {
+            "default_value": {"check": "boolean text", "can_be_none": True},
+            "description": {},
+            "condition": _CONDITION,
+        },
+        "methods": [],
+        "since": "lyrical",
+    },
+    "launch.substitutions.string_join_substitution.StringJoinSubstitution": {
+        "base": "launch.substitution.Substitution",
+        "positional": {"substitutions": {"required": True, "check": "texts"}, "delimiter": _TEXT},
+        "keyword_only": {},
+        "methods": [],
+        "since": "kilted",
+    },
+    "launch_ros.descriptions.composable_lifecycle_node.ComposableLifecycleNode": {
+        "base": _COMPONENT,
+        "positional": {},
+        "keyword_only": {"autostart": _BOOL},  # and those of ComposableNode
+        "methods": [],
+    },
 }
+# What takes `/` since launch 3.4.9 (https://github.com/ros/rosdistro/pull/48509) and launch_ros 0.26.10 (pull request
+# 48517 there): these became paths.
+LATER_BASES = dict.fromkeys(
+    (
+        "launch.substitutions.this_launch_file_dir.ThisLaunchFileDir",
+        "launch.substitutions.launch_log_dir.LaunchLogDir",
+        "launch_ros.substitutions.find_package.FindPackage",
+    ),
+    f"{_PATHS}.PathSubstitution",
+)
+# Since launch_ros 0.26.7: https://github.com/ros/rosdistro/pull/44960
+LATER_PARAMETERS = {_LIFECYCLE: {"autostart": _BOOL}}
 # Of later patches: since https://github.com/ros2/launch/pull/838 a part of a path may be a list.
 LATER_CHECKS = {(f"{_PATHS}.PathJoinSubstitution", "substitutions"): "path"}
+# What XML and YAML have: `lifecycle_node` since launch_ros 0.26.12 (https://github.com/ros/rosdistro/pull/51757), the rest
+# since Lyrical: pull requests 858, 857, 943 and 944 of ros2/launch, 480 of ros2/launch_ros.
+LATER_TAGS = {
+    "action": {
+        "lifecycle_node": _LIFECYCLE,
+        "bool_arg": "launch.actions.declare_boolean_launch_argument.DeclareBooleanLaunchArgument",
+        "log_info": "launch.actions.log_info.LogInfo",
+        "log_debug": f"{_LOG}.LogDebug",
+        "log_warning": f"{_LOG}.LogWarning",
+        "log_error": f"{_LOG}.LogError",
+    },
+    "substitution": {
+        "string-join": "launch.substitutions.string_join_substitution.StringJoinSubstitution",
+        "path-join": f"{_PATHS}.PathJoinSubstitution",
+    },
+}
+SINCE: Mapping[str, Row] = {
+    "action": dict.fromkeys(
+        ("bool_arg", "log_info", "log_debug", "log_warning", "log_error"), "lyrical"
+    ),
+    "element": {"composable_lifecycle_node": "lyrical"},
+    "attribute": {"log level": "lyrical"},
+    "substitution": {"string-join": "lyrical", "path-join": "lyrical"},
+}
 # What the constructors require of arguments with these annotations: each stands for the check of this name.
 CHECKS = {
     "SomeSubstitutionsType": "text",
@@ -172,13 +263,18 @@ def table(*roots: Path) -> dict[str, Any]:
                 names |= dict.fromkeys(tags(cls, kind), f"{name}.{cls.name}")
     exports: dict[str, Any] = {}
     known = classes.keys() | LATER_CLASSES.keys()
+    later = {name.rpartition(".")[2]: name for name in LATER_CLASSES}
+    exported = {**LATER}
+    for cls_name in LATER_CLASSES:  # launch.actions exports launch.actions.log.Log
+        package = ".".join(cls_name.split(".")[:2])
+        exported[package] = exported.get(package, set()) | {cls_name.rpartition(".")[2]}
     for name, module in modules.items():
         inner = {other.rpartition(".")[2] for other in modules if other.rpartition(".")[0] == name}
         full = {
             alias: target(module.imports.get(alias, ""), modules, classes) for alias in module.names
         }
-        full |= {it.rpartition(".")[2]: it for it in LATER_CLASSES}
-        aliases = sorted(module.names | inner | LATER.get(name, set()))
+        full |= later
+        aliases = sorted(module.names | inner | exported.get(name, set()))
         targets = {
             alias: (full.get(alias) if inner else "") or f"{name}.{alias}" for alias in aliases
         }
@@ -196,7 +292,16 @@ def table(*roots: Path) -> dict[str, Any]:
     }
     for (name, parameter), check in LATER_CHECKS.items():
         rows[name]["positional"][parameter]["check"] = check
-    return {"source": SOURCE, "exports": exports, "classes": rows, **found}
+    for name, parameters in LATER_PARAMETERS.items():
+        rows[name]["keyword_only"] |= parameters
+    for name, base in LATER_BASES.items():
+        rows[name]["base"] = base
+    for row in LATER_CLASSES.values():
+        if row["base"] == _COMPONENT:
+            row["keyword_only"] = rows[_COMPONENT]["keyword_only"] | row["keyword_only"]
+    for kind, names in LATER_TAGS.items():
+        found[kind] |= names
+    return {"source": SOURCE, "exports": exports, "classes": rows, "since": SINCE, **found}
 
 
 def effective(name: str, classes: dict[str, Any]) -> dict[str, dict[str, Any]]:
@@ -241,7 +346,7 @@ def base_of(name: str, classes: dict[str, Any]) -> str:
 if __name__ == "__main__":
     made = table(*map(Path, sys.argv[1:]))
     lines = [f'"source": {json.dumps(made["source"])}']
-    for part in ("exports", "action", "substitution", "classes"):
+    for part in ("exports", "action", "substitution", "since", "classes"):
         rows = ",\n".join(
             f"{json.dumps(key)}: {json.dumps(value)}" for key, value in sorted(made[part].items())
         )

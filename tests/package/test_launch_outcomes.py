@@ -1,7 +1,8 @@
 """Launch files against what ROS 2's own launch did with them (Jazzy; processes not started, rclpy replaced).
 
 `launch_cases.json` are whole files; `launch_outcomes.json` are actions that were put into a file of a robot, at random. No
-file passes that launch stops at, and none fails that it starts; what is known of an action stays known.
+file passes that launch stops at, and none fails that it starts; what is known of an action stays known. Those with `since` were refused then (3.4.3),
+and are right from this update of Jazzy on, by its changelog.
 """
 
 import json

@@ -22,7 +22,10 @@ from grader.ros.known.releases import Release
 from tests.known.tables import write_tables
 
 BY_HAND = Path(__file__).with_name("by_hand.toml")
-_COMMENT = "# By python -m tests.parameters.make_known, of the branches of Humble to Kilted.\n"
+_COMMENT = "# By python -m tests.parameters.make_known, of the branches of Humble to Lyrical.\n"
+# Branches of other names than their releases: https://control.ros.org/rolling/doc/getting_started/getting_started.html and
+# the distribution.yaml of each release in ros/rosdistro.
+BRANCHES: Mapping[Release, str] = {"lyrical": "master"}
 _STEERING = "steering_controllers_library/src/steering_controllers_library.yaml"
 _GRIPPER = "gripper_controllers/src/gripper_action_controller_parameters.yaml"
 _FORWARD = "forward_command_controller/src/forward_command_controller_parameters.yaml"
@@ -129,7 +132,9 @@ def main(checkouts: Iterable[str]) -> None:
             source = f"{repository}, {', '.join(paths)}"
             table = table_of({release: rows_in(checkout, paths, release) for release in COVERED})
             also = {} if node.endswith("_node") else {"also": [_EVERY_CONTROLLER]}
-            tables.setdefault(package_of(node), {})[node] = {"source": source, **also, **table}
+            read = {"read": COVERED[-1]}
+            row = {"source": source, **also, **read, **table}
+            tables.setdefault(package_of(node), {})[node] = row
     for node, added in by_hand.items():
         nodes = tables.setdefault(package_of(node), {})
         nodes[node] = with_additions(nodes.get(node, {}), added)
@@ -159,7 +164,9 @@ def rows_in(checkout: str, paths: Iterable[str], release: Release) -> Rows | Non
     found = False
     for path in paths:
         shown = subprocess.run(
-            ["git", "-C", checkout, "show", f"{release}:{path}"], capture_output=True, check=False
+            ["git", "-C", checkout, "show", f"{BRANCHES.get(release, release)}:{path}"],
+            capture_output=True,
+            check=False,
         )
         if shown.returncode == 0:
             found = True

@@ -50,7 +50,7 @@ def _last_releases(node: str) -> Iterator[tuple[str, Release]]:
     """Yield a node with the last release of each of its rows."""
     known = node_rows(node)
     assert known is not None
-    last = {min(row.until, known.until, key=RELEASES.index) for row in known.rows}
+    last = {min(row.until, known.until, known.read, key=RELEASES.index) for row in known.rows}
     yield from ((node, release) for release in sorted(last, key=RELEASES.index))
 
 
@@ -190,6 +190,8 @@ def _given(row: ParameterRow, rows: Sequence[ParameterRow]) -> Values:
     """Return a value for a row, with those that it needs."""
     values: Values = {} if "<**>" in row.name else {_name(row): _valid(row)}
     lists = {other.name: other for other in rows}
+    if row.type == "string" and row.name in _lists(rows):  # its value is a part of other names
+        values[row.name] = "it"
     for place in row.places:
         if place in lists:
             values[place] = "it" if lists[place].type == "string" else ["it"]

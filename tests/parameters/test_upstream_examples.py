@@ -23,6 +23,7 @@ _NAV2, _DEMOS = "ros-navigation/navigation2", "ros-controls/ros2_control_demos"
 _HUMBLE_NAV2 = "3c3db59d6969d8ecee8e68468693d006397f4a0c"
 _JAZZY_NAV2 = "f4108e5b1c2bce804a1aa0c7be6673a8eb4a1501"
 _KILTED_NAV2 = "71a1d84f49dc48e226c96619188ee12054824ff3"
+_LYRICAL_NAV2 = "aa3dab8da45be5f899342f2f9002189aa4874a90"
 _HUMBLE_DEMOS = "70950c56540edfec085b4e1e4585e30d70ca9b00"
 _EKF, _SLAM = "cra-ros-pkg/robot_localization", "SteveMacenski/slam_toolbox"
 _HUMBLE_EKF = "72f9e936062a2a6b9a210a36ba5e554058191a92"
@@ -48,6 +49,7 @@ EXAMPLES: list[tuple[str, str, str, Release]] = [
     (_NAV2, _HUMBLE_NAV2, _PARAMS, "humble"),
     (_NAV2, _JAZZY_NAV2, _PARAMS, "jazzy"),
     (_NAV2, _KILTED_NAV2, _PARAMS, "kilted"),
+    (_NAV2, _LYRICAL_NAV2, _PARAMS, "lyrical"),
     (_EKF, _HUMBLE_EKF, "params/ekf.yaml", "humble"),
     (_EKF, _JAZZY_EKF, "params/ekf.yaml", "jazzy"),
     (_EKF, _JAZZY_EKF, "params/ukf.yaml", "jazzy"),

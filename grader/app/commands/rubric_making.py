@@ -144,7 +144,7 @@ def _rubric_head(file: Path, reference: str, submission: Submission) -> Head:
     names = tuple(it.name for it in submission.lab_packages.values())
     schema = f"./{_SCHEMA}" if (file.parent / _SCHEMA).is_file() else ""
     title = words[0].upper() + words[1:]
-    return Head(words.replace(" ", "-"), title, place, path, names, schema)
+    return Head(words.replace(" ", "-"), title, place, path, names, schema, submission.distro)
 
 
 def _relative(reference: Path, folder: Path) -> str:

@@ -32,6 +32,7 @@ from grader.lab.checks.registry import find_check
 from grader.lab.grading.subjects import without_selectors
 from grader.lab.rubric.rubric import Rubric, read_rubric
 from grader.lab.submission.submission import Submission
+from grader.ros.known.releases import Release
 from grader.ros.urdf.shapes import UnknownShape
 
 _WIDTH = 120  # columns
@@ -108,6 +109,7 @@ class Head(NamedTuple):
     urdf: str  # its path in the package
     packages: tuple[str, ...]  # their names
     schema: str = ""  # the path of a JSON Schema for editors
+    distro: Release | None = None  # of ROS 2, if the URDF needs a newer one than Jazzy
 
 
 class _DraftCriterion(NamedTuple):
@@ -426,6 +428,8 @@ def _head_lines(head: Head) -> Iterator[str]:
             f"{assignment('packages', list(head.packages))}  # the names of the packages that "
             "are graded"
         )
+    if head.distro is not None:
+        yield f"{assignment('distro', head.distro)}  # the release of ROS 2, which reads the URDF"
 
 
 def _default_lines(part: str, points: int, checks: set[str]) -> Iterator[str]:

@@ -89,7 +89,7 @@ def set_pose(owner: Element, transform: Transform) -> None:
         found = etree.SubElement(owner, "origin")
     found.set("xyz", attribute_text(transform.translation))
     found.set("rpy", attribute_text(transform.rpy))
-    found.attrib.pop("quat_xyzw", None)
+    found.attrib.pop("quat_xyzw", "")
 
 
 def end(joint: Element, role: str) -> Element:

@@ -280,7 +280,16 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
 
 
 def _packages_in(tree: Tree, lab: Lab) -> tuple[Package, ...]:
-    return read_packages(tree, lab.urdf, lab.package, lab.packages, lab.memory, lab.installed)
+    releases = (lab.distro,) if lab.distro is not None else ()
+    return read_packages(
+        tree,
+        lab.urdf,
+        lab.package,
+        lab.packages,
+        lab.memory,
+        lab.installed,
+        releases=releases,
+    )
 
 
 def _project_robots(robots: Sequence[RobotFile], labs: LabFolders) -> set[str]:

@@ -15,9 +15,12 @@ from grader.ros.interfaces.interface_types import (
     InterfaceSection,
 )
 from grader.ros.known.package_tables import interface_table
-from grader.ros.known.releases import RELEASES, Release
+from grader.ros.known.releases import RELEASES, Release, is_before
 
 _ABSENT = "absent"
+MORE_CONSTANTS = "*"  # among the constants of a type: others whose names are not known
+# The last release whose branches were read whole; of later ones only what a changelog says.
+_READ: Release = "kilted"
 _OF_SEVERAL = FieldType("", "")  # of a field that has other types in other releases
 
 
@@ -38,6 +41,28 @@ def known_interfaces(
             if forms:
                 found[f"{kind}.{name}"] = _merged(kind, package, forms)
     return found
+
+
+def is_open_in(releases: Collection[Release]) -> bool:
+    """Return whether one of some releases may have types that the tables do not have."""
+    return any(is_before(_READ, release) for release in releases)
+
+
+def find_change(package: str, name: str, releases: Collection[Release]) -> str:
+    """Return since or until when there is a type that none of some releases has, in words: `before
+    Lyrical`; empty for one that one of them has, and one that no release has.
+    """
+    kind, _, short = name.partition(".")
+    row = (interface_table(package) or {}).get(kind, {}).get(short, _ABSENT)
+    if isinstance(row, str) or not releases or {*_forms(row, releases)} != {_ABSENT}:
+        return ""
+    having = [release for release in RELEASES if {*_forms(row, (release,))} != {_ABSENT}]
+    if not having:
+        return ""
+    first = min(releases, key=RELEASES.index)
+    if is_before(first, having[0]):
+        return f"before {having[0].title()}"
+    return f"from {RELEASES[RELEASES.index(having[-1]) + 1].title()} on"
 
 
 def _forms(row: str | Mapping[str, str], releases: Collection[Release]) -> Iterator[str]:

@@ -11,11 +11,13 @@ from typing import Any, NamedTuple
 
 from grader.ros.known.package_files import packages_with_files, tables_in_file
 from grader.ros.known.package_rows import usual_names
-from grader.ros.known.releases import RELEASES, Release
+from grader.ros.known.releases import RELEASES, Release, is_before
 from grader.ros.known.typed_rows import read_row
 
-_FIRST, _LAST = RELEASES.index("humble"), RELEASES.index("kilted")
+_FIRST, _LAST = RELEASES.index("humble"), RELEASES.index("lyrical")
 COVERED: tuple[Release, ...] = RELEASES[_FIRST : _LAST + 1]
+# The last release in which a table was read that does not say it.
+_READ: Release = "kilted"
 _PLACE = re.compile(r"<([^<>]+)>")
 _SEPARATOR = re.compile("/|::")
 _NUMBER, _REST = "#", "**"
@@ -94,6 +96,7 @@ class NodeRows(NamedTuple):
     takes_any_type: bool = False
     since: Release = COVERED[0]
     until: Release = COVERED[-1]
+    read: Release = _READ  # the last release in which it was read; later ones are not known
 
     @property
     def own_rows(self) -> tuple[ParameterRow, ...]:
@@ -106,6 +109,10 @@ class NodeRows(NamedTuple):
         """Return whether a release has the node."""
         number = RELEASES.index(release)
         return RELEASES.index(self.since) <= number <= RELEASES.index(self.until)
+
+    def is_known_in(self, release: Release) -> bool:
+        """Return whether it is known what it reads in a release."""
+        return release in COVERED and not is_before(self.read, release)
 
     def in_release(self, release: Release) -> tuple[ParameterRow, ...]:
         """Return the rows of a release."""
@@ -121,6 +128,7 @@ class NodeTable(NamedTuple):
     any_type: bool = False
     since: Release = COVERED[0]
     until: Release = COVERED[-1]
+    read: Release = _READ
     parameters: Mapping[str, Any] = {}
 
 
@@ -197,6 +205,7 @@ def node_rows(node: str) -> NodeRows | None:
         table.any_type,
         table.since,
         table.until,
+        table.read,
     )
 
 

@@ -7,7 +7,8 @@ from typing import Any
 from grader.base.errors import InputError
 from grader.base.names import did_you_mean
 from grader.base.text import counted, enumerated
-from grader.ros.known.parameter_rows import ParameterRow, node_called, node_rows
+from grader.ros.known.parameter_rows import COVERED, ParameterRow, node_called, node_rows
+from grader.ros.known.releases import Release, is_before
 
 
 def parameter_explanation(name: str) -> str:
@@ -28,7 +29,7 @@ def parameter_explanation(name: str) -> str:
         guess = did_you_mean(parameter, {row.name for row in known.rows})
         raise InputError(f"{known.node} has no parameter {parameter!r}{guess}")
     texts = [f"{rows[0].name}: a parameter of {known.node}"]
-    texts += map(row_text, rows)
+    texts += [row_text(row, known.read) for row in rows]
     return "\n\n".join([*texts, f"Source: {known.source}"]) + "\n"
 
 
@@ -44,12 +45,14 @@ def _summary(row: ParameterRow) -> str:
     return ", ".join(parts)
 
 
-def row_text(row: ParameterRow) -> str:
-    """Return what is known of a parameter, one fact a line."""
-    return "\n".join(_row_lines(row))
+def row_text(row: ParameterRow, read: Release) -> str:
+    """Return what is known of a parameter, one fact a line; `read` is the last release in which it
+    was read.
+    """
+    return "\n".join(_row_lines(row, read))
 
 
-def _row_lines(row: ParameterRow) -> Iterator[str]:
+def _row_lines(row: ParameterRow, read: Release) -> Iterator[str]:
     yield f"type: {row.type or 'any'}"
     if row.default is not None:
         yield f"default: {_value(row.default)}"
@@ -74,7 +77,10 @@ def _row_lines(row: ParameterRow) -> Iterator[str]:
         yield f"entries: {enumerated(row.entries, len(row.entries))}"
     if row.size is not None:
         yield f"values: {row.size}"
-    yield f"releases: {row.releases or 'Humble to Kilted'}"
+    yield f"releases: {row.releases or f'{COVERED[0].title()} to {read.title()}'}"
+    unread = [release.title() for release in COVERED if is_before(read, release)]
+    if unread and row.until == COVERED[-1]:
+        yield f"not known for: {enumerated(unread)}"
 
 
 def _value(value: Any) -> str:

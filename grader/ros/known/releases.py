@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple, get_args
 from grader.base.text import MAX_NAMED, enumerated
 
 # A release of ROS 2, oldest first: https://docs.ros.org/en/rolling/Releases.html
-Release = Literal["foxy", "galactic", "humble", "iron", "jazzy", "kilted", "rolling"]
+Release = Literal["foxy", "galactic", "humble", "iron", "jazzy", "kilted", "lyrical", "rolling"]
 RELEASES: tuple[Release, ...] = get_args(Release)
 NameKind = Literal[
     "plugin", "controller", "package", "program", "launch file", "parameter", "topic", "argument"
@@ -111,6 +111,11 @@ def other_name(
         return _OtherName(f"{here!r} is {there!r} from {first.title()} on", there)
     last = RELEASES[min(own.first - 1, meant.last)]
     return _OtherName(f"{here!r} is {there!r} until {last.title()}", there)
+
+
+def is_before(release: Release, other: Release) -> bool:
+    """Return whether a release is older than another one."""
+    return RELEASES.index(release) < RELEASES.index(other)
 
 
 def releases_with(kind: NameKind, name: str) -> Sequence[Release]:

@@ -579,7 +579,7 @@ def _execute_process(
 _ActionFunction = Callable[[ActionVisitor, Call, Context, bool | None], None]
 # What each kind of action does that needs no visit if it is certainly not executed.
 _EFFECTS: Mapping[str, _ActionFunction] = {
-    "LogInfo": _do_nothing,
+    **dict.fromkeys(("LogInfo", "Log", "LogDebug", "LogWarning", "LogError"), _do_nothing),
     "SetLaunchConfiguration": _assign_argument,
     **dict.fromkeys(("SetEnvironmentVariable", "AppendEnvironmentVariable"), _set_environment),
     "IncludeLaunchDescription": _include_file,
@@ -597,6 +597,7 @@ _KINDS: Mapping[str, _ActionFunction] = {
     **dict.fromkeys(_PROCESSES, _execute_process),
     "LaunchDescription": _visit_description,
     "DeclareLaunchArgument": _declare_argument,
+    "DeclareBooleanLaunchArgument": _declare_argument,
     "GroupAction": _visit_group,
     "TimerAction": _start_timer,
     "RegisterEventHandler": _register_handler,

@@ -76,9 +76,10 @@ _WANTED = {
 _ACTIONS = (
     "Node",
     "ExecuteProcess",
-    "LogInfo",
+    *("LogInfo", "Log", "LogDebug", "LogWarning", "LogError"),
     "LaunchDescription",
     "DeclareLaunchArgument",
+    "DeclareBooleanLaunchArgument",
     "SetLaunchConfiguration",
     "GroupAction",
     "SetEnvironmentVariable",
@@ -100,7 +101,9 @@ _ACTIONS = (
     "ComposableNodeContainer",
     "LoadComposableNodes",
     "ComposableNode",
+    "ComposableLifecycleNode",
 )
+_BOOLEAN_CHOICES = ("true", "false", "True", "False", "TRUE", "FALSE")
 _MAX_DEPTH = 20  # of lists in others
 _TAKES_A_LIST = ("LaunchDescription", "PathJoinSubstitution", "GroupAction")
 # The classes that are evaluated, besides the sources of included files; what is wrong with their
@@ -159,8 +162,8 @@ def join_path(evaluation: Evaluation, call: Call) -> Value:
     owner, cls = call.owner, class_named(JOINED_PATH)
     assert owner is not None
     assert cls is not None
-    before = owner.kwargs.get("substitutions", [owner.kwargs.get("path")])
-    parts = [*listed(before), *call.args]
+    before = listed(owner.kwargs["substitutions"]) if owner.name == JOINED_PATH else [owner]
+    parts = [*before, *call.args]
     return _record_constructor(cls, evaluation, Call("", [parts], {}, call.at))
 
 
@@ -277,6 +280,8 @@ def _is_text(value: Value) -> bool:
             raise value.as_signal()
         case QualifiedName():
             raise Undetermined(f"the value of {value.name}")
+        case PurePosixPath():  # since launch 3.4.10
+            return True
         case Call() if class_named(value.name) is not None:
             return is_a(value.name, SUBSTITUTION)
         case Call() if value.name not in OPENED:
@@ -382,14 +387,14 @@ def _wrong_parameter(value: Value) -> _Fault | None:
     match value:
         case dict():
             return _wrong_dict(value)
-        case str() | int() | float() | bytes():
-            return None
-        case Call() if value.name in TYPED:
-            return None
         case list() | tuple() | range():
-            items = (item for item in value if not isinstance(item, SCALARS))
-            return _first_fault(map(_wrong_text, items))
-    if _is_text(value):
+            items = [item for item in value if not isinstance(item, SCALARS)]
+            # launch_ros reads these, which takes no paths
+            wrong = [_wrong_in(item) for item in items if isinstance(item, PurePosixPath)]
+            return _first_fault([*wrong, *map(_wrong_text, items)])
+    is_right = isinstance(value, str | int | float | bytes)
+    is_right = is_right or (isinstance(value, Call) and value.name in TYPED)
+    if is_right or (not isinstance(value, PurePosixPath) and _is_text(value)):
         return None
     return _Fault(f"has a value that is {kind_of(value)}", is_of_part=True)
 
@@ -444,6 +449,10 @@ def _wrong_path(value: Value) -> _Fault | None:
     return _first_fault(map(_wrong_text, value))
 
 
+def _wrong_boolean_text(value: Value) -> _Fault | None:
+    return None if isinstance(value, bool) else _wrong_text(value)
+
+
 def _wrong_mapping(value: Value) -> _Fault | None:
     if isinstance(value, dict):
         return _first_fault(_wrong_text(item) for pair in value.items() for item in pair)
@@ -484,6 +493,7 @@ _CHECKS: Mapping[str, Callable[[Value], _Fault | None]] = {
     "path": _wrong_path,
     "mapping": _wrong_mapping,
     "bool": _check_of_type(bool),
+    "boolean text": _wrong_boolean_text,
     "float": _wrong_period,
     "remappings": _wrong_remappings,
     "actions": _wrong_actions,
@@ -572,8 +582,18 @@ def _wrong_group(call: Call) -> str:
     return ""
 
 
+def _wrong_boolean(call: Call) -> str:
+    """Return nothing: the class itself makes a text of the default, and gives the choices."""
+    default = call.kwargs.get("default_value")
+    if isinstance(default, bool):
+        call.kwargs["default_value"] = str(default)
+    call.kwargs["choices"] = [*_BOOLEAN_CHOICES]
+    return _wrong_declaration(call)
+
+
 _SPECIAL: Mapping[str, Callable[[Call], str]] = {
     "DeclareLaunchArgument": _wrong_declaration,
+    "DeclareBooleanLaunchArgument": _wrong_boolean,
     "OpaqueFunction": _wrong_opaque_function,
     "IncludeLaunchDescription": _wrong_include,
     "LaunchDescription": _wrong_description,

@@ -5,7 +5,7 @@ What components publish, and which parameters they get, is not evaluated.
 """
 
 from grader.ros.launch.call_arguments import items_in
-from grader.ros.launch.launch_classes import COMPONENT
+from grader.ros.launch.launch_classes import COMPONENT, LIFECYCLE_COMPONENT
 from grader.ros.launch.launch_model import Container, Context, Findings, LoadedComponent
 from grader.ros.launch.started_nodes import namespace_below
 from grader.ros.launch.substitutions import CONDITIONS, condition_holds, known_text
@@ -53,7 +53,7 @@ def _add_components(
         return
     loaded_at = findings.locate(call.at)
     for item in described:
-        if not isinstance(item, Call) or item.name != COMPONENT:
+        if not isinstance(item, Call) or item.name not in (COMPONENT, LIFECYCLE_COMPONENT):
             continue
         is_loaded = _is_loaded(item, context, when)
         package = _text_if_known(item.kwargs["package"], context, item)

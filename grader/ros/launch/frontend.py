@@ -20,7 +20,13 @@ from grader.ros.config.yaml_nodes import (
     yaml_value,
 )
 from grader.ros.launch.call_arguments import TYPED, check
-from grader.ros.launch.launch_classes import COMPONENT, class_named, front_end
+from grader.ros.launch.launch_classes import (
+    COMPONENT,
+    LIFECYCLE_COMPONENT,
+    class_named,
+    first_release,
+    front_end,
+)
 from grader.ros.launch.launch_model import Findings, LaunchFault
 from grader.ros.launch.substitutions import boolean
 from grader.ros.python.parse import START, Position
@@ -35,6 +41,7 @@ from grader.ros.python.values import (
 from grader.ros.xml.parsing import Element, XmlFault, XmlFile
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+_SUBSTITUTION = re.compile(r"\$\(([A-Za-z][A-Za-z0-9_-]*)")
 _BEFORE_NEXT = {
     "": " '\"()",
     "'": " '()",
@@ -47,6 +54,7 @@ class _SubstitutionFormat(NamedTuple):
 
     required: tuple[str, ...] = ()
     optional: tuple[str, ...] = ()
+    rest: str = ""  # of which there is at least one
 
 
 _TWO_VALUES = _SubstitutionFormat(("left", "right"))
@@ -68,9 +76,12 @@ _SUBSTITUTIONS: Mapping[str, _SubstitutionFormat] = {
     "or": _TWO_VALUES,
     "equals": _TWO_VALUES,
     "not-equals": _TWO_VALUES,
+    "path-join": _SubstitutionFormat(rest="substitutions"),
+    "string-join": _SubstitutionFormat(("delimiter",), rest="substitutions"),
 }
 _ON_STDERR = (["fail"], ["ignore"], ["warn"], ["capture"])
 _MERGE_KEY = "<<"  # of YAML
+_LOG = "launch.actions.log.Log"
 _MAX_DEPTH = 40
 _MAX_ENTITIES = 5_000
 _MAX_PLACES = 40  # attributes of an element in XML that are looked for
@@ -110,17 +121,23 @@ _NODE: _Parts = {
     "pkg": _TEXT,
     "args": _TEXT,
     "ros_args": _TEXT,
-    "node-name": _NOT_EVALUATED,
     "exec_name": _NOT_EVALUATED,
     "namespace": _TEXT,
     "remap": _ELEMENTS,
     "param": _ELEMENTS,
     **_PROCESS,
 }
+# `node-name` is none of them: launch_ros reads it up to 0.26.11, and its class Node has no argument
+# for it; since then the reader refuses it (https://github.com/ros2/launch_ros/pull/538).
+_MESSAGE: _Parts = {"message": _REQUIRED}
 _PUSH_NAMESPACE: _Parts = {"namespace": _REQUIRED}
+_COMPONENTS: _Parts = dict.fromkeys(
+    ("composable_node", "composable_lifecycle_node"), _Part(holds="elements")
+)
 # The actions that are evaluated.
 _ACTIONS: Mapping[str, _Parts] = {
     "arg": {"name": _REQUIRED, "default": _TEXT, "description": _TEXT, "choice": _ELEMENTS},
+    "bool_arg": {"name": _REQUIRED, "default": _TEXT, "description": _TEXT},
     "executable": {"cmd": _REQUIRED, **_PROCESS},
     "group": {
         "scoped": _BOOL,
@@ -128,8 +145,9 @@ _ACTIONS: Mapping[str, _Parts] = {
         "keep": _NOT_EVALUATED,
         "children": _CHILDREN,
     },
-    "include": {"file": _REQUIRED, "arg": _ELEMENTS},
-    "log": {"message": _REQUIRED},
+    "include": {"file": _REQUIRED, "arg": _ELEMENTS, "let": _ELEMENTS},
+    "log": {"message": _REQUIRED, "level": _TEXT},
+    **dict.fromkeys(("log_info", "log_debug", "log_warning", "log_error"), _MESSAGE),
     "set_env": {"name": _REQUIRED, "value": _REQUIRED},
     "let": {"name": _REQUIRED, "value": _REQUIRED},
     "timer": {
@@ -138,27 +156,31 @@ _ACTIONS: Mapping[str, _Parts] = {
         "children": _CHILDREN,
     },
     "node": _NODE,
-    "node_container": {**_NODE, "composable_node": _ELEMENTS},
-    "load_composable_node": {"target": _REQUIRED, "composable_node": _ELEMENTS},
+    "lifecycle_node": {**_NODE, "autostart": _BOOL},
+    "node_container": {**_NODE, **_COMPONENTS},
+    "load_composable_node": {"target": _REQUIRED, **_COMPONENTS},
     "push_ros_namespace": _PUSH_NAMESPACE,
     "push-ros-namespace": _PUSH_NAMESPACE,
     "set_parameter": {"name": _REQUIRED, "value": _REQUIRED},
     "set_remap": {"from": _REQUIRED, "to": _REQUIRED},
     "set_parameters_from_file": {"filename": _REQUIRED},
 }
+_COMPOSABLE_NODE: _Parts = {
+    "pkg": _REQUIRED,
+    "plugin": _REQUIRED,
+    "name": _REQUIRED,
+    "namespace": _TEXT,
+    "param": _ELEMENTS,
+    "remap": _ELEMENTS,
+    "extra_arg": _ELEMENTS,
+    **_CONDITION_PARTS,
+}
 _NESTED: Mapping[str, _Parts] = {
     "arg": {"name": _REQUIRED, "value": _REQUIRED},
+    "let": {"name": _REQUIRED, "value": _REQUIRED},
     "choice": {"value": _REQUIRED},
-    "composable_node": {
-        "pkg": _REQUIRED,
-        "plugin": _REQUIRED,
-        "name": _REQUIRED,
-        "namespace": _TEXT,
-        "param": _ELEMENTS,
-        "remap": _ELEMENTS,
-        "extra_arg": _ELEMENTS,
-        **_CONDITION_PARTS,
-    },
+    "composable_node": _COMPOSABLE_NODE,
+    "composable_lifecycle_node": {**_COMPOSABLE_NODE, "autostart": _BOOL},
     "remap": {"from": _REQUIRED, "to": _REQUIRED},
     "param": {
         "name": _TEXT,
@@ -201,7 +223,9 @@ _ROS1 = (
     "for $(find ...),"
     " $(var ...) for $(arg ...), and <param> inside of <node>"
 )
-_RAW = ("shell", "emulate_tty", "scoped")
+_RENAMED = {"node-name": ": write name"}
+_RAW = ("shell", "emulate_tty", "scoped", "autostart")
+_NAMED = ("name", "namespace")  # attributes that the class LifecycleNode needs
 
 
 @dataclass(slots=True)
@@ -393,6 +417,8 @@ def _read_action(entity: _Entity, findings: Findings) -> Call:
         )
     given = _read_attributes(entity, {**_CONDITION_PARTS, **_ACTIONS[kind]})
     condition = _take_condition(given, entity)
+    if kind == "lifecycle_node" and not given.keys() >= {*_NAMED}:
+        raise Undetermined("a <lifecycle_node> without name and namespace is not evaluated")
     kwargs = {
         _ARGUMENTS.get(name, name): _read_argument(entity, name, value)
         for name, value in given.items()
@@ -402,7 +428,10 @@ def _read_action(entity: _Entity, findings: Findings) -> Call:
     _add_elements(entity, kwargs)
     if "children" in _ACTIONS[kind]:
         kwargs["actions"] = read_actions(entity, findings)
-    return _checked_call(Call(front_end("action")[kind], [], kwargs, entity.at))
+    name = front_end("action")[kind]
+    if "level" in given:
+        name = _LOG
+    return _checked_call(Call(name, [], kwargs, entity.at))
 
 
 def _read_attributes(entity: _Entity, parts: _Parts) -> dict[str, Any]:
@@ -441,7 +470,8 @@ def _check_names(entity: _Entity, parts: _Parts) -> None:
                 raise EvaluationFails(f"<{entity.kind}> contains no <{name}>{hint}", entity.at)
     for name in entity.attributes:
         if name not in parts or parts[name].holds != "value":
-            message = f"<{entity.kind}> has no attribute {name!r}{did_you_mean(name, parts)}"
+            hint = _RENAMED.get(name) or did_you_mean(name, parts)
+            message = f"<{entity.kind}> has no attribute {name!r}{hint}"
             raise EvaluationFails(message, entity.place(name))
 
 
@@ -511,10 +541,13 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
                 kwargs["parameters"] = [_read_parameter(it) for it in inner]
             case "remap":
                 kwargs["remappings"] = _read_pairs(inner, "from", "to")
-            case "arg":
-                kwargs["launch_arguments"] = _read_pairs(inner, "name", "value")
-            case "composable_node":
-                kwargs["composable_node_descriptions"] = [_read_component(it) for it in inner]
+            case "arg" | "let":
+                arguments = _read_pairs(inner, "name", "value")
+                kwargs["launch_arguments"] = [*kwargs.get("launch_arguments", ()), *arguments]
+            case "composable_node" | "composable_lifecycle_node":
+                components = map(_read_component, inner)
+                before = kwargs.get("composable_node_descriptions", ())
+                kwargs["composable_node_descriptions"] = [*before, *components]
             case "choice":
                 kwargs["choices"] = [_read_attributes(it, _NESTED[name])["value"] for it in inner]
 
@@ -530,7 +563,8 @@ def _read_component(entity: _Entity) -> Call:
         kwargs[_ARGUMENTS.get(name, name)] = _read_argument(entity, name, value)
     if condition is not None:
         kwargs["condition"] = condition
-    component = _checked_call(Call(COMPONENT, [], kwargs, entity.place("plugin")))
+    cls = COMPONENT if entity.kind == "composable_node" else LIFECYCLE_COMPONENT
+    component = _checked_call(Call(cls, [], kwargs, entity.place("plugin")))
     if "param" in entity.nested:
         unknown = Unknown("parameters of components are not evaluated", entity.at)
         component.kwargs["parameters"] = unknown  # the check would leave out the whole component
@@ -785,7 +819,9 @@ class _ValueParser:
             similar = closest(name, _SUBSTITUTIONS)
             hint = f"; did you mean $({similar} ...)?" if similar else ""
             raise EvaluationFails(f"there is no substitution $({name} ...){hint}", self.at)
-        required, optional = _SUBSTITUTIONS[name]
+        required, optional, rest = _SUBSTITUTIONS[name]
+        if rest:
+            return self.call_with_rest(name, values)
         names = [*required, *optional]
         if not len(required) <= len(values) <= len(names):
             count = "1 argument" if len(names) == 1 else f"{len(names) or 'no'} arguments"
@@ -795,3 +831,44 @@ class _ValueParser:
             texts = [part for part in value if isinstance(part, str)]
             kwargs[argument] = "".join(texts) if len(texts) == len(value) else value
         return Call(front_end("substitution")[name], [], kwargs, self.at)
+
+    def call_with_rest(self, name: str, values: list[list[Value]]) -> Call:
+        """Return a substitution that takes any number of values. Raises EvaluationFails."""
+        required, _, rest = _SUBSTITUTIONS[name]
+        if len(values) <= len(required):
+            count = "2 arguments" if required else "1 argument"
+            raise EvaluationFails(f"$({name} ...) takes at least {count}", self.at)
+        kwargs: dict[str, Value] = dict(zip(required, values, strict=False))
+        kwargs[rest] = values[len(required) :]
+        return Call(front_end("substitution")[name], [], kwargs, self.at)
+
+
+def find_later_words(root: _Entity, findings: Findings) -> None:
+    """Add the words of a launch file that not every release has."""
+    pending = [root]
+    while pending:
+        entity = pending.pop()
+        pending += entity.actions
+        if entity.is_yaml:  # in XML, these are among the actions
+            for inner in entity.nested.values():
+                pending += inner
+        words = [("action", entity.kind, entity.at), ("element", entity.kind, entity.at)]
+        for name, value in entity.attributes.items():
+            at = entity.place(name)
+            words.append(("attribute", f"{entity.kind} {name}", at))
+            for substitution in _SUBSTITUTION.findall(str(value)):
+                words.append(("substitution", substitution, at))
+        for kind, name, at in words:
+            since = first_release(kind, name)
+            if since:
+                findings.add_later(_describe_word(kind, name), since, at)
+
+
+def _describe_word(kind: str, name: str) -> str:
+    """Return a word of XML and YAML with what it is."""
+    if kind == "substitution":
+        return f"substitution $({name} ...)"
+    if kind == "attribute":
+        element, _, attribute = name.partition(" ")
+        return f"attribute {attribute!r} of <{element}>"
+    return f"{kind} {name!r}"

@@ -1,5 +1,6 @@
-"""The classes of launch, launch_ros, launch_xml and launch_yaml (ROS 2 Jazzy), as
-`launch_classes.json` lists them.
+"""The classes of launch, launch_ros, launch_xml and launch_yaml, as `launch_classes.json` has them.
+
+They are those of Jazzy with its updates; what later releases add says since which it is there.
 """
 
 import json
@@ -16,6 +17,7 @@ SOURCE = "launch.launch_description_source.LaunchDescriptionSource"
 PATH = "launch.substitutions.path_join_substitution.PathSubstitution"
 JOINED_PATH = "launch.substitutions.path_join_substitution.PathJoinSubstitution"
 COMPONENT = "launch_ros.descriptions.composable_node.ComposableNode"
+LIFECYCLE_COMPONENT = "launch_ros.descriptions.composable_lifecycle_node.ComposableLifecycleNode"
 DESCRIPTION = "launch.launch_description.LaunchDescription"
 
 
@@ -37,6 +39,7 @@ class LaunchClass(NamedTuple):
     base: str
     parameters: Mapping[str, _ConstructorParameter]
     methods: frozenset[str]
+    since: str = ""  # the first release that has it; empty for one that Jazzy has
 
     @property
     def short(self) -> str:
@@ -68,7 +71,7 @@ def class_named(name: str) -> LaunchClass | None:
     methods = frozenset(row["methods"])
     if inherited is not None:
         methods |= inherited.methods
-    return LaunchClass(name, row["base"], parameters, methods)
+    return LaunchClass(name, row["base"], parameters, methods, row.get("since", ""))
 
 
 def is_a(name: str, base: str) -> bool:
@@ -98,3 +101,14 @@ def front_end(kind: str) -> Mapping[str, str]:
     """
     names: Mapping[str, str] = _table()[kind]
     return names
+
+
+def first_release(kind: str, name: str) -> str:
+    """Return the first release that has a word of XML and YAML; empty for one that Jazzy has.
+
+    Args:
+        kind: Whether it is an action, an element, an attribute or a substitution.
+        name: The word; of an attribute, after that of its element.
+    """
+    names: Mapping[str, str] = _table()["since"][kind]
+    return names.get(name, "")

@@ -10,7 +10,6 @@ import shlex
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
-from operator import attrgetter
 from pathlib import PurePosixPath
 from typing import Any
 
@@ -32,6 +31,7 @@ from grader.ros.launch.launch_classes import (
 )
 from grader.ros.launch.launch_model import (
     MAX_STEPS,
+    ORDER,
     Contents,
     Context,
     FileText,
@@ -88,7 +88,7 @@ _MAX_INCLUDES = 40
 # What a launch file shares with those that it includes.
 _JOINED = (
     *("nodes", "references", "faults", "unknown", "doubts", "declared", "values", "passed"),
-    *("components", "containers"),
+    *("components", "containers", "later"),
 )
 
 
@@ -176,7 +176,7 @@ class _LaunchReader:
         faults = launch.faults if launch.syntax is None else (*launch.faults, launch.syntax)
         if context.when is not True:  # an error in the file counts only if it is included
             launch = launch._replace(
-                doubts=(*launch.doubts, *faults), unknown=(*launch.unknown, *faults)
+                doubts=(*launch.doubts, *faults), unknown=(*launch.unknown, *faults), later=()
             )
             faults = ()
         included.append(launch._replace(faults=faults))
@@ -186,7 +186,7 @@ class _LaunchReader:
 def _read_entities(
     data: bytes, path: str, context: Context, include: Include, *, is_yaml: bool
 ) -> Launch:
-    from grader.ros.launch.frontend import read_actions, read_frontend
+    from grader.ros.launch.frontend import find_later_words, read_actions, read_frontend
 
     source = Source(path, data.decode("utf-8", "replace"))
     findings = Findings(lambda position: Location(path, position.line, position.column))
@@ -201,6 +201,7 @@ def _read_entities(
     if root.error:
         findings.add_fault(root.error, root.at)
     actions = read_actions(root, findings)
+    find_later_words(root, findings)
     visitor = ActionVisitor(
         findings, include, lambda _, at, *__: Unknown("a function is not evaluated here", at)
     )
@@ -261,6 +262,10 @@ def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
         findings.add_fault(fault.message, fault.at, argument=fault.argument)
     for contents, at in file.reads:
         findings.refer("read", contents, Call("", [], {}, at))
+    for call in interpreter.calls:
+        cls = class_named(call.name)
+        if cls is not None and cls.since:
+            findings.add_later(f"class {cls.short!r} of launch", cls.since, call.at)
 
 
 def _description_error(value: Value) -> str:
@@ -283,12 +288,11 @@ def _forgotten_node(node: Call, findings: Findings) -> StartedNode:
 
 
 def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
-    order = attrgetter("location.line", "location.column", "message")
     return Launch(
         source=source,
         nodes=tuple(findings.nodes),
         references=tuple(dict.fromkeys(_references_of(findings))),
-        faults=tuple(sorted(set(findings.faults), key=order)),
+        faults=tuple(sorted(set(findings.faults), key=ORDER)),
         unknown=tuple(dict.fromkeys(findings.unknown)),
         doubts=tuple(dict.fromkeys(findings.doubts)),
         declared=tuple(dict.fromkeys(findings.declared)),
@@ -298,6 +302,7 @@ def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNod
         components=tuple(dict.fromkeys(findings.components)),
         containers=tuple(dict.fromkeys(findings.containers)),
         forgotten=forgotten,
+        later=tuple(dict.fromkeys(findings.later)),
     )
 
 
@@ -369,7 +374,6 @@ class _PythonLaunchFile:
             f"{DESCRIPTION}.add_action": _add_action,
             f"{DESCRIPTION}.add_entity": _add_action,
             f"{JOINED_PATH}.__truediv__": join_path,
-            f"{PATH}.__truediv__": join_path,
         }
         classes: set[str] = set()
         for names in exports().values():
@@ -377,6 +381,8 @@ class _PythonLaunchFile:
         for full in classes:
             if is_a(full, SUBSTITUTION):
                 functions[f"{full}.perform"] = self._perform
+            if is_a(full, PATH):
+                functions[f"{full}.__truediv__"] = join_path
         for module in _AMENT_INDEX:
             functions[f"{module}.get_package_share_directory"] = self._share
             functions[f"{module}.get_package_share_path"] = self._share_path

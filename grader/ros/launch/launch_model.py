@@ -3,13 +3,15 @@ are visited.
 """
 
 import posixpath
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from typing import Any, Literal, NamedTuple, Protocol
+from operator import attrgetter
+from typing import Any, Literal, NamedTuple, Protocol, cast
 
 from grader.base.source import Location, Source
 from grader.ros.installation.places import PREFIX
+from grader.ros.known.releases import Release, is_before
 from grader.ros.python.budget import Budget
 from grader.ros.python.parse import Position
 from grader.ros.python.values import (
@@ -25,6 +27,7 @@ MAX_STEPS = 50_000
 # the launch configuration that has the namespace of what follows, as in launch_ros
 NAMESPACE = "ros_namespace"
 STATE_PUBLISHER = "robot_state_publisher"
+ORDER = attrgetter("location.line", "location.column", "message")  # of faults
 Purpose = Literal["urdf", "rviz", "include", "read", "parameters"]
 
 
@@ -297,6 +300,14 @@ class LaunchFault(NamedTuple):
     argument: str = ""  # that a function does not have
 
 
+class _LaterWord(NamedTuple):
+    """A class, an action or a substitution that releases before one do not have."""
+
+    what: str  # what it is, with its name: "action 'bool_arg'"
+    since: Release
+    location: Location
+
+
 class Launch(NamedTuple):
     """The result of a launch file and of those that it includes."""
 
@@ -319,6 +330,20 @@ class Launch(NamedTuple):
         StartedNode, ...
     ] = ()  # created in the file, but not part of its LaunchDescription
     unread: str = ""  # why the file was not read at all: too large, damaged
+    later: tuple[_LaterWord, ...] = ()  # evaluated as the releases do that have it
+
+    def in_releases(self, releases: Collection[Release]) -> "Launch":
+        """Return it as some releases launch it: what all of them lack stops it. With none, every
+        release will do.
+        """
+        faults = list(self.faults)
+        for word in self.later:
+            if releases and all(is_before(release, word.since) for release in releases):
+                message = f"there is no {word.what} before {word.since.title()}"
+                faults.append(LaunchFault(message, word.location))
+        if len(faults) == len(self.faults):
+            return self
+        return self._replace(faults=tuple(sorted(set(faults), key=ORDER)), later=())
 
     def named(self, *purposes: Purpose) -> tuple[NamedFile, ...]:
         """Return the files that are named for one of these purposes."""
@@ -369,6 +394,7 @@ class Findings:
     commands: list[str] = field(default_factory=list)
     components: list[LoadedComponent] = field(default_factory=list)
     containers: list[Container] = field(default_factory=list)
+    later: list[_LaterWord] = field(default_factory=list)
     sets_parameters: bool = False
     is_silent: bool = False  # while what may never be executed is visited
 
@@ -385,6 +411,10 @@ class Findings:
     def add_doubt(self, reason: str, at: Position) -> None:
         """Add what may stop the launch."""
         self.doubts.append(LaunchFault(not_evaluated(reason), self.locate(at)))
+
+    def add_later(self, what: str, since: str, at: Position) -> None:
+        """Add a word that releases before one do not have."""
+        self.later.append(_LaterWord(what, cast("Release", since), self.locate(at)))
 
     def add_undecided(self, reason: str, at: Position) -> None:
         """Add what may start more, or stop the launch."""

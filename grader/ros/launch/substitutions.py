@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import isclose
+from pathlib import PurePosixPath
 
 from grader.base.text import enumerated
 from grader.ros.config.yaml_nodes import yaml_value
@@ -34,7 +35,7 @@ _BOOLEANS = {"true": True, "1": True, "false": False, "0": False}
 _OF_CMAKE = b"<build_type>ament_cmake</build_type>"
 _MAX_DEPTH, _WORK = 40, 10_000  # of substitutions in others, and of an expression
 _TOO_DEEP = "a substitution that is nested so deeply is not evaluated"
-TEXT_PARTS = (str, Call, Unknown)  # of which a text may consist
+TEXT_PARTS = (str, PurePosixPath, Call, Unknown)  # of which a text may consist
 PART_UNKNOWN = "\0"  # stands in a command for a part that is unknown
 _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", "env", "rviz2"})
 
@@ -57,6 +58,8 @@ def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Res
             return contents
         case str() | Contents() | Unknown():
             return value
+        case PurePosixPath():
+            return str(value)
         case Call():
             return _Substitution(value, context, depth).value()
         case list() | tuple() | dict() | set():
@@ -212,6 +215,15 @@ class _Substitution:
             raise EvaluationFails("PathJoinSubstitution is given no path", self.at)
         return posixpath.join(*texts)
 
+    def joined_strings(self) -> Resolved:
+        texts = self.texts(*listed(self.call.kwargs["substitutions"]))
+        delimiter = self.argument("delimiter")
+        if isinstance(texts, Unknown):
+            return texts
+        if not isinstance(delimiter, str):
+            raise Undetermined("the delimiter of these strings is not evaluated", self.at)
+        return delimiter.join(texts)
+
     def package_folder(self) -> Resolved:
         package = self.argument("package")
         if isinstance(package, Unknown):
@@ -345,6 +357,7 @@ PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
     "LaunchConfiguration": _Substitution.configuration,
     "PathJoinSubstitution": _Substitution.path,
     "PathSubstitution": _Substitution.path,
+    "StringJoinSubstitution": _Substitution.joined_strings,
     "Command": _Substitution.command,
     "PythonExpression": _Substitution.expression,
     "FindPackageShare": _Substitution.package_folder,

@@ -12,6 +12,7 @@ from grader.base.source import Location, Source
 from grader.files.tree import Tree
 from grader.ros.installation.manifest import Manifest, read_manifest
 from grader.ros.installation.places import SHARE
+from grader.ros.known.releases import Release
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
 from grader.ros.package.robot_file import launch_folders
 from grader.ros.package.robots import RobotFile
@@ -93,6 +94,7 @@ def read_packages(
     installed: frozenset[str] = frozenset(),
     most: int = _MAX_PACKAGES,
     *,
+    releases: tuple[Release, ...] = (),
     are_whole: bool = False,
 ) -> tuple[Package, ...]:
     """Return the packages in a file tree, the one that matches best first.
@@ -109,6 +111,7 @@ def read_packages(
         memory: The launch files that were read for the same names.
         installed: The packages that are on the machines besides those of ROS 2.
         most: How many are read.
+        releases: The releases of ROS 2 for which they are graded; none: any.
         are_whole: Whether packages also have the files of those in them, as builds copy them.
     """
     known: dict[str, Package] = {}
@@ -134,6 +137,7 @@ def read_packages(
             ignored_by=_find_marker(tree, folder),
             inner=inner,
             memory=cache,
+            releases=releases,
             work=work,
         )
         packages.append(package)

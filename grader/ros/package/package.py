@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from grader.ros.config.rviz import RvizFile
     from grader.ros.installation.installation import Installation, KnownPrograms
     from grader.ros.installation.manifest import Manifest
+    from grader.ros.known.releases import Release
     from grader.ros.launch.launch_model import Launch, NamedFile
 
 MANIFEST, SETUP, CMAKE = "package.xml", "setup.py", "CMakeLists.txt"
@@ -79,6 +80,7 @@ class Package:
     inner: tuple[str, ...] = ()
     memory: Memory = field(default_factory=Memory)
     arguments: "Mapping[str, str]" = field(default_factory=dict)  # that its launch files are given
+    releases: "tuple[Release, ...]" = ()  # for which it is graded; none: any
     work: Budget = field(default_factory=Budget)  # to read and compare all files of the workspace
     # The package without other launch arguments: what a build installs does not depend on them.
     _original: "Package | None" = None
@@ -385,6 +387,7 @@ class Package:
             )
         except InputError as error:
             launch = Launch(Source(full, ""), unread=str(error))
+        launch = launch.in_releases(self.releases)
         if text is None:
             return self._launches.setdefault(path, launch)
         return launch

@@ -8,6 +8,7 @@ from collections.abc import Collection
 from typing import NamedTuple
 
 from grader.ros.known.releases import Release
+from grader.ros.urdf.numbers import version_in
 
 UrdfVersion = tuple[int, int]
 
@@ -19,7 +20,7 @@ NEWEST = WITH_CHECKED_VALUES  # of any release
 
 # The newest version that a release reads, where it is not the first one. Sources: urdfdom 4.0.1 of
 # Jazzy and 6.0.0 of Lyrical, run on the same files; ros/rosdistro of August 2026.
-_NEWEST: dict[str, UrdfVersion] = {"lyrical": (1, 2), "rolling": (1, 2)}
+_NEWEST: dict[Release, UrdfVersion] = {"lyrical": (1, 2), "rolling": (1, 2)}
 
 
 class UrdfFormat(NamedTuple):
@@ -37,6 +38,14 @@ class UrdfFormat(NamedTuple):
 def newest_version(releases: Collection[Release]) -> UrdfVersion:
     """Return the newest version that each of some releases reads; without any, the first one."""
     return min((_NEWEST.get(release, FIRST) for release in releases), default=FIRST)
+
+
+def first_release(text: str) -> Release | None:
+    """Return the first release that reads a version, as a file states it, if Jazzy does not."""
+    for release, newest in _NEWEST.items():
+        if FIRST < (version_in(text) or FIRST) <= newest:
+            return release
+    return None
 
 
 def in_words(version: UrdfVersion) -> str:

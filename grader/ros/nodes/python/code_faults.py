@@ -349,6 +349,7 @@ class _Search:
         calls = [call for part in self._module.parts if part.of is None for call in part.calls]
         by_name = {dotted(call.func): call for call in reversed(calls)}
         has_spin = any("spin" in name or "WaitSet" in name or "wait_for" in name for name in names)
+        has_spin |= "AsyncNode" in names  # of rclpy.experimental: its run() is awaited
         if "rclpy.init" in by_name and self._registered and not has_spin:
             message = (
                 "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"

@@ -5,7 +5,7 @@ well-known nodes.
 from collections.abc import Iterator
 
 from grader.ros.known.package_rows import usual_names
-from grader.ros.known.parameter_rows import row_for, rows_of
+from grader.ros.known.parameter_rows import node_rows, row_for, rows_of
 from grader.ros.known.parameter_texts import row_text
 from grader.ros.known.releases import Release
 from grader.ros.nodes.node_facts import NodeParameter
@@ -38,8 +38,11 @@ def parameter_text(workspace: Workspace, section: str, name: str) -> str:
             is_known = own.default is not None and not isinstance(own.default, Unknown)
             return f"default: {own.default}\n{where}" if is_known else where
     node = _known_node(workspace, section)
+    known = node_rows(node) if node is not None else None
     row = row_for(node, name, _release_of(workspace)) if node is not None else None
-    return f"parameter of {node}\n{row_text(row)}" if row is not None else ""
+    if known is None or row is None:
+        return ""
+    return f"parameter of {node}\n{row_text(row, known.read)}"
 
 
 def _own_parameters(workspace: Workspace, section: str) -> Iterator[NodeParameter]:

@@ -23,20 +23,30 @@ _SETTING = re.compile(
 # A sentence, a badge or a link in a line: ROS 2 Humble, ROS_2-Humble, docs.ros.org/en/humble.
 _SENTENCE = re.compile(
     rf"(?<![a-z])ROS[ _-]?2?(?:[\W_]*(?:distro\w*|version))?[\W_]{{0,5}}{_NAME}{_LIST}"
-    rf"|{_NAME} (?:Fitzroy|Geochelone|Hawksbill|Irwini|Jalisco|Kaiju|Ridley)"
+    rf"|{_NAME} (?:Fitzroy|Geochelone|Hawksbill|Irwini|Jalisco|Kaiju|Luth|Ridley)"
     rf"|(?:docs\.ros\.org/en|img\.shields\.io/ros/v)/{_NAME}|index\.ros\.org/[\w/]+#{_NAME}",
     re.IGNORECASE,
 )
 _BRANCH = re.compile(rf"{_NAME}\W{{0,4}}branch|branch\W{{1,4}}{_NAME}", re.IGNORECASE)
+# What a work was made from, and what it is for now: Ported from ROS 2 Jazzy to Lyrical.
+_ORIGIN = re.compile(
+    r"\b(?:port|migrat|convert|upgrad|updat|mov|adapt|translat)\w*\b"
+    r"(?:[ \n]+[\w/]+){0,4}?[ \n]+from"
+    rf"\W{{1,4}}(?:ROS[ _-]?2?\W{{1,4}})?{_NAME}(?:\s+to\s+(?:ROS[ _-]?2?\s+)?(?P<to>{_NAME}))?"
+    rf"|\b(?:originally|formerly|previously|initially)\b[^.\n]{{0,40}}?\b(?:for|on|in|with)\s+"
+    rf"(?:ROS[ _-]?2?\W{{1,4}})?{_NAME}",
+    re.IGNORECASE,
+)
 # What a workflow is run for: another branch than the one that is read.
 _OF_BRANCH = re.compile(
     rf"\b(?:ref\w*|branches)[ \t]*:[\s\[\"'-]*{_NAME}(?=[\"'\]\s])", re.IGNORECASE
 )
-_UBUNTU = re.compile(r"\bubuntu:(20\.04|22\.04|24\.04|focal|jammy|noble)\b")
+_UBUNTU = re.compile(r"\bubuntu:(20\.04|22\.04|24\.04|26\.04|focal|jammy|noble|resolute)\b")
 _OF_UBUNTU: dict[str, tuple[Release, ...]] = {
     **dict.fromkeys(("20.04", "focal"), ("foxy", "galactic")),
     **dict.fromkeys(("22.04", "jammy"), ("humble", "iron")),
     **dict.fromkeys(("24.04", "noble"), ("jazzy", "kilted")),
+    **dict.fromkeys(("26.04", "resolute"), ("lyrical",)),
 }
 _VARIABLE = "ROS_DISTRO"
 _COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*")
@@ -113,8 +123,11 @@ def _in_setting_of_every_branch(text: str) -> set[str]:
 
 
 def _in_prose(text: str) -> set[str]:
-    """Return the releases that a README states, but for those that are on other branches."""
+    """Return the releases that a README states, but for those that are on other branches, and those
+    that the work was ported from.
+    """
     found: set[str] = set()
+    text = _ORIGIN.sub(lambda match: f"ROS 2 {match['to'] or ''}", text)
     for line in text.splitlines():
         found |= (_in_setting(line) | _names_in(_SENTENCE, line)) - _names_in(_BRANCH, line)
     return found

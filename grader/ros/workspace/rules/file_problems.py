@@ -102,7 +102,7 @@ def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
         is_named = True
     is_closed = not is_named and not any(it.unknown for _, _, it in workspace.launches.files)
     faults = []
-    for fault in launch.faults:
+    for fault in launch.in_releases(workspace.releases).faults:
         having = releases_with("argument", fault.argument) if fault.argument else ()
         if any(release in having for release in workspace.releases):
             continue

@@ -17,7 +17,12 @@ from grader.ros.interfaces.interface_types import (
     InterfaceField,
     InterfaceSection,
 )
-from grader.ros.interfaces.known_interfaces import known_interfaces
+from grader.ros.interfaces.known_interfaces import (
+    MORE_CONSTANTS,
+    find_change,
+    is_open_in,
+    known_interfaces,
+)
 from grader.ros.known.cmake_words import cmake_words
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import ITEM
@@ -151,9 +156,11 @@ def is_absent(workspace: Workspace, name: str) -> bool:
     if own is not None:
         return own.is_complete and own_name not in own.types
     known = known_interfaces(package, workspace.releases)
-    if known is None or "rolling" in workspace.releases:
+    if known is None or own_name in known:
         return False
-    return own_name not in known
+    if is_open_in(workspace.releases):
+        return find_change(package, own_name, workspace.releases) != ""
+    return True
 
 
 def _absent(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
@@ -178,8 +185,11 @@ def _absent(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
     of_kind = [it.partition(".")[2] for it in names if it.startswith(f"{kind}.")]
     meant = near(short, of_kind) or closest(short, of_kind)
     other = [it for it in names if it.partition(".")[2] == short]
+    change = find_change(package, own_name, workspace.releases) if own is None else ""
     hint = ""
-    if other:
+    if change:
+        hint, meant = f" {change}", None
+    elif other:
         hint = f"; there is {package}/{other[0].replace('.', '/')}"
     elif meant is not None:
         hint = f"; did you mean {meant}?"
@@ -262,7 +272,8 @@ def _used_at(
 
 def _is_of_python(section: InterfaceSection, attribute: str) -> bool:
     """Return whether the class that rosidl generates has an attribute that is no field."""
-    is_known = attribute in section.constants or attribute in _OF_PYTHON
+    may_be_constant = MORE_CONSTANTS in section.constants and attribute.isupper()
+    is_known = attribute in section.constants or attribute in _OF_PYTHON or may_be_constant
     return is_known or attribute.startswith("_") or attribute.endswith("__DEFAULT")
 
 

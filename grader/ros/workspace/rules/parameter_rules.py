@@ -10,7 +10,13 @@ from typing import Any, NamedTuple
 from grader.base.names import MAX_GUESSES, are_of_one_side, closest, is_misspelling, near
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
-from grader.ros.known.parameter_rows import COVERED, ParameterRow, node_rows, rows_of
+from grader.ros.known.parameter_rows import (
+    COVERED,
+    NodeRows,
+    ParameterRow,
+    node_rows,
+    rows_of,
+)
 from grader.ros.known.releases import RELEASES, Release, other_name
 from grader.ros.launch.launch_model import ParameterValue
 from grader.ros.python.parse import START
@@ -114,17 +120,18 @@ def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismat
     the rows are of where none is stated. A value that is right in one of them is right.
     """
     known = node_rows(given.node)
-    if known is None or any(release not in COVERED for release in stated):
+    if known is None or not all(map(known.is_known_in, stated)):
         return
-    readers = {release: _NodeReader(given, release) for release in COVERED}
+    read = [release for release in COVERED if known.is_known_in(release)]
+    readers = {release: _NodeReader(given, release) for release in read}
     found: dict[tuple[Rule, str], Mismatch] | None = None
-    for release in [release for release in stated or COVERED if known.is_in(release)]:
+    for release in [release for release in stated or read if known.is_in(release)]:
         here = {(it.mismatch.rule, it.name): it.mismatch for it in readers[release].findings()}
         before = here if found is None else found
         found = {key: mismatch for key, mismatch in before.items() if key in here}
     for (rule, name), mismatch in (found or {}).items():
         if rule is PARAMETER_NAME:
-            having = [release for release in COVERED if readers[release].has(name)]
+            having = [release for release in read if readers[release].has(name)]
             yield _of_other_release(given, name, mismatch, having, stated)
         else:
             yield mismatch
@@ -158,6 +165,11 @@ def _of_other_release(
     else:
         text = f"there is no parameter {name!r} before {releases[0].title()}"
     return warning(PARAMETER_RELEASE, text, at)
+
+
+def _is_known(known: NodeRows, release: Release) -> bool:
+    """Return whether a release has a node, and it is known what it reads there."""
+    return known.is_in(release) and known.is_known_in(release)
 
 
 class _NodeReader:
@@ -237,7 +249,7 @@ class _NodeReader:
         while waiting and len(self._tables) < _MAX_TABLES:
             prefix, node = waiting.pop(0)
             known = node_rows(node)
-            if known is None or not known.is_in(self._release):
+            if known is None or not _is_known(known, self._release):
                 self._unread.append(prefix)
                 continue
             index = _index(node, self._release)
@@ -461,9 +473,8 @@ class _NodeReader:
         at = self._given.at
         assert at is not None
         for table in self._tables:
-            for row in table.rows.by_name.values():
-                name = f"{table.prefix}{row.name}"
-                if not row.is_required or name in self._values:
+            for row, name in self._required(table):
+                if name in self._values:
                     continue
                 message = (
                     f"{self._given.said} stops without the parameter {name}, which it does not get"
@@ -479,6 +490,21 @@ class _NodeReader:
                 either = corrections(wrong.rpartition(".")[2], place, row.name.rpartition(".")[2])
                 mismatch = Mismatch(PARAMETER_REQUIRED, text, place, corrections=either)
                 yield _RowFinding(name, mismatch)
+
+    def _required(self, table: _RowTable) -> Iterator[tuple[ParameterRow, str]]:
+        """Yield the rows without which a node stops, with the names that it needs: of a row with a
+        part for the value of another parameter, that of the value that is given.
+        """
+        for row in table.rows.all_rows.values():
+            if not row.is_required:
+                continue
+            if not row.places:
+                yield row, f"{table.prefix}{row.name}"
+                continue
+            (place,) = row.places
+            given = self._values.get(f"{table.prefix}{place}")
+            if given is not None and isinstance(given.value, str):
+                yield row, f"{table.prefix}{row.name.replace(f'<{place}>', given.value)}"
 
 
 class _OffSwitch(NamedTuple):
