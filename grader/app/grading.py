@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from grader.lab.grading.report import Report
     from grader.lab.hints.hinting import Fix
     from grader.lab.rubric.rubric import Rubric
+    from grader.lab.submission.submission import Submission
 
 MAX_NAMED_CRITERIA = 8  # in a message
 _MAX_UP = 3  # folders between a package and what is graded in it
@@ -93,6 +94,24 @@ class GradeRun(NamedTuple):
         return printable(f"exit code 1: cannot be determined, and needs manual grading: {names}")
 
 
+def _warn_of_place(submission: "Submission", path: str, warn: Warn) -> None:
+    """Warn of several candidates, and of a folder that is inside a package."""
+    if submission.several:
+        warn(submission.several)
+    if submission.package is not None or submission.is_single:
+        return
+    around = _package_around(path)
+    if around:
+        warn(f"{around}/package.xml exists: this is inside a package; run `grader grade {around}`")
+
+
+def _warn_of_faults(report: "Report", warn: Warn) -> None:
+    """Warn of each check that raised an error."""
+    for result in report.results:
+        if result.traceback:
+            warn(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
+
+
 def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     """Grade a submission. Raises GraderError."""
     threshold = request.threshold  # before grading, to refuse a wrong one at once
@@ -111,18 +130,9 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     reports = frozenset(os.path.realpath(file) for _, file in request.saves if not is_source(file))
     opening = Opening(request.max_size, read_arguments(request.arg or ()), reports=reports)
     submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)
-    if submission.several:
-        warn(submission.several)
-    if (
-        submission.package is None
-        and not submission.is_single
-        and (around := _package_around(request.path))
-    ):
-        warn(f"{around}/package.xml exists: this is inside a package; run `grader grade {around}`")
+    _warn_of_place(submission, request.path, warn)
     report = grade(rubric, submission, tuple(request.part or ()))
-    for result in report.results:
-        if result.traceback:
-            warn(printable(f"{result.criterion.id}: {result.traceback.strip().splitlines()[-1]}"))
+    _warn_of_faults(report, warn)
     fix = None
     if report.has_failures or request.fix is not None or request.hints is not None:
         from grader.app.hints_and_fix import (

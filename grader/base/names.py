@@ -82,26 +82,37 @@ def closest(
 
     if len(name) > MAX_LENGTH:
         return None
-    lower, words, sides = name.lower(), sorted(_words(name)), _sides(name)
+    lower, words = name.lower(), sorted(_words(name))
+    candidates = _candidates(name, known)
+    if len(words) > 1:
+        for candidate, other in candidates.items():
+            if sorted(_words(candidate)) == words:
+                return other
+    matches = get_close_matches(lower, candidates, n=2, cutoff=likeness)
+    if is_clear and len(matches) > 1:
+        first, second = (SequenceMatcher(None, lower, match).ratio() for match in matches)
+        if first - second <= _MARGIN:
+            return None
+    if not matches:  # difflib rates swapped letters in short names too low, such as xzy for xyz
+        letters = sorted(lower)
+        matches = [candidate for candidate in candidates if sorted(candidate) == letters]
+    return candidates[matches[0]] if matches else None
+
+
+def _candidates(name: str, known: Iterable[str]) -> dict[str, str]:
+    """Return the names that a name may stand for, by their lower case; no sibling of it."""
+    lower, sides = name.lower(), _sides(name)
     candidates: dict[str, str] = {}
     for other in sorted(known, reverse=True):
         if other != name and len(other) <= MAX_LENGTH:
             candidates[other.lower()] = other
     if len(candidates) > _MAX_CANDIDATES:  # comparing is slow
-        alike = (it for it in candidates if it[:3] == lower[:3] or it[-3:] == lower[-3:])
-        candidates = {it: candidates[it] for it in islice(alike, _MAX_CANDIDATES)}
-    siblings = [it for it, other in candidates.items() if _are_siblings(sides, _sides(other))]
-    for sibling in siblings:
-        del candidates[sibling]
-    matches = [it for it in candidates if len(words) > 1 and sorted(_words(it)) == words]
-    if not matches:
-        matches = get_close_matches(lower, candidates, n=2, cutoff=likeness)
-        ratios = [SequenceMatcher(None, lower, it).ratio() for it in matches if is_clear]
-        if len(ratios) > 1 and ratios[0] - ratios[1] <= _MARGIN:
-            return None
-    if not matches:  # difflib rates swapped letters in short names too low, such as xzy for xyz
-        matches = [it for it in candidates if sorted(it) == sorted(lower)]
-    return candidates[matches[0]] if matches else None
+        ends = (lower[:3], lower[-3:])
+        alike = (key for key in candidates if key[:3] == ends[0] or key[-3:] == ends[1])
+        candidates = {key: candidates[key] for key in islice(alike, _MAX_CANDIDATES)}
+    return {
+        key: other for key, other in candidates.items() if not _are_siblings(sides, _sides(other))
+    }
 
 
 def _sides(name: str) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ People read a report from the top: what to fix comes first, what is fine last. A
 printable text.
 """
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from itertools import groupby
 from typing import NamedTuple
@@ -115,33 +115,53 @@ def report_sections(report: Report, *, everything: bool = False) -> ReportSectio
     by_status = dict(alike(others, lambda entry: entry.status))
     failed = [known[failure.id] for failure in failures(report)]
     costing = [entry for entry in failed if not (entry.first or entry.result.why_given)]
-    skipped = alike(by_status.get("skipped", ()), lambda one: one.result.because or "")
-    alone = [
-        _skipped_alone(cause, some)
-        for cause, some in skipped
-        if cause not in known or not known[cause].skipped
-    ]
-    open_entries = by_status.get("pending", ())
-    commented = [
-        one for one in others if one.result.comment and one.status not in ("pending", "adjusted")
-    ]
-    marked = [one for one in others if one.result.manual_mark]
-    remarks = zip(_REMARKS, (marked, by_status.get("adjusted", ()), commented), strict=True)
-    carried = alike(
-        (entry.result for entry in failed if entry.result.carried), lambda one: one.carried
-    )
+    present, absent = _split(costing, is_absent)
+    pending, not_found = _split(by_status.get("pending", ()), is_not_found)
+    alone = _skipped_without_cause(by_status.get("skipped", ()), known)
     return ReportSections(
-        mistakes=(*_join_equal(one for one in costing if not is_absent(one.result)), *alone),
-        unbuilt=tuple(
-            sorted((one for one in costing if is_absent(one.result)), key=_building_order)
-        ),
-        carried=tuple(Line("carried", carried_text(cause, some)) for cause, some in carried),
-        missing=tuple(
-            _missing_lines(report, [one.result for one in open_entries if is_not_found(one.result)])
-        ),
-        pending=tuple(_join_equal(one for one in open_entries if not is_not_found(one.result))),
-        remarks=tuple(Section(title, tuple(some)) for title, some in remarks if some),
+        mistakes=(*_join_equal(present), *alone),
+        unbuilt=tuple(sorted(absent, key=_building_order)),
+        carried=tuple(_carried_lines(failed)),
+        missing=tuple(_missing_lines(report, [entry.result for entry in not_found])),
+        pending=tuple(_join_equal(pending)),
+        remarks=tuple(_remarks(others, by_status.get("adjusted", ()))),
     )
+
+
+def _split(
+    some: Iterable[Entry], belongs: Callable[[Result], bool]
+) -> tuple[list[Entry], list[Entry]]:
+    """Return the entries whose results do not have a property, and those whose do."""
+    without, having = list[Entry](), list[Entry]()
+    for entry in some:
+        (having if belongs(entry.result) else without).append(entry)
+    return without, having
+
+
+def _skipped_without_cause(skipped: Iterable[Entry], known: Mapping[str, Entry]) -> Iterator[Entry]:
+    """Yield what was skipped for a criterion under which it is not listed."""
+    for cause, some in alike(skipped, lambda entry: entry.result.because or ""):
+        if cause not in known or not known[cause].skipped:
+            yield _skipped_alone(cause, some)
+
+
+def _carried_lines(failed: Iterable[Entry]) -> Iterator[Line]:
+    """Yield the failures that cost nothing, a line for each cause."""
+    results = [entry.result for entry in failed if entry.result.carried]
+    for cause, some in alike(results, lambda result: result.carried):
+        yield Line("carried", carried_text(cause, some))
+
+
+def _remarks(others: Sequence[Entry], adjusted: Sequence[Entry]) -> Iterator[Section]:
+    """Yield what did not fail and has a mark, an adjustment or a comment."""
+    marked = [entry for entry in others if entry.result.manual_mark]
+    commented = []
+    for entry in others:
+        if entry.result.comment and entry.status not in ("pending", "adjusted"):
+            commented.append(entry)
+    for title, some in zip(_REMARKS, (marked, adjusted, commented), strict=True):
+        if some:
+            yield Section(title, tuple(some))
 
 
 def _skipped_alone(cause: str, some: Sequence[Entry]) -> Entry:

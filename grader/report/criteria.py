@@ -298,39 +298,53 @@ def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iter
 
     A hint is in place of the rubric's feedback; with `everything` there are both.
     """
-    result, criterion, outcome = entry.result, entry.result.criterion, entry.result.outcome
-    hint = result.hint
+    result, outcome = entry.result, entry.result.outcome
     is_asked = outcome.status == "pending" and not result.is_adjusted
     has_failed = entry.status == "failed" and result.manual_mark is None
     is_mistake = (
         has_failed and not result.carried
     )  # else the advice would be to change what is as it should be
-    has_subject = report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")
     yield from _findings(result)
     at = _place_to_change(result) if is_mistake else outcome.location
     if at is not None and has_failed:
         yield at
     if is_asked:
         yield from _answers(result)
-    if hint is not None and is_mistake:
-        yield Line("hint", hint_text(entry, hint))
-        if hint.edits and not entry.first:
-            yield Diff(hint.edits)
-    feedback = criterion.feedback_on(outcome)
-    if feedback and is_mistake and has_subject and (everything or hint is None):
-        yield Line("feedback", _one_line(feedback))
+    if is_mistake:
+        yield from _advice(entry, report, everything=everything)
     if is_failure(result) and not is_asked:
         # The title of a criterion is never stated alone, because it would read as a fact.
-        yield Line("expected", f"Passes when: {sentence(criterion.title)}")
-    for said, others in alike(
-        entry.also, lambda other: " ".join(line.text for line in _findings(other.result))
-    ):
-        names = printable(enumerated([other.id for other in others]))
-        is_same = said == " ".join(line.text for line in _findings(result))
-        yield Line("also", f"The same holds for {names}." if is_same else f"{names}: {said}")
+        yield Line("expected", f"Passes when: {sentence(result.criterion.title)}")
+    yield from _said_of_others(entry)
     if entry.skipped:
         names = enumerated([result.criterion.id for result in entry.skipped])
         yield Line("skipped", printable(f"Skipped because {entry.id} failed: {names}."))
+
+
+def _advice(entry: Entry, report: Report, *, everything: bool) -> Iterator[Block]:
+    """Yield the hint, or the rubric's feedback; with `everything` both."""
+    result, criterion = entry.result, entry.result.criterion
+    hint = result.hint
+    if hint is not None:
+        yield Line("hint", hint_text(entry, hint))
+        if hint.edits and not entry.first:
+            yield Diff(hint.edits)
+    has_subject = report.submission.has_urdf or criterion.check.subject not in ("urdf", "robot")
+    feedback = criterion.feedback_on(result.outcome)
+    if feedback and has_subject and (everything or hint is None):
+        yield Line("feedback", _one_line(feedback))
+
+
+def _said_of_others(entry: Entry) -> Iterator[Line]:
+    """Yield what is said of the criteria that are told with this one."""
+
+    def said_of(other: Entry) -> str:
+        return " ".join(line.text for line in _findings(other.result))
+
+    for said, others in alike(entry.also, said_of):
+        names = printable(enumerated([other.id for other in others]))
+        is_same = said == said_of(entry)
+        yield Line("also", f"The same holds for {names}." if is_same else f"{names}: {said}")
 
 
 def _place_to_change(result: Result) -> Location | None:

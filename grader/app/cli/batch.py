@@ -113,7 +113,6 @@ def batch(
 
       See https://urdf-grader.github.io/urdf-grader/grade-a-class.html for more.
     """
-    options = {**locals()}  # by their names
     if cluster is None and paths:  # a class that is graded may need no workers
         with suppress(OSError):  # it is started again when it is needed
             # it loads what grades a submission, while this process loads what the class needs
@@ -123,5 +122,28 @@ def batch(
     for kind in report_format or ():
         if kind.needs == "identity":
             raise GraderError(f"{kind} is for one repository: use `grader grade` there")
-    usual = os.environ.get(RUBRIC_VARIABLE) or DEFAULT_RUBRIC
-    return grade_class(ClassRequest(**options, usual_rubric=usual), TERMINAL)
+    request = ClassRequest(
+        paths=paths,
+        gradebook=gradebook,
+        rubric=rubric,
+        part=part,
+        answers=answers,
+        arg=arg,
+        jobs=jobs,
+        timeout=timeout,
+        roster=roster,
+        layout=layout,
+        assignment=assignment,
+        report_format=report_format,
+        reports=reports,
+        due=due,
+        force=force,
+        cluster=cluster,
+        max_size=max_size,
+        ignore=ignore,
+        ignore_file=ignore_file,
+        verbose=verbose,
+        output_format=output_format,
+        usual_rubric=os.environ.get(RUBRIC_VARIABLE) or DEFAULT_RUBRIC,
+    )
+    return grade_class(request, TERMINAL)

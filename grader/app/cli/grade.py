@@ -79,7 +79,22 @@ def grade(
 
       grader grade lab6.zip --save markdown=report.md --save junit=report.xml
     """
-    request = GradeRequest(**locals())  # its fields are the options
+    request = GradeRequest(
+        path=path,
+        rubric=rubric,
+        expect_rubric=expect_rubric,
+        part=part,
+        output_format=output_format,
+        save=save,
+        fail_under=fail_under,
+        max_size=max_size,
+        arg=arg,
+        answers=answers,
+        verbose=verbose,
+        hints=hints,
+        fix=fix,
+        watch=watch,
+    )
     try:
         if request.watch:
             from grader.app.commands.watch import watch as grade_on_change

@@ -185,6 +185,15 @@ def _correct_command(line: _CommandLine) -> _Correction | None:
     return _Correction(f"there is no command {word!r}", words)
 
 
+def _is_of_rubrics(line: _CommandLine, word: str, rest: list[str]) -> bool:
+    """Return whether a word is a command on rubrics, and the words after it are rubrics, if any."""
+    if word not in line.root.commands["rubric"].commands:
+        return False
+    if any(other in shipped_rubrics() or other.endswith(".toml") for other in rest):
+        return True
+    return not rest and word not in _COMMANDS
+
+
 def _with_command(line: _CommandLine, word: str, rest: list[str]) -> list[str] | None:
     """Return the words with a command in place of a word that is none."""
     groups, above = line.command.commands, line.words[: line.start]
@@ -198,9 +207,7 @@ def _with_command(line: _CommandLine, word: str, rest: list[str]) -> list[str] |
         return ["grade", word, *rest]
     if word in shipped_rubrics():
         return ["rubric", "show", word, *rest] if above else ["grade", *rest, "--rubric", word]
-    of_rubrics = line.root.commands["rubric"].commands
-    is_of_rubrics = any(other in shipped_rubrics() or other.endswith(".toml") for other in rest)
-    if word in of_rubrics and (is_of_rubrics or not (rest or word in _COMMANDS)):
+    if _is_of_rubrics(line, word, rest):
         return ["rubric", word, *rest]
     lower = word.lower()
     meant = lower if lower in groups else _COMMANDS.get(lower) or closest(lower, groups)

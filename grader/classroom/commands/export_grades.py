@@ -239,13 +239,7 @@ def _refuse_options(request: ExportRequest) -> None:
             raise GraderError(
                 f"export {request.target} takes no {option}: it is for {enumerated(targets)}"
             )
-    written = ".csv or .xlsx" if request.target == "csv" else "no spreadsheet"
-    ending = output.suffix.lower() if output is not None and request.target != "html" else ""
-    if output is not None and ending in _SPREADSHEETS and ending not in written:
-        raise GraderError(
-            f"cannot write {printable_path(output)}: export {request.target} writes {written}; "
-            "choose another file"
-        )
+    _refuse_spreadsheet(request)
     if request.target in FORMS and into is None and (output or not feedback):
         raise GraderError(
             f"export {request.target} fills in a file that the LMS exported: give it with --into"
@@ -256,9 +250,26 @@ def _refuse_options(request: ExportRequest) -> None:
             why = "--into reads it, and rows without a grade would be lost"
             raise GraderError(f"cannot write {printable_path(into)}: {why}; choose another file")
     if feedback is not None:
-        is_no_zip = feedback.exists() and not is_zipfile(feedback)
-        if is_no_zip or feedback.is_symlink():
-            raise InputError(
-                f"cannot write {printable_path(feedback)}: it is a symlink, or exists and is no "
-                "zip; name another file"
-            )
+        _refuse_feedback(feedback)
+
+
+def _refuse_spreadsheet(request: ExportRequest) -> None:
+    """Raise GraderError for a file whose ending is that of a spreadsheet that is not written."""
+    output = request.output
+    written = ".csv or .xlsx" if request.target == "csv" else "no spreadsheet"
+    ending = output.suffix.lower() if output is not None and request.target != "html" else ""
+    if output is not None and ending in _SPREADSHEETS and ending not in written:
+        raise GraderError(
+            f"cannot write {printable_path(output)}: export {request.target} writes {written}; "
+            "choose another file"
+        )
+
+
+def _refuse_feedback(feedback: Path) -> None:
+    """Raise InputError for a file of feedback that must not be replaced."""
+    is_no_zip = feedback.exists() and not is_zipfile(feedback)
+    if is_no_zip or feedback.is_symlink():
+        raise InputError(
+            f"cannot write {printable_path(feedback)}: it is a symlink, or exists and is no "
+            "zip; name another file"
+        )

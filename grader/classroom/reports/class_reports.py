@@ -182,6 +182,21 @@ def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
         raise InputError(f"{cannot}: {why}")
 
 
+def _keep(
+    kept: KeptReports,
+    done: Mapping[str, _Done],
+    paths: Mapping[str, Sequence[Path]],
+    shown: Mapping[str, str],
+) -> None:
+    """Keep what is known of the reports that were written, by their paths."""
+    for key, one in done.items():
+        for path in paths[key]:
+            kept.written.pop(str(path), None)
+            if one.is_final:
+                data = sha256_of(path.read_bytes())
+                kept.written[str(path)] = WrittenReport(shown[key], data, one.hints, one.still)
+
+
 def write_reports(
     run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS
 ) -> None:
@@ -209,16 +224,12 @@ def write_reports(
         if not all(kept.is_current(path, shown[key]) for path in paths[key]):
             changed[key] = files[key]
     done = _render_reports(run, changed, terminal, jobs, timeout) if changed else {}
-    new = dict[str, Mapping[str, Any]]()
-    for key, one in done.items():
-        new |= one.new_hints
-        for path in paths[key]:
-            kept.written.pop(str(path), None)
-            if one.is_final:
-                data = sha256_of(path.read_bytes())
-                kept.written[str(path)] = WrittenReport(shown[key], data, one.hints, one.still)
     if done:
-        kept.save(new, book.settings.roots(book.folder))
+        _keep(kept, done, paths, shown)
+        kept.save(
+            {name: hint for one in done.values() for name, hint in one.new_hints.items()},
+            book.settings.roots(book.folder),
+        )
     lost = {key: one.why_lost for key, one in done.items() if one.why_lost}
     if Format.HTML in run.formats:
         below = f"{names.REPORTS}/" if is_in_gradebook else ""

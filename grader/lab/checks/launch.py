@@ -111,24 +111,20 @@ def node_runs(
         calls: Services and actions that they call.
         built: Whether it must find the files that it reads; if not, only what else stops it counts.
     """
-    found = _launch_of(package, launch)
-    if found.faults:
-        raise _fault_that_stops(package, launch, found)
-    if shadow := package.shadows_ros:
-        message = (
-            f"the folder {shadow} is installed as a Python package, in place of that of ROS 2: "
-            "rename it"
-        )
-        return failed(message, Location(package.path(CMAKE if package.is_cmake else SETUP), 1, 1))
+    evaluated = _launch_of(package, launch)
+    if evaluated.faults:
+        raise _fault_that_stops(package, launch, evaluated)
+    if package.shadows_ros:
+        return _fail_shadowing(package)
     if (remap or arguments) and not nodes:
         raise RubricError(("node_runs looks for remap and arguments in nodes: name one",))
-    places = find_places(package, found, "read", "urdf", "include", built=built)
-    choices = [_names_in(found, node.split(" or ")) for node in nodes or ()]
-    missing = _missing_nodes(found, choices)
-    if missing and not _may_start(found, missing):
-        return _fail_missing(found, missing, nodes or ())
+    places = find_places(package, evaluated, "read", "urdf", "include", built=built)
+    choices = [_names_in(evaluated, node.split(" or ")) for node in nodes or ()]
+    missing = _missing_nodes(evaluated, choices)
+    if missing and not _may_start(evaluated, missing):
+        return _fail_missing(evaluated, missing, nodes or ())
     wanted = Wanted(
-        absent=_names_in(found, not_ or ()),
+        absent=_names_in(evaluated, not_ or ()),
         remap=remap,
         arguments=arguments,
         includes=includes,
@@ -137,18 +133,20 @@ def node_runs(
         serves=serves,
         calls=calls,
     )
-    faults = find_faults(submission, found, choices, wanted) if any(wanted) else []
-    if wrong := next((it for it in faults if it.is_certain), None):
+    faults = find_faults(submission, evaluated, choices, wanted) if any(wanted) else []
+    certain = [fault for fault in faults if fault.is_certain]
+    if certain:
+        wrong = certain[0]
         return failed(wrong.message, wrong.at, detail=wrong.detail, cause=wrong.cause)
-    if fault := _faulty_program(package, found, choices):
+    if fault := _faulty_program(package, evaluated, choices):
         raise fault
     stopped = _stop_at_files(package, places, built=built)
     if stopped is not None:
         return stopped
-    if built or not any(it.is_in_misnamed(package) for it in places):
-        _check_starts(found)
-    _check_decided(found, missing, faults, places)
-    started = sorted({node.name for node in found.nodes if node.when})
+    if built or not any(place.is_in_misnamed(package) for place in places):
+        _check_starts(evaluated)
+    _check_decided(evaluated, missing, faults, places)
+    started = sorted({node.name for node in evaluated.nodes if node.when})
     return judged(
         True, f"the launch file starts {', '.join(started)}", tuple(started), tuple(nodes or ())
     )
@@ -243,6 +241,14 @@ def launch_finds_files(
     return _look_for_files(package, name, built=built, started=started, needs_robot=True)
 
 
+def _fail_shadowing(package: Package) -> Outcome:
+    message = (
+        f"the folder {package.shadows_ros} is installed as a Python package, in place of that of "
+        "ROS 2: rename it"
+    )
+    return failed(message, Location(package.path(CMAKE if package.is_cmake else SETUP), 1, 1))
+
+
 def _look_for_files(
     package: Package, name: str, *, built: bool, started: bool, needs_robot: bool
 ) -> Outcome:
@@ -255,16 +261,32 @@ def _look_for_files(
     launch = _launch_of(package, name)
     places = find_places(package, launch, "urdf", "rviz", "include", "read", built=built)
     if not (needs_robot or package.rviz_files):  # then RViz may start without a file
-        places = [it for it in places if it.file.purpose != "rviz"]
+        places = [place for place in places if place.file.purpose != "rviz"]
     if built:
-        places = [it.with_parts(package) for it in places]
-    wrong = [it for it in places if it.state == "wrong"]
+        places = [place.with_parts(package) for place in places]
+    wrong = _in_state(places, "wrong")
     if wrong:
         return _fail_places(package, wrong)
     if not started:
         return passed("the launch file looks for no file in a wrong place")
-    unknown = next((it for it in places if it.state == "unknown"), None)
-    names_none = not any(it.is_of_robot for it in places)
+    return _judge_files(package, launch, name, places, needs_robot=needs_robot)
+
+
+def _in_state(places: Sequence[FilePlace], state: str) -> list[FilePlace]:
+    return [place for place in places if place.state == state]
+
+
+def _judge_files(
+    package: Package,
+    launch: "Launch",
+    name: str,
+    places: Sequence[FilePlace],
+    *,
+    needs_robot: bool,
+) -> Outcome:
+    """Return whether a launch file that starts finds its files; none is in a wrong place."""
+    unknown = next(iter(_in_state(places, "unknown")), None)
+    names_none = not any(place.is_of_robot for place in places)
     if launch.faults and (unknown or names_none):
         raise _fault_that_stops(package, name, launch)
     if names_none and needs_robot:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from grader.lab.submission.submission import Submission
     from grader.ros.launch.launch_model import Launch, StartedNode
     from grader.ros.workspace.model.workspace import Workspace
+    from grader.ros.workspace.rules.names import Mismatch
 
 _VERBS: Mapping[str, str] = {
     "publisher": "publishes",
@@ -204,6 +205,16 @@ class _NodeTopic(NamedTuple):
     node: "StartedNode"
 
 
+def _stopping_mistakes(mismatches: Sequence["Mismatch"]) -> Mapping[str, "Mismatch"]:
+    """Return the first mistake of each file for which its node certainly ends."""
+    stopping: dict[str, Mismatch] = {}
+    for mismatch in mismatches:
+        is_of_code = mismatch.family in ("code", "interfaces")
+        if is_of_code and mismatch.is_certain and mismatch.rule.name not in _HARMLESS:
+            stopping.setdefault(mismatch.location.path, mismatch)
+    return stopping
+
+
 class _NodeTopics:
     """The topics, services and actions of the nodes of a workspace that a launch file starts."""
 
@@ -214,38 +225,44 @@ class _NodeTopics:
         self._topics: list[_NodeTopic] = []
         self._is_open = bool(launch.unknown)
         self._unread: list[Fault] = []  # of programs that cannot run, and so open nothing
-        stopping = {
-            it.location.path: it
-            for it in reversed(read_agreement(workspace).mismatches)
-            if it.family in ("code", "interfaces")
-            and it.is_certain
-            and it.rule.name not in _HARMLESS
-        }
+        stopping = _stopping_mistakes(read_agreement(workspace).mismatches)
         for node in launch.nodes:
-            package, own_node = workspace.package_of(node), workspace.code.own_node(node)
-            if package is None:
+            package = workspace.package_of(node)
+            if package is None or not self._may_run(node, workspace, package.name, stopping):
                 continue
-            own = workspace.code.by_package.get(package.name)
-            programs = own.programs if own is not None else ()
-            started = [it.syntax for it in programs if it.name == node.executable]
-            syntax = next(filter(None, started), None)
-            doubts = list(own.doubts) if own is not None else []
-            wrong = stopping.get(own_node.location.path) if own_node is not None else None
-            if syntax is not None:
-                message = f"Python cannot read the file: {syntax.message}"
-                self._unread.append(Fault(message, syntax.location))
-                doubts = [it for it in doubts if it.location.path != syntax.location.path]
-            elif own_node is None or own_node.doubts:
-                self._is_open = True
-            elif wrong is not None:
-                self._unread.append(Fault(f"a node cannot run: {wrong.message}", wrong.location))
-                own_node = None
-            self._is_open = self._is_open or bool(doubts)
-            for found in opened_by(workspace, node) if own_node is not None else ():
-                self._is_open = self._is_open or not found.is_known
-                name = found.name or "" if found.is_known else ""
-                verb, opened = _VERBS[found.endpoint.kind], found.endpoint
+            for end in opened_by(workspace, node):
+                self._is_open = self._is_open or not end.is_known
+                name = end.name or "" if end.is_known else ""
+                verb, opened = _VERBS[end.endpoint.kind], end.endpoint
                 self._topics.append(_NodeTopic(name, verb, opened.type, opened.location, node))
+
+    def _may_run(
+        self,
+        node: "StartedNode",
+        workspace: "Workspace",
+        package: str,
+        stopping: Mapping[str, "Mismatch"],
+    ) -> bool:
+        """Return whether a node is read and may run; note why not, and what is not known of it."""
+        code = workspace.code.by_package.get(package)
+        doubts = list(code.doubts) if code is not None else []
+        programs = code.programs if code is not None else ()
+        started = (program.syntax for program in programs if program.name == node.executable)
+        syntax = next(filter(None, started), None)
+        own_node = workspace.code.own_node(node)
+        mistake = stopping.get(own_node.location.path) if own_node is not None else None
+        runs = own_node is not None
+        if syntax is not None:
+            message = f"Python cannot read the file: {syntax.message}"
+            self._unread.append(Fault(message, syntax.location))
+            doubts = [doubt for doubt in doubts if doubt.location.path != syntax.location.path]
+        elif own_node is None or own_node.doubts:
+            self._is_open = True
+        elif mistake is not None:
+            self._unread.append(Fault(f"a node cannot run: {mistake.message}", mistake.location))
+            runs = False
+        self._is_open = self._is_open or bool(doubts)
+        return runs
 
     def fault_of(self, verb: str, name: str, message_type: str) -> Fault | None:
         """Return that no node publishes, subscribes to, serves or calls a name with a type."""

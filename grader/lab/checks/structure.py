@@ -58,11 +58,10 @@ def held_by(
     moving = [joint for joint in chain if joint.type != "fixed"]
     wanted = [] if joint_type == "fixed" else [joint_type]
     if [joint.type for joint in moving] == wanted:
-        found = passed(
-            f"the {joint_type} joint {(moving or [joint])[0].name!r} connects {link!r} to "
-            f"{parent!r}"
-        )
-        return (_driven_or_blocked(moving[0], link) if free and moving else None) or found
+        blocked = _driven_or_blocked(moving[0], link) if free and moving else None
+        connecting = (moving or [joint])[0].name
+        message = f"the {joint_type} joint {connecting!r} connects {link!r} to {parent!r}"
+        return blocked or passed(message)
     if not moving:
         message = f"{link!r} cannot move: its joint is fixed; it should be {joint_type}"
         raise MissingElement(
@@ -70,16 +69,8 @@ def held_by(
         )
     unknown = [joint for joint in moving if joint.type not in JOINT_TYPES]
     if unknown:
-        wrong = unknown[0]
-        kind = f"the type {wrong.type!r}, which does not exist" if wrong.type else "no type"
-        message = f"a joint between {parent!r} and {link!r} has {kind}"
-        detail, at = (
-            f"{did_you_mean(wrong.type, JOINT_TYPES)} (joint {wrong.name!r})",
-            place(wrong.location, "type"),
-        )
-        if not wanted or len(unknown) < len(moving):
-            return failed(message, at, detail=detail)
-        raise MissingElement("moving joint", link, message=message, detail=detail, location=at)
+        may_be_wanted = bool(wanted) and len(unknown) == len(moving)
+        return _fail_unknown_type(unknown[0], link, parent, may_be_wanted=may_be_wanted)
     if len(moving) > 1:
         names = enumerated([repr(joint.name) for joint in moving])
         expected = "only fixed joints" if not wanted else f"one {joint_type} joint"
@@ -218,6 +209,19 @@ def counts(
             faults.append(f"there {verb} {text}; there should be {number}")
     message = "; ".join(faults) if faults else f"the tree has {enumerated(texts) or 'links'}"
     return judged(not faults, message, actual, tuple(expected.values()))
+
+
+def _fail_unknown_type(wrong: Joint, link: str, parent: str, *, may_be_wanted: bool) -> Outcome:
+    """Fail for a joint whose type does not exist; raise MissingElement where it may be the one that
+    is asked for.
+    """
+    kind = f"the type {wrong.type!r}, which does not exist" if wrong.type else "no type"
+    message = f"a joint between {parent!r} and {link!r} has {kind}"
+    detail = f"{did_you_mean(wrong.type, JOINT_TYPES)} (joint {wrong.name!r})"
+    at = place(wrong.location, "type")
+    if not may_be_wanted:
+        return failed(message, at, detail=detail)
+    raise MissingElement("moving joint", link, message=message, detail=detail, location=at)
 
 
 def _joint_above_root(

@@ -68,24 +68,35 @@ def read_manifest(data: bytes, path: str) -> Manifest:
             kinds.BAD_MANIFEST, f"the root of package.xml is <{root.tag}>, not <package>", start
         )
         return Manifest(source, None, "", (problem,), start, start)
-    name = next((it for it in root.iterchildren("*") if tag_of(it) == "name"), None)
-    build_types, exports = [], _exports(root)
-    for element in exports:
-        is_used = evaluate_condition(element.get("condition")) is not False
-        if tag_of(element) == "build_type" and is_used:
-            build_types.append(element)
-    exported = [it for it in exports if tag_of(it).endswith("depend")][:_MAX_MISPLACED]
-    dependencies, groups = set[str](), set[str]()
-    for element in root.iterchildren("*"):
-        if tag_of(element) == "member_of_group":
-            groups.add(text_of(element))
-        if tag_of(element).endswith("depend"):
-            dependencies.add(text_of(element))
     problems = [*_problems(file)]
     try:
         data.decode()
     except UnicodeDecodeError:
         problems.append(_refused("the file is not UTF-8 text; save it as UTF-8", start))
+    return _manifest_in(file, source, problems)
+
+
+def _is_used_build_type(element: Element) -> bool:
+    is_used = evaluate_condition(element.get("condition")) is not False
+    return tag_of(element) == "build_type" and is_used
+
+
+def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> Manifest:
+    """Return what a package.xml says that can be read."""
+    root = file.root
+    exports = _exports(root)
+    build_types = [element for element in exports if _is_used_build_type(element)]
+    exported = [element for element in exports if tag_of(element).endswith("depend")]
+    name: Element | None = None
+    dependencies, groups = set[str](), set[str]()
+    for element in reversed([*root.iterchildren("*")]):
+        tag = tag_of(element)
+        if tag == "name":
+            name = element
+        elif tag == "member_of_group":
+            groups.add(text_of(element))
+        elif tag.endswith("depend"):
+            dependencies.add(text_of(element))
     return Manifest(
         source,
         (text_of(name) or None) if name is not None else None,
@@ -95,7 +106,9 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         file.location(build_types[0] if build_types else root),
         dependencies=frozenset(dependencies),
         groups=frozenset(groups),
-        misplaced={text_of(element): file.location(element) for element in exported},
+        misplaced={
+            text_of(element): file.location(element) for element in exported[:_MAX_MISPLACED]
+        },
     )
 
 

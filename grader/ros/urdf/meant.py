@@ -211,28 +211,35 @@ def _exchanged_ends(root: Element, robot: Robot) -> Iterator[Word]:
     """Yield the parent and child of the one joint that are exchanged, so that one link has two
     parents.
     """
-    parents = [(joint.parent, joint.child) for joint in robot.joints]
-    counts = Counter(child for _, child in parents)
+    root_with = _roots_with_exchanged_ends(robot)
+    usual = [index for index, name in root_with.items() if _ROOT.match(name)]
+    only = usual if len(root_with) > 1 else [*root_with]
+    elements = [*root.iterchildren("joint")]
+    if len(only) != 1 or len(elements) != len(robot.joints):
+        return
+    joint, element = robot.joints[only[0]], elements[only[0]]
+    for role, link in (("parent", joint.child), ("child", joint.parent)):
+        end = element.find(role)
+        if end is not None and end.get("link"):
+            yield _word_with_value(end, "link", link, f"the {role}")
+
+
+def _roots_with_exchanged_ends(robot: Robot) -> dict[int, str]:
+    """Return the only root that the robot has if the ends of a joint are exchanged, by the number
+    of the joint: of those above the one link that has several parents.
+    """
+    counts = Counter(joint.child for joint in robot.joints)
     doubled = [child for child, count in counts.items() if count > 1]
     if len(doubled) != 1 or counts[doubled[0]] > _MAX_ROUNDS:
-        return
-    found: dict[int, str] = {}  # the root that the robot has if a joint is exchanged
-    for index, (parent, child) in enumerate(parents):
-        if child == doubled[0] and parent not in counts:
-            others = {*counts, parent} - ({child} if counts[child] == 1 else set())
+        return {}
+    root_with: dict[int, str] = {}
+    for index, joint in enumerate(robot.joints):
+        if joint.child == doubled[0] and joint.parent not in counts:
+            others = {*counts, joint.parent}
             roots = [link.name for link in robot.links if link.name not in others]
             if len(roots) == 1:
-                found[index] = roots[0]
-    usual = [index for index, name in found.items() if _ROOT.match(name)]
-    only = usual if len(found) > 1 else [*found]
-    elements = [*root.iterchildren("joint")]
-    if len(only) == 1 and len(elements) == len(parents):
-        parent, child = parents[only[0]]
-        ends = {role: elements[only[0]].find(role) for role in ("parent", "child")}
-        for role, link in (("parent", child), ("child", parent)):
-            end = ends[role]
-            if end is not None and end.get("link"):
-                yield _word_with_value(end, "link", link, f"the {role}")
+                root_with[index] = roots[0]
+    return root_with
 
 
 def _pasted_children(root: Element, robot: Robot) -> Iterator[Word]:
