@@ -21,7 +21,8 @@ from grader.lab.submission.submission import Lab, Submission
 from grader.report.examples import example_blocks
 from grader.report.explanations import explanation
 from grader.ros.known.releases import Release
-from grader.ros.package.found_problems import package_problems
+from grader.ros.package.finding import read_packages
+from grader.ros.package.found_problems import build_problems, package_problems
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Absent, Read, read_as_ros
 from grader.ros.python import budget
@@ -223,6 +224,12 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(
             found += urdf.problems
             found += mesh_problems(urdf, submission.packages, submission.tree)
         found += package_problems(submission.package) if submission.package else []
+        if code == "PKG023":  # where no release is stated
+            found = [
+                it
+                for package in read_packages(submission.tree, "")
+                for it in build_problems(package)
+            ]
         if code in ("PKG018", "PKG022"):
             found = listed_problems(submission.workspace)
         if code.startswith("REF"):

@@ -18,10 +18,17 @@ from grader.lab.rubric.criterion import Criterion, worth
 from grader.lab.rubric.rubric import Rubric, shipped_rubrics
 from grader.report.criteria import model_lines
 from grader.report.examples import example_blocks, explanation_of
-from grader.ros.api import EVERY_KIND, RULES, Rule, parameter_explanation
+from grader.ros.api import (
+    EVERY_KIND,
+    RULES,
+    Rule,
+    parameter_explanation,
+    releases_explanation,
+)
 
 _WIDTH = 80
 _FOR_INSTRUCTORS = "For instructors: how it is checked\n----------------------------------"
+_RELEASES = "releases"  # explains which releases of ROS 2 are known
 _MAX_SIMILAR = 6  # criteria that are named
 CAUSES_OF_CHECK = "Causes of a failure, besides `wrong`, `missing` and `slip`, for `feedback`"
 EFFECTS = {
@@ -89,9 +96,14 @@ def checks_text() -> str:
     return "\n".join(listed)
 
 
+def _fact_text(name: str) -> str:
+    """Return what is known of ROS 2 by a name; empty for another one."""
+    return releases_explanation() if name == _RELEASES else parameter_explanation(name)
+
+
 def explanation(name: str, rubric: Rubric) -> str:
-    """Return the explanation of a code, a criterion, a check, or a parameter of a well-known node.
-    Raises InputError for another name.
+    """Return the explanation of a code, a criterion, a check, a parameter of a well-known node or
+    the known releases. Raises InputError for another name.
     """
     kind = next((kind for kind in EVERY_KIND if kind.code == name.upper()), None)
     if kind is not None:
@@ -116,9 +128,9 @@ def explanation(name: str, rubric: Rubric) -> str:
         return _paragraphs(
             [*texts, _arguments(check).rstrip("\n"), _causes(check), *_examples(check.name)]
         )
-    parameter = parameter_explanation(name)
-    if parameter:
-        return parameter
+    fact = _fact_text(name)
+    if fact:
+        return fact
     known = (
         [kind.code for kind in EVERY_KIND]
         + [*RULES]

@@ -29,6 +29,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from grader.ros.known.known_tables import releases_explanation as releases_explanation
     from grader.ros.known.parameter_texts import parameter_explanation as parameter_explanation
     from grader.ros.known.releases import Release as Release
     from grader.ros.known.releases import StatedReleases as StatedReleases
@@ -75,6 +76,7 @@ if TYPE_CHECKING:
     from grader.ros.xml.xml_problems import RECOVERED as RECOVERED
 else:
     _NAMES = {
+        "known.known_tables": "releases_explanation",
         "known.parameter_texts": "parameter_explanation",
         "known.releases": "Release StatedReleases",
         "package.mesh_loading": "MeshLoader",

@@ -37,7 +37,7 @@ def offer_explained(context: typer.Context, incomplete: str) -> list[str]:
     checks = re.findall(_NAME, _text_of(examples / "checks.toml"), re.MULTILINE)
     checks.remove("frames")  # what the examples have in common
     criteria = _ids_in(_rubric_file(context), "criterion")
-    return _starting(incomplete, [*criteria, *offer_codes(""), *checks])
+    return _starting(incomplete, [*criteria, *offer_codes(""), *checks, "releases"])
 
 
 def offer_codes(incomplete: str) -> list[str]:

@@ -10,7 +10,7 @@ from grader.app.cli.completion import offer_explained
 from grader.app.cli.options import RubricOption
 from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
 
-_NAME = "For example URDF051, frame_at, lidar-frame or ekf_node.frequency."
+_NAME = "For example URDF051, frame_at, lidar-frame, ekf_node.frequency or releases."
 
 
 def explain(
@@ -22,11 +22,13 @@ def explain(
     ],
     rubric: RubricOption = DEFAULT_RUBRIC,
 ) -> str:
-    """Explain a problem code, a check, a criterion or a parameter.
+    """Explain a problem code, a check, a criterion or a parameter, or which releases are known.
 
     Examples:
 
       grader explain lidar-frame
+
+      grader explain releases
 
       grader explain URDF051
 

@@ -3,12 +3,13 @@ CMakeLists.txt.
 """
 
 import posixpath
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 from grader.base.names import closest
 from grader.base.source import Location, Source
 from grader.ros.installation.file_search import EmptyGlob
+from grader.ros.known.releases import Release, is_before
 from grader.ros.python.evaluation import PythonError
 from grader.ros.python.parse import START, Position, SyntaxFault, location_in
 from grader.ros.python.values import Unknown, Value
@@ -39,6 +40,20 @@ class InstallError(NamedTuple):
         if self.path:
             return f"{self.by} lists {self.path!r}, but {self.reason}"
         return self.reason
+
+
+class LaterStop(NamedTuple):
+    """What stops a build from a release on."""
+
+    reason: str  # as part of a sentence
+    since: Release
+    at: Position
+    instead: str  # what is right in all releases
+
+    @property
+    def note(self) -> str:
+        """What is said where no release is stated."""
+        return f"from {self.since.title()} on, {self.reason}: {self.instead}"
 
 
 class IgnoredArgument(NamedTuple):
@@ -136,6 +151,20 @@ class Installation(NamedTuple):
     packages: tuple[str, ...] = ()  # the Python packages, as far as they are known
     interfaces: tuple[GeneratedInterfaces, ...] = ()  # one for each call in CMakeLists.txt
     targets: tuple[CmakeTarget, ...] = ()  # of CMake
+    later_stops: tuple[LaterStop, ...] = ()  # in releases that may not be meant
+
+    def in_releases(self, releases: Collection[Release]) -> "Installation":
+        """Return it as it is built for some releases: what stops a build in all of them stops it;
+        what does in one, or in no stated one, may stop it.
+        """
+        stops, left = [*self.stops], []
+        for stop in self.later_stops:
+            if releases and not any(is_before(release, stop.since) for release in releases):
+                text = f"{stop.reason} from {stop.since.title()} on"
+                stops.append(InstallError("", text, stop.at, f": {stop.instead}"))
+            elif not releases:
+                left.append(stop)
+        return self._replace(stops=tuple(stops), later_stops=tuple(left))
 
     @property
     def console_scripts(self) -> Value:

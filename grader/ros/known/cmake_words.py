@@ -2,9 +2,17 @@
 
 from collections.abc import Mapping
 from functools import cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from grader.ros.known.typed_rows import read_file
+from grader.ros.known.releases import Release
+from grader.ros.known.typed_rows import read_file, read_row
+
+
+class GoneCommand(NamedTuple):
+    """A command that later releases do not have."""
+
+    until: Release
+    instead: str
 
 
 class CMakeWords(NamedTuple):
@@ -25,6 +33,13 @@ class CMakeWords(NamedTuple):
     outputs: Mapping[str, int]  # where harmless commands name their result
     variables: Mapping[str, str]
     install_dirs: Mapping[str, str]
+    gone: Mapping[str, Any]  # what later releases do not have, by command
+    oldest_minimum: Mapping[str, tuple[int, ...]]
+
+    def gone_command(self, name: str) -> GoneCommand | None:
+        """Return since when there is no command of a name; None for one that all releases have."""
+        row = self.gone.get(name)
+        return read_row(GoneCommand, row) if row is not None else None
 
 
 @cache

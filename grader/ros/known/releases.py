@@ -12,7 +12,16 @@ from grader.base.text import MAX_NAMED, enumerated
 Release = Literal["foxy", "galactic", "humble", "iron", "jazzy", "kilted", "lyrical", "rolling"]
 RELEASES: tuple[Release, ...] = get_args(Release)
 NameKind = Literal[
-    "plugin", "controller", "package", "program", "launch file", "parameter", "topic", "argument"
+    "plugin",
+    "controller",
+    "package",
+    "program",
+    "program argument",
+    "launch file",
+    "parameter",
+    "topic",
+    "argument",
+    "class",
 ]
 _FILE = Path(__file__).with_name("releases.toml")
 
@@ -111,6 +120,12 @@ def other_name(
         return _OtherName(f"{here!r} is {there!r} from {first.title()} on", there)
     last = RELEASES[min(own.first - 1, meant.last)]
     return _OtherName(f"{here!r} is {there!r} until {last.title()}", there)
+
+
+def names_without(kind: NameKind, releases: Collection[Release]) -> Sequence[str]:
+    """Return the names of a kind that none of some releases has."""
+    names = [release_name.name for row in _rows(kind) for release_name in row]
+    return [name for name in names if releases and not {*releases_with(kind, name)} & {*releases}]
 
 
 def is_before(release: Release, other: Release) -> bool:

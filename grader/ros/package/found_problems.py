@@ -2,7 +2,7 @@
 locations.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from fnmatch import fnmatchcase
 
 from grader.base.names import did_you_mean
@@ -12,6 +12,7 @@ from grader.base.text import enumerated
 from grader.ros.installation import package_problems as kinds
 from grader.ros.installation.installation import Installation
 from grader.ros.installation.places import is_of_one_machine, one_machine_only
+from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import MANIFEST, RESOURCE_INDEX, Package
 
@@ -31,13 +32,14 @@ def package_problems(package: Package) -> tuple[Problem, ...]:
     return tuple(found)
 
 
-def build_problems(package: Package) -> list[Problem]:
-    """Return the problems of package.xml, and of setup.py or CMakeLists.txt."""
+def build_problems(package: Package, releases: Collection[Release] = ()) -> list[Problem]:
+    """Return the problems of package.xml, and of setup.py or CMakeLists.txt, in some releases."""
     found: list[Problem] = []
     if package.manifest is not None:
         found += sorted_problems(package.manifest.problems)
     if package.installation is not None:
-        found += sorted_problems(_setup_problems(package, package.installation))
+        setup = package.installation.in_releases(releases)
+        found += sorted_problems(_setup_problems(package, setup))
     return found
 
 
@@ -65,6 +67,8 @@ def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
         yield Problem(kinds.SETUP_NAME, error.message, setup.location(error.at))
     for stop in setup.stops:
         yield Problem(kinds.SETUP_STOPS, stop.message + stop.hint, setup.location(stop.at))
+    for later in setup.later_stops:
+        yield Problem(kinds.OLDER_ONLY, later.note, setup.location(later.at))
     for empty in setup.empty:
         message = (
             f"the pattern {empty.pattern!r} in {setup.file} matches no "

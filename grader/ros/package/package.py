@@ -256,7 +256,8 @@ class Package:
 
             declared = (self.manifest.name if self.manifest is not None else None) or ""
             text = data.decode("utf-8", "replace")
-            return read_cmake(text, path, self.tree, declared, self.budget)
+            setup = read_cmake(text, path, self.tree, declared, self.budget)
+            return setup.in_releases(self.releases)
         from grader.ros.installation.setup_py import read_setup
 
         return read_setup(data, path, self.tree, self.budget)

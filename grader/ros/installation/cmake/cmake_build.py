@@ -20,9 +20,11 @@ from grader.ros.installation.installation import (
     Installation,
     InstalledFile,
     InstallError,
+    LaterStop,
 )
 from grader.ros.installation.places import PREFIX
 from grader.ros.known.cmake_words import cmake_words
+from grader.ros.known.releases import Release
 from grader.ros.python.parse import START, Position
 from grader.ros.python.values import Undetermined, Unknown
 
@@ -45,6 +47,7 @@ class Build:
         self.modules: list[str] = []  # Python packages
         self.interfaces: list[GeneratedInterfaces] = []
         self.stops: list[InstallError] = []
+        self.later_stops: list[LaterStop] = []
         self.unknown: list[Unknown] = []
         self.doubts: list[Unknown] = []
         self.last = START
@@ -67,6 +70,7 @@ class Build:
             programs=tuple(sorted(self.programs)),
             scripts=tuple(sorted(self.scripts)),
             stops=tuple(self.stops),
+            later_stops=tuple({stop.reason: stop for stop in reversed(self.later_stops)}.values()),
             empty=tuple(self.listing.empty),
             unknown=tuple(dict.fromkeys([*self.doubts, *self.unknown])),
             doubt=self.doubts[0] if self.doubts else None,
@@ -90,6 +94,11 @@ class Build:
             self.doubts.append(self.values.uncertain)
         else:
             self.stops.append(InstallError(path, reason, at, hint, by="install()"))
+
+    def stop_later(self, reason: str, since: Release, at: Position, instead: str) -> None:
+        """Note an error that stops the build from a release on."""
+        if self.values.uncertain is None:
+            self.later_stops.append(LaterStop(reason, since, at, instead))
 
     def _guess(self, name: str, known: Collection[str]) -> str:
         """Return which name may be meant, for the end of a message; of the first missing names

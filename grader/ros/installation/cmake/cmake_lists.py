@@ -4,6 +4,7 @@ What CMake and ament_cmake certainly do is known; modules, and commands that are
 undecided what they could touch.
 """
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 
@@ -22,11 +23,13 @@ from grader.ros.installation.cmake.language import BLOCK_WORDS, CMakeFault, Comm
 from grader.ros.installation.file_search import PackageListing
 from grader.ros.installation.installation import Installation
 from grader.ros.known.cmake_words import cmake_words
+from grader.ros.known.releases import RELEASES
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.parse import START, Position, SyntaxFault, location_in
 from grader.ros.python.values import Unknown
 
 _MAX_DEPTH = 60  # blocks and calls in each other
+_VERSION = re.compile(r"\d{1,4}(\.\d{1,4}){0,3}")
 
 
 class _Returns(Exception):
@@ -56,6 +59,19 @@ def read_cmake(
     return build.result(source)
 
 
+def _newest_minimum(texts: Sequence[Text]) -> tuple[int, ...] | None:
+    """Return the version for which the policies of CMake are set: of `VERSION 3.1...3.20` the
+    last; None where it is not known.
+    """
+    words = [text for text in texts if isinstance(text, str)]
+    if len(words) < len(texts) or words[:1] != ["VERSION"] or len(words) < 2:
+        return None
+    newest = words[1].rpartition("...")[2]
+    if not _VERSION.fullmatch(newest):
+        return None
+    return tuple(map(int, newest.split(".")))
+
+
 class _Evaluation:
     """Runs the commands of a file."""
 
@@ -83,6 +99,7 @@ class _Evaluation:
             self.values.budget.charge(1 + len(command.arguments))
             self.build.last = command.at
             self._require_provider(command)
+            self._note_release(command)
             if command.name in _COMMANDS:
                 _COMMANDS[command.name](self, command)
             elif command.name in BUILD_COMMANDS:
@@ -114,6 +131,23 @@ class _Evaluation:
             hint=f"; write find_package({needed} REQUIRED)",
         )
         self.values.packages.add(needed)
+
+    def _note_release(self, command: Command) -> None:
+        """Note a command that later releases do not have, or a version that their CMake refuses."""
+        gone = cmake_words().gone_command(command.name)
+        if gone is not None and command.name not in self.own:
+            first = RELEASES[RELEASES.index(gone.until) + 1]
+            reason = f"CMake knows no command {command.name}()"
+            self.build.stop_later(reason, first, command.at, f"use {gone.instead}")
+        if command.name != "cmake_minimum_required":
+            return
+        asked = _newest_minimum(self.values.texts(command.arguments))
+        for release in RELEASES:
+            oldest = cmake_words().oldest_minimum.get(release)
+            if oldest is not None and asked is not None and asked < oldest:
+                shown = ".".join(map(str, oldest))
+                reason = f"CMake refuses cmake_minimum_required() below {shown}"
+                self.build.stop_later(reason, release, command.at, "write VERSION 3.10")
 
     def _forget_outputs(self, command: Command) -> None:
         """Forget the variables that a harmless command sets; message() may stop."""

@@ -71,7 +71,7 @@ def _build_problems(workspace: Workspace) -> Iterator[Problem]:
     """Yield what stops a build, unless it needs what git has not fetched."""
     for package in workspace.packages:
         lacks_submodule = any(map(package.holds, workspace.folder.absent_submodules))
-        for problem in build_problems(package):
+        for problem in build_problems(package, workspace.releases):
             if not (lacks_submodule and problem.kind in _OF_MISSING_FILES):
                 yield problem
 

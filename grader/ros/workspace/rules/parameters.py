@@ -87,6 +87,7 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _filters(workspace.installed.yaml.get(path))
     for package, node in workspace.launches.nodes:
         yield from _robot_as_text(workspace, package, node)
+        yield from _robot_as_argument(workspace, package, node)
     yield from _plugins(workspace)
 
 
@@ -408,6 +409,26 @@ def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) ->
             advice = "give it the content of the file, not the path"
             message = f"robot_description is no XML, so {node.executable} stops: {advice}"
             yield Mismatch(ROBOT_TEXT, message, robot.location)
+
+
+def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
+    """Yield that a program is given the file of a robot as an argument, which no stated release of
+    it reads.
+    """
+    having = releases_with("program argument", f"{node.package}/{node.executable} URDF")
+    stated = workspace.releases
+    if not having or not stated or any(release in having for release in stated):
+        return
+    words = [word for word in node.arguments or () if word is not None]
+    files = [word for word in words if word.endswith((".urdf", ".xacro", ".xml"))]
+    has_robot = _ROBOT in workspace.parameters.given_to(package, node).values
+    if files and not words[0].startswith("-") and not has_robot:
+        message = (
+            f"{node.executable} takes no file as an argument from "
+            f"{RELEASES[RELEASES.index(having[-1]) + 1].title()} on, so it has no robot: give it "
+            "the parameter robot_description, with the content of the file"
+        )
+        yield Mismatch(ROBOT_TEXT, message, node.location)
 
 
 def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Iterator[Fact]:

@@ -7,7 +7,7 @@ from grader.base.errors import NotDecided
 from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.ros.config.yaml_values import sections_in, values_in
-from grader.ros.known.releases import NameKind, other_name
+from grader.ros.known.releases import NameKind, names_without, other_name
 from grader.ros.workspace.graph.started_controllers import defined_controllers
 from grader.ros.workspace.model.stated_releases import deciding_launch_files, releases_in_path
 from grader.ros.workspace.model.workspace import Workspace
@@ -18,6 +18,7 @@ from grader.ros.workspace.rules.reading import read_agreement
 from grader.ros.workspace.rules.rule_table import NAME_RELEASE, NAMES_COMPARED
 
 _DEPENDENCY = re.compile(r"<\w*depend>\s*([\w-]+)\s*</")
+_CPP = (".cpp", ".cc", ".cxx", ".hpp", ".h")
 _PLUGIN_KEYS = ("plugin", "robot_model_type")
 
 
@@ -143,7 +144,21 @@ def _declared(workspace: Workspace) -> Iterator[_Use]:
                 yield "package", name, manifest.source.at(found.start(1)), ""
 
 
+def _uses_in_code(workspace: Workspace) -> Iterator[_Use]:
+    """Yield the classes in C++ that no stated release has; the others are not looked for."""
+    names = names_without("class", workspace.releases)
+    if not names:
+        return
+    pattern = re.compile(rf"//[^\n]*|/\*.*?\*/|\b({'|'.join(names)})\b", re.DOTALL)
+    for package in workspace.packages:
+        for source in workspace.texts.sources_of(package, _CPP):
+            for match in pattern.finditer(source.text):
+                if match[1] is not None:  # not of a comment
+                    yield "class", match[1], source.at(match.start()), ""
+
+
 _READERS = (
+    _uses_in_code,
     _uses_in_robots,
     _uses_in_yaml,
     _uses_in_launch_files,
