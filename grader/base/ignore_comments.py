@@ -7,8 +7,10 @@ robot_description, which is read as YAML.
 import re
 from collections.abc import Iterator
 from functools import partial
+from itertools import pairwise
 from typing import NamedTuple
 
+from grader.base.markup import comment_spans
 from grader.base.problems import Kind, Problem
 from grader.base.source import Location, Source
 
@@ -62,29 +64,45 @@ def read_ignore_comments(path: str, text: str) -> Iterator[IgnoreComment]:
     in it.
     """
     source = Source(path, text)
-    for found in _COMMENT.finditer(text):
-        start, end = _comment_around(path, text, found)
-        if start < 0:
-            continue
-        line = text.rfind("\n", 0, start) + 1
-        beside = text[line:start] + text[end : _end_of_line(text, end)]
-        is_alone = beside.strip("\ufeff \t\r") == ""
-        last = _line_after(source, end) if is_alone else source.at(end).line
-        codes = tuple(re.findall(_NAME, found[1] or ""))
-        yield IgnoreComment(source.at(found.start()), codes, last)
+    marks = iter(_COMMENT.finditer(text))
+    mark = next(marks, None)
+    for start, end in _xml_comments(text) if path.endswith(_XML) else _line_comments(path, text):
+        while mark is not None and mark.start() < start:
+            mark = next(marks, None)
+        last = 0
+        while mark is not None and mark.start() < end:
+            last = last or _last_line(source, start, end)
+            yield IgnoreComment(
+                source.at(mark.start()), tuple(re.findall(_NAME, mark[1] or "")), last
+            )
+            mark = next(marks, None)
 
 
-def _comment_around(path: str, text: str, found: re.Match[str]) -> tuple[int, int]:
-    """Return where the comment around a mark starts and ends; -1 if it is in none."""
-    if path.endswith(_XML):
-        start, end = text.rfind("<!--", 0, found.start()), text.find("-->", found.end())
-        if start < 0 or end < 0 or "-->" in text[start : found.start()]:
-            return -1, -1
-        return start, end + len("-->")
-    line = text.rfind("\n", 0, found.start()) + 1
+def _last_line(source: Source, start: int, end: int) -> int:
+    """Return the last line of which a comment ignores problems."""
+    text = source.text
+    line = text.rfind("\n", 0, start) + 1
+    beside = text[line:start] + text[end : _end_of_line(text, end)]
+    is_alone = beside.strip("\ufeff \t\r") == ""
+    return _line_after(source, end) if is_alone else source.at(end).line
+
+
+def _xml_comments(text: str) -> Iterator[tuple[int, int]]:
+    """Yield where each comment of XML starts and ends."""
+    for start, end in comment_spans(text):
+        yield start, end + len("-->")
+
+
+def _line_comments(path: str, text: str) -> Iterator[tuple[int, int]]:
+    """Yield where each comment in a line with a mark starts and ends."""
     signs = ("//", "/*") if path.endswith(_SLASHES) else ("#",)
-    starts = [text.find(sign, line, found.start()) for sign in signs]
-    return max(starts), _end_of_line(text, found.end())
+    mark = text.find(_MARK)
+    while mark >= 0:
+        line, end = text.rfind("\n", 0, mark) + 1, _end_of_line(text, mark)
+        places = sorted(text.find(sign, line, end) for sign in signs)
+        starts = [place for place in places if place >= 0]
+        yield from pairwise((*starts, end))
+        mark = text.find(_MARK, end)
 
 
 def _end_of_line(text: str, at: int) -> int:

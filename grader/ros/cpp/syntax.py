@@ -16,11 +16,12 @@ _BYTES_A_PART = 2  # charged before a file is parsed
 # tree-sitter reports its progress after each 100 steps. 4,000 public files take one report for 200
 # bytes, the slowest one for 60; what takes more is not read.
 _BYTES_A_REPORT, _MIN_REPORTS = 60, 200
+_MAX_ATTRIBUTES = 500  # before one declaration, each step of the parser is as long as there are
 # Macros between a keyword and a name, or without a semicolon, which the grammar has no place for.
 _IGNORED = re.compile(
     r"^[ \t]*#(?:[^\n]*\\\r?\n)*[^\n]*"
     r"|\b[A-Z][A-Z0-9_]*_(?:PUBLIC|EXPORT|IMPORT|LOCAL|API|VISIBILITY|PUBLIC_TYPE|HIDDEN)\b(?=\s+[A-Za-z_~:])"
-    r"|\bRCLCPP_\w*PTR\w*DEFINITIONS\w*\([^()\n]*\)"
+    r"|\bRCLCPP_(?>\w*?PTR)(?>\w*?DEFINITIONS)\w*+\([^()\n]*\)"
     r"|\bQ_OBJECT\b",
     re.MULTILINE,
 )
@@ -113,6 +114,9 @@ def parse_cpp(data: bytes, path: str, budget: Budget) -> CppSyntax:
         budget.charge(1 + len(syntax.data) // _BYTES_A_PART)
     except OutOfBudget:
         syntax.unread = "the submission is too large"
+        return syntax
+    if syntax.data.count(b"[[") > _MAX_ATTRIBUTES:
+        syntax.unread = "the file has too many attributes"
         return syntax
     read = _without_macros(syntax.source.text).encode("utf-8", "replace")
     most = _MIN_REPORTS + len(read) // _BYTES_A_REPORT

@@ -166,7 +166,7 @@ class Surroundings(NamedTuple):
                 if file.by == "xacro" and file.path is not None and beside == folder:
                     return True
             is_run = "xacro" in launch.source.text
-            if is_run and any(pattern.fullmatch(path) for pattern in made_paths(launch.source)):
+            if is_run and any(made.matches(path) for made in made_paths(launch.source)):
                 return True
         return False
 

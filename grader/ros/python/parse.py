@@ -30,6 +30,8 @@ _OPEN_BRACES = re.compile(
     r"""\b[rR]?[fF][rR]?(['"])(?:(?!\1).)*?(?<!\{)\{(?:(?!\1)[^{}])*(?:\1|$)"""
 )
 _MAX_SEARCHED = 1_000  # characters of a line
+_FUNCTIONS = ("def ", "lambda", "for ")  # what has code of its own; a comprehension has
+_MAX_FUNCTIONS = 2_000  # of a file that is compiled
 
 
 class Position(NamedTuple):
@@ -138,8 +140,10 @@ def _parse(data: bytes, path: str) -> Code | SyntaxFault:
                 # CPython 3.11 miscounts its depth if its garbage collector runs meanwhile: try
                 # again
                 tree = ast.parse(text, feature_version=_JAZZY)
-            # Never run: the compiler finds errors that the grammar allows.
-            compile(tree, path, "exec", dont_inherit=True)
+            # Never run: the compiler finds errors that the grammar allows. It compares the code of
+            # equal functions with each other, so that many take long.
+            if sum(map(text.count, _FUNCTIONS)) <= _MAX_FUNCTIONS:
+                compile(tree, path, "exec", dont_inherit=True)
             return Code(source, tree)
     except SyntaxError as error:
         location = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))

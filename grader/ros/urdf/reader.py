@@ -9,6 +9,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
+from grader.base import markup
 from grader.base.names import MAX_GUESSES
 from grader.base.problems import Effect, Problem, causes, in_order
 from grader.base.source import Source
@@ -367,7 +368,7 @@ def find_xacro(text: str) -> int | None:
     if "$" not in text and "xacro:" not in text:
         return None
     outside = 0  # where the text begins that is after the last comment
-    for start, end in (*_comment_spans(text), (len(text), len(text))):
+    for start, end in (*markup.comment_spans(text), (len(text), len(text))):
         match = _XACRO.search(text, outside, start)
         if match is not None:
             return match.start()
@@ -387,7 +388,7 @@ def _check_text(problems: Problems, *, is_expanded: bool) -> None:
             f"xacro {quote(name)}`"
         )
         problems.listed.append(Problem(urdf_problems.RAW_XACRO, message, problems.source.at(xacro)))
-    for start, end in _comment_spans(text):
+    for start, end in markup.comment_spans(text):
         if text.find(": ", start, end) >= 0 or text.find("\t", start, end) >= 0:
             message = "this comment contains a colon and a space, or a tab"
             message += ": it can stop a launch file that passes the URDF as YAML"
@@ -395,14 +396,6 @@ def _check_text(problems: Problems, *, is_expanded: bool) -> None:
                 Problem(urdf_problems.COMMENT_TRAP, message, problems.source.at(start))
             )
             break
-
-
-def _comment_spans(text: str) -> Iterator[tuple[int, int]]:
-    """Yield the offsets at which each comment begins and ends."""
-    start = text.find("<!--")
-    while start >= 0 and (end := text.find("-->", start + 4)) >= 0:
-        yield start, end
-        start = text.find("<!--", end)
 
 
 def _check_spelling(root: Element, problems: Problems) -> None:

@@ -130,8 +130,8 @@ def _chosen_parts(tree: Tree, found: Sequence[RobotFile]) -> frozenset[str]:
     for file in found:
         text = (tree.read(file.path, URDF_LIMIT) or b"").decode("utf-8", "replace")
         names = [name for name in INCLUDED.findall(text) if "$" in posixpath.basename(name)]
-        for pattern in made_paths(Source(file.path, "\n".join(names))) if names else ():
-            parts |= {other.path for other in found if pattern.fullmatch(other.path)} - {file.path}
+        for made in made_paths(Source(file.path, "\n".join(names))) if names else ():
+            parts |= {other.path for other in found if made.matches(other.path)} - {file.path}
     return frozenset(parts)
 
 

@@ -21,7 +21,7 @@ _SYSTEM = re.compile(r"<ros2_control\b")
 _NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
 _CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
 _PACKAGE_IN = re.compile("the package '([\\w-]+)'")  # in the reason why a path is not known
-INCLUDED = re.compile(r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"']")
+INCLUDED = re.compile(r"<xacro:include\b[^<>]*?\bfilename\s*=\s*[\"']([^\"']+)[\"']")
 _EXPRESSION, _WORD = re.compile(r"\$\{([^{}]*)"), re.compile(r"\w+")
 _FOUND = re.compile(r"\$\(find ([\w-]+)\)/")
 

@@ -22,7 +22,7 @@ _SETTING = re.compile(
 )
 # A sentence, a badge or a link in a line: ROS 2 Humble, ROS_2-Humble, docs.ros.org/en/humble.
 _SENTENCE = re.compile(
-    rf"(?<![a-z])ROS[ _-]?2?(?:[\W_]*(?:distro\w*|version))?[\W_]{{0,5}}{_NAME}{_LIST}"
+    rf"(?<![a-z])ROS[ _-]?2?(?:[\W_]*(?:distro\w{0, 30}|version))?[\W_]{{0,5}}{_NAME}{_LIST}"
     rf"|{_NAME} (?:Fitzroy|Geochelone|Hawksbill|Irwini|Jalisco|Kaiju|Luth|Ridley)"
     rf"|(?:docs\.ros\.org/en|img\.shields\.io/ros/v)/{_NAME}|index\.ros\.org/[\w/]+#{_NAME}",
     re.IGNORECASE,

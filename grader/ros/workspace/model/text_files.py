@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 from grader.base.errors import InputError
+from grader.base.markup import comment_spans
 from grader.base.source import Source
 from grader.files.tree import parents
 from grader.ros.installation.places import is_launch_file
@@ -27,7 +28,6 @@ _OWN_FOLDERS = frozenset({"config", "launch", "maps", "params", "rviz", "urdf", 
 _PROGRAMS = (".py", ".cpp", ".cc", ".hpp", ".sh", "CMakeLists.txt")
 _WITH_LINES = (".yaml", ".yml", ".py")  # files whose comments begin with #
 _COMMENT_LINE = re.compile(r"(?:^|(?<=\s))#[^\n]*")
-_XML_COMMENT = re.compile(r"<!--.*?-->", re.DOTALL)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,8 +143,17 @@ def _without_comments(package: Package, path: str) -> Source | None:
     if data is None:
         return None
     text = data.decode("utf-8", "replace")
-    comment = _COMMENT_LINE if path.endswith(_WITH_LINES) else _XML_COMMENT
-    return Source(package.path(path), comment.sub(_blank, text))
+    if path.endswith(_WITH_LINES):
+        return Source(package.path(path), _COMMENT_LINE.sub(_blank, text))
+    return Source(package.path(path), _without_xml_comments(text))
+
+
+def _without_xml_comments(text: str) -> str:
+    pieces, outside = list[str](), 0
+    for start, end in comment_spans(text):
+        pieces += (text[outside:start], _blanks(text[start : end + len("-->")]))
+        outside = end + len("-->")
+    return "".join((*pieces, text[outside:]))
 
 
 def read_paths(package: Package, paths: Iterable[str]) -> list[str]:
@@ -155,6 +164,10 @@ def read_paths(package: Package, paths: Iterable[str]) -> list[str]:
     return [path for path in paths if not path.startswith(unread)][:_MAX_FILES]
 
 
-def _blank(found: re.Match[str]) -> str:
+def _blank(match: re.Match[str]) -> str:
+    return _blanks(match[0])
+
+
+def _blanks(comment: str) -> str:
     """Return blanks in place of a comment, so that places stay the same."""
-    return re.sub(r"\S", " ", found[0])
+    return re.sub(r"\S", " ", comment)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from grader.base.source import Source
-from grader.ros.package.made_paths import made_paths
+from grader.ros.package.made_paths import MadePath, made_paths
 from grader.ros.workspace.model.workspace import Workspace
 
 _TAG = re.compile(
@@ -105,9 +105,9 @@ def _dependent(sources: tuple[Source, ...]) -> frozenset[str]:
 def _chosen_files(sources: tuple[Source, ...], robot_files: frozenset[str]) -> set[str]:
     """Return the files that an include under a condition names, or one whose path is computed."""
     named: set[str] = set()
-    patterns: set[re.Pattern[str]] = set()
+    made: set[MadePath] = set()
     for source in sources:
-        patterns |= {*made_paths(source)}
+        made |= {*made_paths(source)}
         named |= {
             posixpath.basename(match["file"])
             for match, depth in _matches(source.text)
@@ -116,6 +116,6 @@ def _chosen_files(sources: tuple[Source, ...], robot_files: frozenset[str]) -> s
     chosen = set()
     for path in {source.path for source in sources} - robot_files:
         is_named = posixpath.basename(path) in named
-        if is_named or any(pattern.fullmatch(path) for pattern in patterns):
+        if is_named or any(end.matches(path) for end in made):
             chosen.add(path)
     return chosen

@@ -18,7 +18,7 @@ _OTHER_INCLUDE = re.compile(
 )
 # xacro takes an argument also where it is only used, if it is passed.
 _XACRO_ARGUMENT = re.compile(
-    r"<xacro:arg\b[^>]*?\bname\s*=\s*[\"']([^\"']+)[\"']|\$\(arg\s+([^\s)]+)|\barg\(\s*[\"'](\w+)"
+    r"<xacro:arg\b[^<>]*?\bname\s*=\s*[\"']([^\"']+)[\"']|\$\(arg\s+([^\s)]+)|\barg\(\s*[\"'](\w+)"
 )
 
 

@@ -28,7 +28,7 @@ from grader.ros.workspace.rules.rule_table import (
 _CONTAINERS = "rclcpp_components"
 _CMAKE = ("CMakeLists.txt", ".cmake")
 # A class that CMake computes.
-_COMPUTED = re.compile(r"rclcpp_components_register_nodes?\s*\(\s*[^\s)]+[^)]*\$")
+_COMPUTED = re.compile(r"rclcpp_components_register_nodes?\s*\(\s*+[^\s()][^()$]*+\$")
 _OTHER_WAY = "ament_index_register_resource"
 
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 
 from grader.base.source import Location, Source
 from grader.files.tree import Tree
-from grader.ros.package.made_paths import made_paths
+from grader.ros.package.made_paths import MadePath, made_paths
 from grader.ros.workspace.model.workspace import Workspace
 
 _KINDS = (".yaml", ".yml", ".xacro", ".urdf", ".rviz", ".srdf")
@@ -47,7 +47,7 @@ def unused_files(workspace: Workspace) -> Iterator[Location]:
     unnamed = [*_unnamed(workspace)]
     made = {*_made(workspace)} if unnamed else set()
     for path in unnamed:
-        if not any(pattern.fullmatch(path) for pattern in made):
+        if not any(pattern.matches(path) for pattern in made):
             yield Location(path, 1, 1)
 
 
@@ -76,14 +76,14 @@ def _unnamed(workspace: Workspace) -> Iterator[str]:
                 yield package.path(path)
 
 
-def _made(workspace: Workspace) -> Iterator[re.Pattern[str]]:
-    """Yield patterns for the paths that texts of the workspace make of variables."""
+def _made(workspace: Workspace) -> Iterator[MadePath]:
+    """Yield the ends of the paths that texts of the workspace make of variables."""
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, _MAKERS):
             yield from workspace.folder.recall(_made_in, source.path, source.text)
 
 
-def _made_in(path: str, text: str) -> list[re.Pattern[str]]:
+def _made_in(path: str, text: str) -> list[MadePath]:
     return [*made_paths(Source(path, text))]
 
 
