@@ -28,7 +28,7 @@ _Files = Mapping[str, str | None]  # the new texts of files by their paths; None
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".txt", ".cfg", ".sdf", ".launch")
 _FREE_FILES = re.compile(r"(^|/)(config|params|worlds?|parameters)/[^/]+\.(ya?ml|sdf|world)$")
 _SHARE = re.compile(rf"^{re.escape(PREFIX)}/share/([^/]+)/(.+)$")
-_SYSTEM = re.compile(r"<ros2_control\s[^>]*?\bname=(['\"])([\w-]+)\1")
+_SYSTEM = re.compile(r"<ros2_control\s[^<>]*?\bname=(['\"])([\w-]+)\1")
 _PROGRAMS = re.compile("console_scripts|scripts *=|gui_scripts")
 _IMPORTS = (
     "from launch.actions import RegisterEventHandler as _Handler, TimerAction as _Timer\n"

@@ -42,7 +42,7 @@ def is_launch_file(path: str) -> bool:
 LaunchKind = Literal["launch", "ROS 1", "other"]
 _IS_YAML_LAUNCH = re.compile(r"^[\"']?launch[\"']?\s*:", re.MULTILINE)
 # What launch files of ROS 1 have, and those of ROS 2 never.
-_ROS1 = re.compile(r"<node\b(?![^>]*\bexec=)[^>]*\btype=|\$\((?:find|arg|optenv) |<rosparam\b")
+_ROS1 = re.compile(r"<node\b(?![^<>]*\bexec=)[^<>]*\btype=|\$\((?:find|arg|optenv) |<rosparam\b")
 
 
 def launch_kind(path: str, text: str) -> LaunchKind:

@@ -614,7 +614,7 @@ def _controllers_in(table: Mapping[str, Value], at: Position) -> list[Value]:
 
 def _virtual_joints(text: str) -> Iterator[list[str]]:
     """Yield the arguments of the publishers of the virtual joints in an SRDF."""
-    for joint in re.findall(r"<virtual_joint\b[^>]*>", re.sub(r"(?s)<!--.*?-->", "", text)):
+    for joint in re.findall(r"<virtual_joint\b[^<>]*>", re.sub(r"(?s)<!--.*?-->", "", text)):
         parent = re.search(r"\bparent_frame=[\"']([^\"']*)", joint)
         child = re.search(r"\bchild_link=[\"']([^\"']*)", joint)
         frame = parent[1] if parent is not None else ""

@@ -29,7 +29,7 @@ _PROLOG = re.compile(
     """,
     re.DOTALL | re.IGNORECASE | re.VERBOSE,
 )
-_ROBOT = re.compile(rb"<\s*robot(?=[\s/>])([^>]*)")
+_ROBOT = re.compile(rb"<\s*robot(?=[\s/>])([^<>]*)")
 _NAME = re.compile(rb"(?<![\w:])name\s*=\s*[\"']([^\"']*)")
 _COMMENT = re.compile(rb"<!--.*?(?:-->|\Z)", re.DOTALL)
 _INCLUDE = re.compile(rb"<xacro:include\s[^<>]*filename\s*=\s*[\"'](?:[^\"']*/)?([^\"'/]+)[\"']")

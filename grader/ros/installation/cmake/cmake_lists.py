@@ -29,6 +29,7 @@ from grader.ros.python.parse import START, Position, SyntaxFault, location_in
 from grader.ros.python.values import Unknown
 
 _MAX_DEPTH = 60  # blocks and calls in each other
+_PARTS_A_CALL = 10  # for about as long as it takes
 _VERSION = re.compile(r"\d{1,4}(\.\d{1,4}){0,3}")
 
 
@@ -238,6 +239,7 @@ class _Evaluation:
         own.
         """
         definition, values = self.own.pop(command.name), self.values  # so that none calls itself
+        values.budget.charge(_PARTS_A_CALL)
         texts = values.texts(command.arguments)
         names = [str(text) for text in values.texts(definition.arguments[1:])]
         if definition.name == "function":

@@ -10,11 +10,11 @@ from grader.ros.package.made_paths import MadePath, made_paths
 from grader.ros.workspace.model.workspace import Workspace
 
 _TAG = re.compile(
-    r"<(?P<end>/?)xacro:(?:if|unless)\b|<(?P<tag>command_interface|joint|link)\b[^>]*?"
+    r"<(?P<end>/?)xacro:(?:if|unless)\b|<(?P<tag>command_interface|joint|link)\b[^<>]*?"
     r"\bname\s*=\s*(?P<quote>[\"'])(?P<name>.*?)(?P=quote)|\bfilename\s*=\s*[\"'](?P<file>[^\"']*)",
     re.DOTALL,
 )
-_XACRO_TAG = re.compile(r"<xacro:(\w+)\b([^>]*)>")  # a call of a macro, or a property
+_XACRO_TAG = re.compile(r"<xacro:(\w+)\b([^<>]*)>")  # a call of a macro, or a property
 _ATTRIBUTE = re.compile(r"([\w.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
 _COMPUTED = re.compile(r"\$\([^()]*\)|\$\{[^{}]*\}")
 _WORD = re.compile(r"[A-Za-z_]\w*")
@@ -38,7 +38,7 @@ def may_vary(workspace: Workspace, *tags: str) -> bool:
     if names_under_arguments(workspace, "joint"):
         return True
     dependent = _dependent(sources)
-    element = re.compile(rf"<(?:{'|'.join(tags)})\b[^>]*>")
+    element = re.compile(rf"<(?:{'|'.join(tags)})\b[^<>]*>")
     for source in sources:
         for tag in element.finditer(source.text):
             if not dependent.isdisjoint(_computing_words(tag[0])):

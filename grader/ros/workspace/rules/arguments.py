@@ -14,7 +14,7 @@ _CONFIGURATION = re.compile(r"LaunchConfiguration\(\s*[\"'](\w+)[\"']|\$\(var (\
 _MAX_LAUNCH = 128 * 1024  # bytes, as launch files are read
 _FIND = re.compile(r"\$\(find ([\w-]+)\)")
 _OTHER_INCLUDE = re.compile(
-    r"<xacro:include\b[^>]*?\bfilename\s*=\s*[\"'](?![^\"']*\.(?:xacro|urdf)[\"'])"
+    r"<xacro:include\b[^<>]*?\bfilename\s*=\s*[\"'](?![^\"']*\.(?:xacro|urdf)[\"'])"
 )
 # xacro takes an argument also where it is only used, if it is passed.
 _XACRO_ARGUMENT = re.compile(

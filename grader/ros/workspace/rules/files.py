@@ -46,7 +46,7 @@ _FIND = re.compile(
 )
 _PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
 _LAUNCH_FOLDER = "launch/"
-_PROPERTY = re.compile(r"<xacro:property\b[^>]*?\bname\s*=\s*[\"'](\w+)[\"']")
+_PROPERTY = re.compile(r"<xacro:property\b[^<>]*?\bname\s*=\s*[\"'](\w+)[\"']")
 # Files of text that are read, which no download leaves out for their size; and programs.
 _URI = re.compile(r"package://([\w-]+)/([\w./-]+)")  # of a whole text
 _PATH = re.compile(rf"{re.escape(SHARE)}/[^\s'\",\x00]+")
