@@ -77,12 +77,15 @@ def _row_lines(row: ParameterRow, read: Release) -> Iterator[str]:
         yield f"entries: {enumerated(row.entries, len(row.entries))}"
     if row.size is not None:
         yield f"values: {row.size}"
+    yield f"releases: {_releases(row, read)}"
+
+
+def _releases(row: ParameterRow, read: Release) -> str:
     if not row.releases:
-        yield f"releases: {COVERED[0].title()} to {read.title()}"
-    elif row.until == COVERED[-1]:
-        yield f"releases: {row.releases} (read up to {read.title()})"
-    else:
-        yield f"releases: {row.releases}"
+        return f"{COVERED[0].title()} to {read.title()}"
+    if row.until == COVERED[-1]:
+        return f"{row.releases} (read up to {read.title()})"
+    return row.releases
 
 
 def _value(value: Any) -> str:
