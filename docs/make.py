@@ -42,6 +42,7 @@ from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal
 from grader.ros.known.package_files import IndexedKey, facts_in_file, packages_with_files
 from grader.ros.known.parameter_rows import NodeRows, known_nodes, node_rows
+from grader.ros.known.releases import RELEASES
 from grader.ros.workspace.rules.problem_kinds import EVERY_KIND
 
 KEYS = {
@@ -149,13 +150,14 @@ def known_parameters() -> Iterator[str]:
         rows = node_rows(node)
         assert rows is not None, node
         packages.setdefault(re.split("/|::", node)[0], []).append(rows)
-    yield "| package | nodes and plugins | rows | read from |"
-    yield "|---|---|---|---|"
+    yield "| package | nodes and plugins | rows | read from | up to |"
+    yield "|---|---|---|---|---|"
     for package, nodes in packages.items():
         names = ", ".join(f"`{re.split('/|::', known.node)[-1]}`" for known in nodes)
         count = sum(len(known.own_rows) for known in nodes)
         source = nodes[0].source.partition(",")[0]
-        yield f"| {package} | {names} | {count} | {source} |"
+        last = max((known.read for known in nodes), key=RELEASES.index).title()
+        yield f"| {package} | {names} | {count} | {source} | {last} |"
 
 
 def index_of_packages() -> str:

@@ -157,9 +157,9 @@ WEIGHTS = {
     "ros": 300,
     "ros.config": 5_500,
     "ros.cpp": 12_300,
-    "ros.installation": 29_200,
-    "ros.interfaces": 4_100,
-    "ros.known": 7_500,
+    "ros.installation": 29_500,  # what stops a build from a release on
+    "ros.interfaces": 4_300,  # since and until when there is a type
+    "ros.known": 8_000,  # when each table was read, and the last release that was read for it
     "ros.launch": 43_700,  # the words of Lyrical, and which release has each
     "ros.mesh": 4_300,
     "ros.nodes": 42_100,

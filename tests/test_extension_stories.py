@@ -88,6 +88,12 @@ SAKAI = Form(
 )
 """
 
+NEWER = """\
+controller_server:
+  ros__parameters:
+    controller_plugins: ["FollowPath"]
+    a_parameter_of_a_newer_release: 1.0
+"""
 RULE = """
 NOTE_LEFT = _machine("note-left", sentence="No launch file has a note of its author.")
 """
@@ -182,6 +188,36 @@ def test_a_new_check(project: Path) -> None:
         "tests/test_docs.py",
         "tests/checks",
         new="shows_cube",
+    )
+
+
+def test_a_new_release(project: Path) -> None:
+    """A release is a name, its second name and its Ubuntu; the tables know nothing of it, and nothing is wrong for it."""
+    replace(project / "grader/ros/known/releases.py", '"rolling"', '"mighty", "rolling"')
+    stated = project / "grader/ros/workspace/model/stated_releases.py"
+    replace(stated, "|Ridley", "|Mantaray|Ridley")
+    replace(
+        stated,
+        '("lyrical",)),\n',
+        '("lyrical",)),\n    **dict.fromkeys(("28.04", "zesty"), ("mighty",)),\n',
+    )
+    python(project, "docs/make.py")
+    for cases in ("ignoring", "releases", "schema"):
+        python(project, "-m", "tests.corpus", cases)
+    add_to_changelog(project, "The release `mighty`.")
+    workspace = project / "workspace"
+    shutil.copytree(project / "rubrics/lab6/my_robot", workspace / "src/my_robot")
+    (workspace / "src/my_robot/params.yaml").write_text(NEWER, encoding="utf-8")
+    (workspace / "README.md").write_text("For ROS 2 Mighty Mantaray on Ubuntu 28.04.\n")
+    python(project, "-m", "grader", "inspect", str(workspace))
+    python(project, "-m", "grader", "inspect", str(workspace), "--distro", "mighty")
+    passes(
+        project,
+        "tests/known",
+        "tests/parameters",
+        "tests/workspace/test_stated_releases.py",
+        "tests/corpus",
+        "tests/test_docs.py",
     )
 
 

@@ -3,6 +3,8 @@
 import csv
 import filecmp
 from collections.abc import Iterator
+from dataclasses import replace
+from decimal import Decimal
 from pathlib import Path
 
 import pytest
@@ -10,11 +12,12 @@ import pytest
 from grader.lab.grading.grade import grade
 from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
 from grader.lab.submission.opening import open_submission
+from grader.ros.known.releases import Release
 from grader.ros.package.robot_file import Read
 from tests.command_line import run
 from tests.sample_class import FOLDER, STUDENTS, TOP, package_files
 from tests.sample_files import generated, packages
-from tests.samples import LAB6, ROOT, SAMPLES, Sample
+from tests.samples import LAB6, ROOT, SAMPLES, Sample, opened
 
 REFERENCE = "submissions/lab6/reference/roscourse_sim_ws/src/my_robot"
 
@@ -61,6 +64,22 @@ def test_every_sample_loses_the_expected_criteria() -> None:
     """Verdict, lost, carried and pending criteria are those in expected.toml, and an earlier failure causes each skip."""
     found = {name: [*differences(sample)] for name, sample in SAMPLES.items()}
     assert {name: wrong for name, wrong in found.items() if wrong} == {}
+
+
+def _marks(sample: Sample, distro: Release) -> list[tuple[str, str, Decimal | None, str]]:
+    """Return what a sample gets for each criterion in a lab for a release."""
+    rubric = replace(sample.rubric, distro=distro)
+    report = grade(rubric, opened(sample.path, rubric))
+    return [
+        (it.criterion.id, it.outcome.status, it.points, it.outcome.message) for it in report.results
+    ]
+
+
+@pytest.mark.exhaustive
+def test_every_sample_has_the_same_marks_in_a_lab_for_lyrical() -> None:
+    """No sample uses what one of the two releases lacks."""
+    samples = SAMPLES.items()
+    assert [name for name, it in samples if _marks(it, "lyrical") != _marks(it, "jazzy")] == []
 
 
 def test_there_are_enough_samples() -> None:

@@ -96,11 +96,6 @@ def checks_text() -> str:
     return "\n".join(listed)
 
 
-def _fact_text(name: str) -> str:
-    """Return what is known of ROS 2 by a name; empty for another one."""
-    return releases_explanation() if name == _RELEASES else parameter_explanation(name)
-
-
 def explanation(name: str, rubric: Rubric) -> str:
     """Return the explanation of a code, a criterion, a check, a parameter of a well-known node or
     the known releases. Raises InputError for another name.
@@ -128,7 +123,7 @@ def explanation(name: str, rubric: Rubric) -> str:
         return _paragraphs(
             [*texts, _arguments(check).rstrip("\n"), _causes(check), *_examples(check.name)]
         )
-    fact = _fact_text(name)
+    fact = releases_explanation() if name == _RELEASES else parameter_explanation(name)
     if fact:
         return fact
     known = (

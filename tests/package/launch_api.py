@@ -245,8 +245,10 @@ def tags(cls: ast.ClassDef, kind: str) -> list[str]:
     ]
 
 
-def table(*roots: Path) -> dict[str, Any]:
-    """Return the classes by full name, the names that each module exports, and those of the front ends."""
+def table(*roots: Path, with_later: bool = True) -> dict[str, Any]:
+    """Return the classes by full name, the names that each module exports, and those of the front ends; `with_later` with
+    what later versions add.
+    """
     modules = {module.name: module for root in roots for module in modules_of(root)}
     classes: dict[str, Any] = {}
     found: dict[str, dict[str, str]] = {"action": {}, "substitution": {}}
@@ -290,6 +292,8 @@ def table(*roots: Path) -> dict[str, Any]:
         }
         for name, (_, _, methods) in classes.items()
     }
+    if not with_later:
+        return {"classes": {name: rows[name] for name in classes}, **found}
     for (name, parameter), check in LATER_CHECKS.items():
         rows[name]["positional"][parameter]["check"] = check
     for name, parameters in LATER_PARAMETERS.items():

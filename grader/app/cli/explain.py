@@ -22,7 +22,7 @@ def explain(
     ],
     rubric: RubricOption = DEFAULT_RUBRIC,
 ) -> str:
-    """Explain a problem code, a check, a criterion or a parameter, or which releases are known.
+    """Explain a code, a check, a criterion, a parameter, or releases.
 
     Examples:
 

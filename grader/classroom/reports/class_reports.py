@@ -187,14 +187,19 @@ def _keep(
     done: Mapping[str, _Done],
     paths: Mapping[str, Sequence[Path]],
     shown: Mapping[str, str],
-) -> None:
-    """Keep what is known of the reports that were written, by their paths."""
+) -> dict[str, Mapping[str, Any]]:
+    """Keep what is known of the reports that were written, by their paths; return the hints that
+    were searched for them.
+    """
+    new_hints = dict[str, Mapping[str, Any]]()
     for key, one in done.items():
+        new_hints |= one.new_hints
         for path in paths[key]:
             kept.written.pop(str(path), None)
             if one.is_final:
                 data = sha256_of(path.read_bytes())
                 kept.written[str(path)] = WrittenReport(shown[key], data, one.hints, one.still)
+    return new_hints
 
 
 def write_reports(
@@ -225,11 +230,8 @@ def write_reports(
             changed[key] = files[key]
     done = _render_reports(run, changed, terminal, jobs, timeout) if changed else {}
     if done:
-        _keep(kept, done, paths, shown)
-        kept.save(
-            {name: hint for one in done.values() for name, hint in one.new_hints.items()},
-            book.settings.roots(book.folder),
-        )
+        new_hints = _keep(kept, done, paths, shown)
+        kept.save(new_hints, book.settings.roots(book.folder))
     lost = {key: one.why_lost for key, one in done.items() if one.why_lost}
     if Format.HTML in run.formats:
         below = f"{names.REPORTS}/" if is_in_gradebook else ""

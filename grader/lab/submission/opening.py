@@ -11,7 +11,6 @@ from grader.base.text import printable_path
 from grader.files.opening import open_tree, tree_name
 from grader.files.tree import Tree
 from grader.lab.submission.submission import DEFAULTS, Lab, Opening, Submission
-from grader.ros.known.releases import Release
 from grader.ros.package.robot_file import (
     Absent,
     Read,
@@ -21,7 +20,6 @@ from grader.ros.package.robot_file import (
     read_as_ros,
 )
 from grader.ros.python.budget import Budget
-from grader.ros.urdf.versions import first_release
 from grader.ros.workspace.opened import OpenedWorkspace
 from grader.ros.workspace.opening import (
     STANDARD_INPUT,
@@ -107,7 +105,8 @@ def open_with_packages(path: str) -> Submission:
     from grader.ros.package.finding import is_backup, package_around  # late: many have no package
 
     submission = open_submission(path, _NO_LAB)
-    distro = _needed_release(submission)
+    urdf = submission.urdf
+    distro = urdf.reading.needed_release if isinstance(urdf, Read) else None
     if distro is not None:
         submission = open_submission(path, _NO_LAB._replace(distro=distro))
     main = package_around(submission.packages, submission.path) or submission.package
@@ -116,16 +115,9 @@ def open_with_packages(path: str) -> Submission:
     ]
     if main is None or not packages:
         return submission
-    urdf = (submission.path or _NO_LAB.urdf).removeprefix(main.path(""))
+    path_inside = (submission.path or _NO_LAB.urdf).removeprefix(main.path(""))
     names = tuple(dict.fromkeys([main.name, *packages]))
-    return open_submission(path, Lab(urdf, packages=names, distro=distro))
-
-
-def _needed_release(submission: Submission) -> Release | None:
-    """Return the first release of ROS 2 that reads the URDF's version, if it is newer than 1.0."""
-    urdf = submission.urdf
-    root = urdf.reading.root if isinstance(urdf, Read) else None
-    return None if root is None else first_release(root.get("version", ""))
+    return open_submission(path, Lab(path_inside, packages=names, distro=distro))
 
 
 def _is_blank(data: bytes) -> bool:

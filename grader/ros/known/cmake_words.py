@@ -8,7 +8,7 @@ from grader.ros.known.releases import Release
 from grader.ros.known.typed_rows import read_file, read_row
 
 
-class GoneCommand(NamedTuple):
+class _GoneCommand(NamedTuple):
     """A command that later releases do not have."""
 
     until: Release
@@ -36,10 +36,10 @@ class CMakeWords(NamedTuple):
     gone: Mapping[str, Any]  # what later releases do not have, by command
     oldest_minimum: Mapping[str, tuple[int, ...]]
 
-    def gone_command(self, name: str) -> GoneCommand | None:
+    def gone_command(self, name: str) -> _GoneCommand | None:
         """Return since when there is no command of a name; None for one that all releases have."""
         row = self.gone.get(name)
-        return read_row(GoneCommand, row) if row is not None else None
+        return read_row(_GoneCommand, row) if row is not None else None
 
 
 @cache

@@ -10,7 +10,7 @@ from grader.ros.known.typed_rows import read_file
 _WIDTH = 80
 
 
-class KnownTable(NamedTuple):
+class _KnownTable(NamedTuple):
     """A table of facts, or several of one kind."""
 
     name: str
@@ -22,14 +22,14 @@ class KnownTable(NamedTuple):
     source: str
 
 
-class _KnownTables(NamedTuple):
-    table: tuple[KnownTable, ...]
+class _Tables(NamedTuple):
+    table: tuple[_KnownTable, ...]
 
 
 @cache
-def known_tables() -> tuple[KnownTable, ...]:
+def known_tables() -> tuple[_KnownTable, ...]:
     """Return the tables, in the order of their file."""
-    return read_file(_KnownTables, "tables").table
+    return read_file(_Tables, "tables").table
 
 
 def releases_explanation() -> str:

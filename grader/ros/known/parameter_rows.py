@@ -14,8 +14,8 @@ from grader.ros.known.package_rows import usual_names
 from grader.ros.known.releases import RELEASES, Release, is_before
 from grader.ros.known.typed_rows import read_row
 
-_FIRST, _LAST = RELEASES.index("humble"), RELEASES.index("lyrical")
-COVERED: tuple[Release, ...] = RELEASES[_FIRST : _LAST + 1]
+# From Humble on, without Rolling, which changes.
+COVERED: tuple[Release, ...] = RELEASES[RELEASES.index("humble") : -1]
 # The last release in which a table was read that does not say it.
 _READ: Release = "kilted"
 _PLACE = re.compile(r"<([^<>]+)>")

@@ -8,7 +8,7 @@ from grader.base.errors import InputError
 from grader.base.names import did_you_mean
 from grader.base.text import counted, enumerated
 from grader.ros.known.parameter_rows import COVERED, ParameterRow, node_called, node_rows
-from grader.ros.known.releases import Release, is_before
+from grader.ros.known.releases import Release
 
 
 def parameter_explanation(name: str) -> str:
@@ -77,10 +77,15 @@ def _row_lines(row: ParameterRow, read: Release) -> Iterator[str]:
         yield f"entries: {enumerated(row.entries, len(row.entries))}"
     if row.size is not None:
         yield f"values: {row.size}"
-    yield f"releases: {row.releases or f'{COVERED[0].title()} to {read.title()}'}"
-    unread = [release.title() for release in COVERED if is_before(read, release)]
-    if unread and row.until == COVERED[-1]:
-        yield f"not known for: {enumerated(unread)}"
+    yield f"releases: {_releases(row, read)}"
+
+
+def _releases(row: ParameterRow, read: Release) -> str:
+    if not row.releases:
+        return f"{COVERED[0].title()} to {read.title()}"
+    if row.until == COVERED[-1]:
+        return f"{row.releases} (read up to {read.title()})"
+    return row.releases
 
 
 def _value(value: Any) -> str:

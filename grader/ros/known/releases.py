@@ -122,9 +122,14 @@ def other_name(
     return _OtherName(f"{here!r} is {there!r} until {last.title()}", there)
 
 
+def names_in(kind: NameKind) -> Sequence[str]:
+    """Return the names of a kind, each once; with a star for the rest of some."""
+    return [*dict.fromkeys(name.name for row in _rows(kind) for name in row)]
+
+
 def names_without(kind: NameKind, releases: Collection[Release]) -> Sequence[str]:
-    """Return the names of a kind that none of some releases has."""
-    names = [release_name.name for row in _rows(kind) for release_name in row]
+    """Return the names of a kind that none of some releases has; none without releases."""
+    names = names_in(kind)
     return [name for name in names if releases and not {*releases_with(kind, name)} & {*releases}]
 
 

@@ -29,6 +29,7 @@ from grader.ros.urdf.versions import (
     NEWEST,
     UrdfFormat,
     UrdfVersion,
+    first_release,
     in_words,
     newest_version,
 )
@@ -109,6 +110,11 @@ class Reading(NamedTuple):
         return not self.undetermined or any(
             problem.kind.effect == "rejects" for problem in self.problems
         )
+
+    @property
+    def needed_release(self) -> Release | None:
+        """The first release of ROS 2 that reads its version of URDF, if Jazzy does not."""
+        return None if self.root is None else first_release(self.root.get("version", ""))
 
     @property
     def undetermined(self) -> str:

@@ -63,6 +63,7 @@ class Build:
                 self.last,
             )
         project = self.values.variables.get("PROJECT_NAME")
+        first_stops = {stop.reason: stop for stop in reversed(self.later_stops)}
         return Installation(
             source,
             name=project if isinstance(project, str) else None,
@@ -70,7 +71,7 @@ class Build:
             programs=tuple(sorted(self.programs)),
             scripts=tuple(sorted(self.scripts)),
             stops=tuple(self.stops),
-            later_stops=tuple({stop.reason: stop for stop in reversed(self.later_stops)}.values()),
+            later_stops=tuple(first_stops.values()),
             empty=tuple(self.listing.empty),
             unknown=tuple(dict.fromkeys([*self.doubts, *self.unknown])),
             doubt=self.doubts[0] if self.doubts else None,

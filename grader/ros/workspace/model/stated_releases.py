@@ -20,10 +20,11 @@ _SETTING = re.compile(
     rf"(\[[^]]{{0,200}}|(?:{_NAME}[\s,\"'-]*)+)",
     re.IGNORECASE,
 )
+_SECOND_NAMES = "Fitzroy|Geochelone|Hawksbill|Irwini|Jalisco|Kaiju|Luth|Ridley"
 # A sentence, a badge or a link in a line: ROS 2 Humble, ROS_2-Humble, docs.ros.org/en/humble.
 _SENTENCE = re.compile(
-    rf"(?<![a-z])ROS[ _-]?2?(?:[\W_]*(?:distro\w{0, 30}|version))?[\W_]{{0,5}}{_NAME}{_LIST}"
-    rf"|{_NAME} (?:Fitzroy|Geochelone|Hawksbill|Irwini|Jalisco|Kaiju|Luth|Ridley)"
+    rf"(?<![a-z])ROS[ _-]?2?(?:[\W_]*(?:distro\w{{0,30}}|version))?[\W_]{{0,5}}{_NAME}{_LIST}"
+    rf"|{_NAME} (?:{_SECOND_NAMES})"
     rf"|(?:docs\.ros\.org/en|img\.shields\.io/ros/v)/{_NAME}|index\.ros\.org/[\w/]+#{_NAME}",
     re.IGNORECASE,
 )
@@ -41,13 +42,13 @@ _ORIGIN = re.compile(
 _OF_BRANCH = re.compile(
     rf"\b(?:ref\w*|branches)[ \t]*:[\s\[\"'-]*{_NAME}(?=[\"'\]\s])", re.IGNORECASE
 )
-_UBUNTU = re.compile(r"\bubuntu:(20\.04|22\.04|24\.04|26\.04|focal|jammy|noble|resolute)\b")
 _OF_UBUNTU: dict[str, tuple[Release, ...]] = {
     **dict.fromkeys(("20.04", "focal"), ("foxy", "galactic")),
     **dict.fromkeys(("22.04", "jammy"), ("humble", "iron")),
     **dict.fromkeys(("24.04", "noble"), ("jazzy", "kilted")),
     **dict.fromkeys(("26.04", "resolute"), ("lyrical",)),
 }
+_UBUNTU = re.compile(rf"\bubuntu:({'|'.join(map(re.escape, _OF_UBUNTU))})\b")
 _VARIABLE = "ROS_DISTRO"
 _COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*")
 _MAX_FILES, _MAX_SIZE = 60, 128 * 1024  # of one kind; bytes

@@ -12,7 +12,6 @@ from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.known.parameter_rows import (
     COVERED,
-    NodeRows,
     ParameterRow,
     node_rows,
     rows_of,
@@ -167,11 +166,6 @@ def _of_other_release(
     return warning(PARAMETER_RELEASE, text, at)
 
 
-def _is_known(known: NodeRows, release: Release) -> bool:
-    """Return whether a release has a node, and it is known what it reads there."""
-    return known.is_in(release) and known.is_known_in(release)
-
-
 class _NodeReader:
     """The parameters of a node, as one release reads them."""
 
@@ -249,7 +243,8 @@ class _NodeReader:
         while waiting and len(self._tables) < _MAX_TABLES:
             prefix, node = waiting.pop(0)
             known = node_rows(node)
-            if known is None or not _is_known(known, self._release):
+            is_known = known is not None and known.is_known_in(self._release)
+            if known is None or not is_known or not known.is_in(self._release):
                 self._unread.append(prefix)
                 continue
             index = _index(node, self._release)

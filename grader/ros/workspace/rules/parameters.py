@@ -415,14 +415,14 @@ def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode
     """Yield that a program is given the file of a robot as an argument, which no stated release of
     it reads.
     """
+    words = [word for word in node.arguments or () if word is not None]
+    if not words or not words[0].endswith((".urdf", ".xacro", ".xml")):
+        return
     having = releases_with("program argument", f"{node.package}/{node.executable} URDF")
     stated = workspace.releases
     if not having or not stated or any(release in having for release in stated):
         return
-    words = [word for word in node.arguments or () if word is not None]
-    files = [word for word in words if word.endswith((".urdf", ".xacro", ".xml"))]
-    has_robot = _ROBOT in workspace.parameters.given_to(package, node).values
-    if files and not words[0].startswith("-") and not has_robot:
+    if _ROBOT not in workspace.parameters.given_to(package, node).values:
         message = (
             f"{node.executable} takes no file as an argument from "
             f"{RELEASES[RELEASES.index(having[-1]) + 1].title()} on, so it has no robot: give it "
