@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from grader.base.problems import Fix
 from grader.base.source import Edits, Location
 
 
@@ -19,3 +20,8 @@ class Slip(NamedTuple):
     assumption: str  # "the attribute lenght of <cylinder> is read as length"
     location: Location
     is_refused: bool = False  # whether nothing of the file is used for it
+
+    @property
+    def fix(self) -> Fix:
+        """The fix that writes what is meant."""
+        return Fix(self.edits, self.assumption)
