@@ -9,8 +9,6 @@ from grader.app.editor.places import TextPlace
 from grader.base.slips import Slip
 from grader.base.source import Edit, Edits, Location
 from grader.base.text import quoted
-from grader.lab.hints.generators import word_edits
-from grader.lab.hints.robot_draft import Draft
 from grader.ros.api import Read
 
 
@@ -40,7 +38,6 @@ def _offered(look: Look, path: str) -> Iterator[tuple[str, Location, Edits]]:
     for edits, at in at_places.items():
         if edits:
             yield _title(edits[0], path), at, edits
-    yield from _of_rejected(look)
     for proven in look.graded.fixes:
         if proven.at.path == path:
             yield proven.title, proven.at, proven.edits
@@ -54,24 +51,6 @@ def _slips_in(look: Look, path: str) -> Iterator[Slip]:
         for slip in robot.slips if isinstance(robot, Read) else ():
             if slip.location.path == path:
                 yield slip
-
-
-def _of_rejected(look: Look) -> Iterator[tuple[str, Location, Edits]]:
-    """Yield the words for which ROS 2 rejects a robot, corrected."""
-    for robot in look.opened.robots:
-        words = robot.reading.undone if isinstance(robot, Read) else ()
-        draft = Draft.of(robot.reading) if isinstance(robot, Read) and words else None
-        if draft is None:
-            continue
-        for word in words:
-            edits = word_edits(draft, word)
-            if edits:
-                first = edits[0]
-                yield (
-                    _title(first, first.path),
-                    Location(first.path, first.line, first.column),
-                    edits,
-                )
 
 
 def _title(edit: Edit, path: str) -> str:
