@@ -1,11 +1,11 @@
 """What stops a node in Python, or keeps it from doing anything, in one module.
 
-Each rule is about what certainly fails once it runs. A callback is a function that is given to
-create_timer(), create_subscription(), create_service() or ActionServer.
+Each rule is about what certainly fails once it runs, in any code of the module: whether it is run,
+only `node_slips` asks. A callback is a function that is given to create_timer(),
+create_subscription(), create_service() or ActionServer.
 """
 
 import ast
-import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -14,16 +14,11 @@ from grader.base.source import Location
 from grader.ros.known.package_tables import python_table
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
 from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.python.rclpy_names import CALLBACKS, is_passive
 from grader.ros.python.constants import binds_unseen, dotted, last_name
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
 
 _MAX_FAULTS = 20  # of one module and rule
-_CALLBACKS = {
-    "create_timer": (1, "callback"),
-    "create_subscription": (2, "callback"),
-    "create_service": (2, "callback"),
-    "ActionServer": (3, "execute_callback"),
-}
 _ANSWERING = ("create_service", "ActionServer")
 # Messages of pyflakes about what certainly fails when it runs.
 _CERTAIN = frozenset(
@@ -42,13 +37,6 @@ _LATER_BUILTINS = ("PythonFinalizationError", "EncodingWarning", "WindowsError")
 # Names of groups and executors with which a callback may wait for another one.
 _CONCURRENT = ("MultiThreadedExecutor", "ReentrantCallbackGroup", "MutuallyExclusiveCallbackGroup")
 _CONCURRENT_MODULES = frozenset({"threading", "multiprocessing", "concurrent", "asyncio"})
-# Packages that neither initialise rclpy nor spin a node, besides those of messages and the standard
-# library.
-_PASSIVE = frozenset(
-    {"rclpy", "numpy", "cv2", "cv_bridge", "tf2_ros", "tf_transformations", "transforms3d"}
-    | {"ament_index_python", "yaml", "scipy", "std_srvs", "message_filters"}
-)
-_MESSAGES = ("_msgs", "_interfaces", "_srvs", "_actions")
 _ENDING = frozenset({"sys.exit", "exit", "quit", "os._exit"})
 
 
@@ -171,8 +159,8 @@ class _Search:
         for part in self._module.parts:
             for call in part.calls:
                 name = last_name(call.func)
-                if name in _CALLBACKS:
-                    given = given_argument(call, *_CALLBACKS[name])
+                if name in CALLBACKS:
+                    given = given_argument(call, *CALLBACKS[name])
                     if given is not None:
                         yield _Registered(name, call, given, part)
 
@@ -371,16 +359,13 @@ class _Search:
         pending = [self._module]
         while pending:
             for full in pending.pop().imports:
-                top = full.partition(".")[0]
                 names = [full, full.rpartition(".")[0]]
                 own = next((self._others[it] for it in names if it in self._others), None)
                 if own is not None:
                     if own.name not in reached:
                         reached[own.name] = own
                         pending.append(own)
-                elif not (
-                    top in _PASSIVE or top in sys.stdlib_module_names or top.endswith(_MESSAGES)
-                ):
+                elif not is_passive(full):
                     return None
         return [*reached.values()]
 
