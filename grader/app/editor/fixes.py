@@ -8,8 +8,10 @@ from grader.app.editor.look import Look
 from grader.app.editor.places import TextPlace
 from grader.base.slips import Slip
 from grader.base.source import Edit, Edits, Location
-from grader.base.text import quoted
+from grader.base.text import cut, quoted
 from grader.ros.api import Read
+
+_MAX_SHOWN = 60  # characters of a text in a title
 
 
 def actions(look: Look, place: TextPlace, wanted: lsp.Range) -> list[lsp.CodeAction]:
@@ -55,7 +57,8 @@ def _slips_in(look: Look, path: str) -> Iterator[Slip]:
 
 def _title(edit: Edit, path: str) -> str:
     """Return what an edit changes, with the place of one in another file than the problem."""
-    title = f"Change {quoted(edit.old)} to {quoted(edit.new)}"
+    old, new = (quoted(cut(text.strip(), _MAX_SHOWN)) for text in (edit.old, edit.new))
+    title = f"Change {old} to {new}"
     if edit.path != path:
         return f"{title} in {edit.path}:{edit.line}"
     return title

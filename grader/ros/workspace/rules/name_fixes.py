@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cached_property
 from os.path import commonprefix
 
-from grader.base.problems import NO_FIXES, Fix, Fixes
+from grader.base.problems import Fix, Fixes
 from grader.base.source import Edits, Location, Source
 from grader.base.text import quoted
 from grader.files.reading import URDF_LIMIT
@@ -44,7 +44,7 @@ class NameFixes:
         """
         if mismatch.corrections:
             return Fixes(lambda: self._fixes(mismatch, self._edits))
-        return NO_FIXES
+        return mismatch.fixes
 
     def guesses(self, mismatch: Mismatch) -> list[Fix]:
         """Return the fixes of a mismatch for hints, which try them. A name that is made of parts
