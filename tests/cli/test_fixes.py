@@ -139,10 +139,12 @@ def test_no_class_asks_for_a_fix(sample: Path, tmp_path: Path) -> None:
         ("setup.py", "from glob import", "form glob import", "PKG010"),
         ("rviz/my_robot.rviz", "Enabled: true\n", "Enabled:true\n", "RVZ001"),
         ("scripts/drive_circle.py", "def send(self):\n", "def send(self)\n", "REF015"),
+        ("scripts/drive_circle.py", "0.1, self.send)", "0.1, self.send())", "REF015"),
+        ("scripts/drive_circle.py", "self.publisher.pub", "self.publsher.pub", "REF015"),
     ],
 )
-def test_a_file_that_is_not_read_has_a_fix(path: str, right: str, wrong: str, code: str) -> None:
-    """Of the syntax of Python and of YAML."""
+def test_what_is_wrong_in_a_file_has_a_fix(path: str, right: str, wrong: str, code: str) -> None:
+    """In the syntax of Python and of YAML, and in the code of a node."""
     package = _DIFFDRIVE if path.startswith("scripts/") else _LAB6
     text = (package / path).read_text()
     assert right in text

@@ -10,6 +10,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.base.names import closest, near
+from grader.base.problems import NO_FIXES, Fix, Fixes
 from grader.base.source import Location
 from grader.ros.known.package_tables import python_table
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
@@ -167,6 +168,18 @@ class _Search:
     def _at(self, node: ast.expr | ast.stmt) -> Location:
         return location_in(self._code.source, position_of(node))
 
+    def _end(self, node: ast.expr) -> int:
+        """Return the offset of the end of an expression."""
+        position = Position(node.end_lineno or node.lineno, (node.end_col_offset or 0) + 1)
+        at = location_in(self._code.source, position)
+        return self._code.source.offset(at.line, at.column)
+
+    def _rewrite(self, start: int, end: int, new: str) -> Fixes:
+        """Return the fix of a text between two offsets."""
+        edit = self._code.source.edit(start, end, new)
+        fix = Fix((edit,), f"{edit.old} is read as {new}")
+        return Fixes(lambda: [fix])
+
     def _function(
         self, node: ast.expr, part: CodePart
     ) -> ast.FunctionDef | ast.AsyncFunctionDef | None:
@@ -200,13 +213,16 @@ class _Search:
             if name in own or name in known or name in asked or name.startswith("_"):
                 continue
             asked.add(name)
-            meant = near(name, own.union(known)) or closest(name, own)
+            sure = near(name, own.union(known))
+            meant = sure or closest(name, own)
             hint = f"; did you mean {meant}?" if meant is not None else ""
             message = f"{owner.name} has no attribute {name}{hint}"
-            at = Position(
-                node.end_lineno or node.lineno, (node.end_col_offset or 0) - len(name) + 1
-            )
-            yield CodeFault("undefined name", message, location_in(self._code.source, at))
+            end = self._end(node)
+            at = self._code.source.at(end - len(name))
+            fixes = NO_FIXES
+            if sure is not None:
+                fixes = self._rewrite(end - len(name), end, sure)
+            yield CodeFault("undefined name", message, at, fixes=fixes)
 
     # --- Callbacks
 
@@ -226,7 +242,11 @@ class _Search:
             else:
                 continue
             message = f"{found.by}() {what}; write {name} without the parentheses"
-            yield CodeFault("callback is called", message, self._at(found.given))
+            at, fixes = self._at(found.given), NO_FIXES
+            if not (found.given.args or found.given.keywords):
+                start = self._code.source.offset(at.line, at.column)
+                fixes = self._rewrite(start, self._end(found.given), name)
+            yield CodeFault("callback is called", message, at, fixes=fixes)
 
     def without_response(self) -> Iterator[CodeFault]:
         """Yield callbacks of services and actions that return nothing."""

@@ -55,4 +55,5 @@ def code_facts(workspace: Workspace) -> Iterator[Fact]:
                     yield Undecided("code", f"{at.path} is not read")
         for fault in nodes.faults:
             rule = _RULES[fault.rule]
-            yield Mismatch(rule, fault.message, fault.location, fault.related, fault.is_certain)
+            at, related = fault.location, fault.related
+            yield Mismatch(rule, fault.message, at, related, fault.is_certain, fixes=fault.fixes)
