@@ -165,14 +165,15 @@ def renamed_tag(source: Source, start: int, new: str) -> Edits:
 
 
 def renamed_attribute(source: Source, start: int, old: str, new: str) -> Edits:
-    """Return the edit that gives an attribute of the start tag at an offset another name; none
-    where it is not written there.
+    """Return the edit that gives an attribute of the start tag at an offset another name.
+
+    There is none where the attribute is not written there.
     """
-    found = markup.attribute(source.text, start, old)
-    if found is None:
+    written = markup.attribute(source.text, start, old)
+    if written is None:
         return ()
-    rest = source.text[found.start + len(old) : found.end]
-    return (source.edit(found.start, found.end, f"{new}{rest}"),)
+    rest = source.text[written.start + len(old) : written.end]
+    return (source.edit(written.start, written.end, f"{new}{rest}"),)
 
 
 def empty_element(tag: str, attributes: Mapping[str, str]) -> str:

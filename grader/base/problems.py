@@ -1,6 +1,4 @@
-"""Problems of files: their kinds, each with a stable code, and one problem at its location with
-its fixes.
-"""
+"""Problems of files: their kinds, each with a stable code, and one problem with its fixes."""
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial

@@ -46,8 +46,9 @@ def _problems(folder: Path = _SAMPLE, changed: Mapping[str, str] = {}) -> list[P
 
 @pytest.fixture(scope="module")
 def sample(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a submission with a name and an attribute that are misspelt: reports list the second
-    as a problem, which has a fix.
+    """Return a submission with a misspelt name, and a misspelt attribute of its robot.
+
+    Reports list the attribute as a problem, which has a fix.
     """
     folder = tmp_path_factory.mktemp("class") / "ada"
     shutil.copytree(_SAMPLE, folder)
@@ -64,7 +65,7 @@ def _no_fix(_: Fixes) -> Iterator[Fix]:
 
 
 def test_a_misspelt_name_has_a_fix_where_it_is_used() -> None:
-    [problem] = [it for it in _problems() if it.severity == "error"]
+    [problem] = [each for each in _problems() if each.severity == "error"]
     [fix] = problem.fixes
     at = problem.location
     right = "left_wheel_joint"
@@ -75,7 +76,7 @@ def test_a_misspelt_name_has_a_fix_where_it_is_used() -> None:
 
 def test_fixes_take_no_part_in_what_a_problem_is() -> None:
     """It is equal to itself without them, and its copy in another process has none."""
-    [problem] = [it for it in _problems() if it.severity == "error"]
+    [problem] = [each for each in _problems() if each.severity == "error"]
     plain = problem._replace(fixes=NO_FIXES)
     assert (problem, hash(problem)) == (plain, hash(plain))
     copy = pickle.loads(pickle.dumps(problem))
@@ -149,6 +150,6 @@ def test_what_is_wrong_in_a_file_has_a_fix(path: str, right: str, wrong: str, co
     text = (package / path).read_text()
     assert right in text
     broken = text.replace(right, wrong, 1)
-    [problem] = [it for it in _problems(package, {path: broken}) if it.code == code]
+    [problem] = [each for each in _problems(package, {path: broken}) if each.code == code]
     [fix] = problem.fixes
     assert edited(broken, path, fix.edits) == text

@@ -17,15 +17,15 @@ _MAX_SHOWN = 60  # characters of a text in a title
 def actions(look: Look, place: TextPlace, wanted: lsp.Range) -> list[lsp.CodeAction]:
     """Return the corrections of what is wrong in a range of a file."""
     ranges = place.ranges(look)
-    found = []
+    offered = []
     for title, at, edits in _offered(look, place.path):
         # Where it is wrong, and where it is written.
-        places = [at, *(Location(it.path, it.line, it.column) for it in edits)]
-        own = [ranges.range(it) for it in places if it.path == place.path]
-        if any(_overlap(it, wanted) for it in own):
-            edit = ranges.workspace_edit(edits)
-            found.append(lsp.CodeAction(title, lsp.CodeActionKind.QuickFix, edit=edit))
-    return found
+        places = [at, *(Location(edit.path, edit.line, edit.column) for edit in edits)]
+        inside = [ranges.range(where) for where in places if where.path == place.path]
+        if any(_overlap(each, wanted) for each in inside):
+            change = ranges.workspace_edit(edits)
+            offered.append(lsp.CodeAction(title, lsp.CodeActionKind.QuickFix, edit=change))
+    return offered
 
 
 def _offered(look: Look, path: str) -> Iterator[tuple[str, Location, Edits]]:
@@ -46,8 +46,9 @@ def _offered(look: Look, path: str) -> Iterator[tuple[str, Location, Edits]]:
 
 
 def _slips_in(look: Look, path: str) -> Iterator[Slip]:
-    """Yield the slips of robots in a file: of some, such as a tag without the prefix of xacro, ROS
-    2 reports no problem.
+    """Yield the slips of robots in a file.
+
+    Of some, such as a tag without the prefix of xacro, ROS 2 reports no problem.
     """
     for robot in look.opened.robots:
         for slip in robot.slips if isinstance(robot, Read) else ():

@@ -58,9 +58,9 @@ def _spelling(
 ) -> "_Spelling":
     """Return where the names of a family are counted."""
     texts = [source.text for source in name_fixes.sources]
-    for found in submission.workspace.robots.known:
-        texts += [link.name for link in found.robot.links]
-        texts += [joint.name for joint in found.robot.joints]
+    for known in submission.workspace.robots.known:
+        texts += [link.name for link in known.robot.links]
+        texts += [joint.name for joint in known.robot.joints]
     packages = reference.packages.values() if reference is not None else ()
     texts_of_reference = [source.text for source in name_fixes.sources_of(packages)]
     # A part of a path is a name of its own, a part of a topic is none.

@@ -455,8 +455,9 @@ def _read_expanded(
 
 
 def _read_document(document: XmlDocument) -> Reading:
-    """Return the robot of a document; the fixes of a text that xacro expanded edit what it was
-    expanded from.
+    """Return the robot of a document.
+
+    The fixes of a text that xacro expanded edit what it was expanded from.
     """
     if not document.source.is_expanded:
         return read_robot(document)

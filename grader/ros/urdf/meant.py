@@ -113,8 +113,9 @@ def _fixes_of(word: Word, problems: Problems) -> Fixes:
 
 
 def _edits_of(word: Word, problems: Problems) -> Iterator[Edits]:
-    """Yield the edits of a word, of a tag, of the name of an attribute, or of its value, if they
-    change the text.
+    """Yield the edits of a word, if they change the text.
+
+    The word is a tag, the name of an attribute, or its value.
     """
     place, attribute = problems.location(word.element), word.attribute
     source, start = place.source.element(place.tag)

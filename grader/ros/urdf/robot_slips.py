@@ -21,8 +21,9 @@ _Place = tuple[Element, str | None]  # an element, or one of its attributes
 
 
 class RobotSlips:
-    """The search for the slips of one URDF. The words for which ROS 2 rejects the file, `undone`,
-    are not among them.
+    """The search for the slips of one URDF.
+
+    The words for which ROS 2 rejects the file, `undone`, are not among them.
     """
 
     def __init__(

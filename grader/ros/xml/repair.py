@@ -475,8 +475,9 @@ def _broken_tag(text: str, start: int) -> str:
 def rewritten_tag(
     source: Source, start: int, tag: str, attributes: Mapping[str, str]
 ) -> Edits | None:
-    """Return the edit that writes the broken tag at an offset anew, with these attributes; none
-    where its end is not known, and None if it is not broken.
+    """Return the edit that writes the broken tag at an offset anew, with these attributes.
+
+    There is none where the end of the tag is not known. Return None if it is not broken.
     """
     broken = _broken_tag(source.text, start)
     if not broken:

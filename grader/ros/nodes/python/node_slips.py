@@ -344,7 +344,7 @@ class _NodeSlips:
         waits = any(isinstance(it, ast.While | ast.For | ast.AsyncFor) for it in self._nodes)
         modules = {full.partition(".")[0] for full in self._imports.values()}
         inside = ast.walk(self._classes[name])
-        called = {getattr(it, "attr", getattr(it, "id", "")) for it in inside}
+        called = {getattr(node, "attr", getattr(node, "id", "")) for node in inside}
         if "spin" in text or waits or modules & _WAITING or called.isdisjoint(CALLBACKS):
             return
         reaction = "rclpy.spin() is missing, so that the program ends at once"

@@ -1,5 +1,4 @@
-"""What nodes in Python are made of: the classes of nodes, what calls their callbacks, and the
-modules that do nothing for them.
+"""What nodes in Python are made of: classes, callbacks, and modules that do nothing for them.
 
 Two readers search code for faults with these names. `node_slips` searches what a program certainly
 runs, and `code_faults` all code of a module.

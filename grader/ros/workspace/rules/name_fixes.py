@@ -39,18 +39,23 @@ class NameFixes:
         return sources
 
     def of(self, mismatch: Mismatch) -> Fixes:
-        """Return the fixes of a mismatch: one for each of its corrections whose old name is written
-        as a whole where it is used or defined.
+        """Return the fixes of a mismatch, one for each of its corrections.
+
+        A correction has none if its old name is not written as a whole where it is used or defined.
         """
         if mismatch.corrections:
             return Fixes(lambda: self._fixes(mismatch, self._edits))
         return mismatch.fixes
 
     def guesses(self, mismatch: Mismatch) -> list[Fix]:
-        """Return the fixes of a mismatch for hints, which try them. A name that is made of parts
-        may also be changed in the only place where packages write it. Raises NotDecided.
+        """Return the fixes of a mismatch for hints, which try them.
+
+        A name that is made of parts may also be changed in the only place where packages write it.
+
+        Raises:
+            NotDecided: Not all texts are read.
         """
-        return self._fixes(mismatch, lambda it: self._edits(it) or self._only_edit(it))
+        return self._fixes(mismatch, self._guess)
 
     def _fixes(self, mismatch: Mismatch, edits_of: Callable[[Correction], Edits]) -> list[Fix]:
         is_certain = mismatch.is_certain and len(mismatch.corrections) == 1
@@ -65,9 +70,13 @@ class NameFixes:
     def _edits(self, correction: Correction) -> Edits:
         return self.edits(correction.location, correction.old, correction.new)
 
+    def _guess(self, correction: Correction) -> Edits:
+        return self._edits(correction) or self._only_edit(correction)
+
     def edits(self, at: Location, old: str, new: str) -> Edits:
-        """Return the edits that change a name at a place; none where it is not written there as a
-        whole.
+        """Return the edits that change a name at a place.
+
+        There are none where the name is not written there as a whole.
         """
         source = self._source(at.path)
         if source is None:
@@ -91,9 +100,7 @@ class NameFixes:
         return None
 
     def _only_edit(self, correction: Correction) -> Edits:
-        """Return the edit of a name in the one place where packages write it; none where it is in
-        several.
-        """
+        """Return the edit of a name in the one place where packages write it."""
         old, new = correction.old.strip("/"), correction.new.strip("/")
         places: list[tuple[Source, tuple[int, int]]] = []
         for source in self.sources:
@@ -105,13 +112,14 @@ class NameFixes:
 
 
 def _spans(source: Source, name: str) -> list[tuple[int, int]]:
-    return [
-        it.span() for it in re.finditer(rf"(?<![\w-]){re.escape(name)}(?![\w-]|\.\w)", source.text)
-    ]
+    whole = re.compile(rf"(?<![\w-]){re.escape(name)}(?![\w-]|\.\w)")
+    return [match.span() for match in whole.finditer(source.text)]
 
 
 def _as_written(old: str, new: str) -> Iterator[tuple[str, str]]:
-    """Yield two names without the slash that begins them, and without the folders or tables that
+    """Yield two names as they may be written in a text.
+
+    These are the names without the slash that begins them, and without the folders or tables that
     both are in.
     """
     yield old.strip("/"), new.strip("/")
@@ -123,8 +131,9 @@ def _as_written(old: str, new: str) -> Iterator[tuple[str, str]]:
 def _meant(
     text: str, name: str, spans: Sequence[tuple[int, int]], at: int
 ) -> list[tuple[int, int]]:
-    """Return the occurrence of a name that a place is about: its key, else the first behind it, or
-    the last before.
+    """Return the occurrence of a name that a place is about.
+
+    This is its key, else the first behind the place, or the last before it.
     """
     key = re.compile(rf"{re.escape(name)}[\"']?\s*:\s*(?:\{{?\s*(?:ros__parameters|type)\s*:\s*)?")
     before = [span for span in spans if span[0] < at]
