@@ -36,8 +36,8 @@ ROOMS = {
     "base": (
         "errors markup merge_conflicts text reuse pairing transforms quantities",
         "source names processor_time toml_types",
-        "extents problems element_edits slips toml_file",
-        "ignore_comments",
+        "extents problems element_edits toml_file",
+        "ignore_comments slips",
     ),
     "ros": (
         "known python xml",
@@ -142,7 +142,7 @@ ROOMS_WITH_WEIGHTS = ("ros", "lab")  # the other packages have one limit each
 # It is raised with its reason in the line: what code weighs grows with what it can do, and with nothing else.
 WEIGHTS = {
     "app": 36_200,
-    "base": 17_400,
+    "base": 18_000,  # a problem has its fixes; edits of tags, which were in lab.hints
     "classroom": 69_500,
     "files": 11_800,
     "lab": 100,
@@ -150,7 +150,7 @@ WEIGHTS = {
     "lab.checks": 43_400,
     "lab.documents": 10_900,
     "lab.grading": 12_600,
-    "lab.hints": 36_700,
+    "lab.hints": 35_500,
     "lab.rubric": 10_000,
     "lab.submission": 9_000,
     "report": 50_800,
@@ -165,8 +165,8 @@ WEIGHTS = {
     "ros.nodes": 42_100,
     "ros.package": 24_500,
     "ros.python": 27_700,
-    "ros.urdf": 47_600,  # 1,600 for the versions of URDF that Lyrical reads: capsules, quaternions, checked limits
-    "ros.workspace": 93_800,
+    "ros.urdf": 48_700,  # the versions of URDF that Lyrical reads, and the fixes of words, which were in lab.hints
+    "ros.workspace": 94_300,  # the fixes of names, which were in lab.hints
     "ros.xacro": 27_800,
     "ros.xml": 12_200,
     "": 400,

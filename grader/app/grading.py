@@ -32,7 +32,7 @@ from grader.report.writing import (
 
 if TYPE_CHECKING:
     from grader.lab.grading.report import Report
-    from grader.lab.hints.hinting import Fix
+    from grader.lab.hints.hinting import FixedFiles
     from grader.lab.rubric.rubric import Rubric
     from grader.lab.submission.submission import Submission
 
@@ -80,7 +80,7 @@ class GradeRun(NamedTuple):
     report: "Report"
     base: Base  # the place of the submission in a repository
     exit_code: ExitCode
-    fix: "Fix | None" = None  # the edits of all hints
+    fix: "FixedFiles | None" = None  # the edits of all hints
     besides: tuple[Path, ...] = ()  # the files that were read besides a single one
 
     @property

@@ -10,7 +10,7 @@ from grader.base.errors import InputError, MachineError, OutOfTime
 from grader.base.text import MAX_NAMED, enumerated, format_points, printable, printable_path
 from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.grading.report import INCOMPLETE_HINTS, Report
-from grader.lab.hints.hinting import Fix, fixed, hinted
+from grader.lab.hints.hinting import FixedFiles, fixed, hinted
 from grader.lab.rubric.hint_levels import LEVELS, HintLevel
 from grader.lab.submission.submission import Submission
 from grader.report.writing import Warn, make_folder, refuse_inputs, refuse_symlinks, save_bytes
@@ -20,7 +20,7 @@ _FILES = (*ROBOT_ENDINGS, ".zip")  # endings that no folder has
 
 def add_hints(
     report: Report, submission: Submission, wanted: HintLevel | None, warn: Warn, *, is_fixed: bool
-) -> tuple[Report, Fix]:
+) -> tuple[Report, FixedFiles]:
     """Return a report with hints up to the wanted level, and the edits of all of them if they are
     to be written.
 
@@ -40,7 +40,7 @@ def add_hints(
         )
     if level != allowed:
         report = report._replace(rubric=replace(report.rubric, hints=level))
-    fix = Fix({}, report, "no criterion failed")
+    fix = FixedFiles({}, report, "no criterion failed")
     if level == "none" or not report.has_failures:
         return report, fix
     try:
@@ -61,7 +61,7 @@ def files_to_fix(
     target: Path,
     graded: str,
     report: Report,
-    fix: Fix,
+    fix: FixedFiles,
     besides: Sequence[Path],
     others: Iterable[Path],
 ) -> dict[Path, bytes]:
@@ -105,7 +105,7 @@ def _is_folder(target: Path, report: Report) -> bool:
 
 
 def write_fix(
-    target: Path, graded: str, report: Report, fix: Fix, written: Mapping[Path, bytes]
+    target: Path, graded: str, report: Report, fix: FixedFiles, written: Mapping[Path, bytes]
 ) -> str:
     """Write the files that edits change, and return what was done in a sentence. Raises
     InputError.

@@ -3,12 +3,13 @@ edits.
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from math import isclose, isfinite
 
 from grader.base import markup
 from grader.base.source import Edit, Edits, Source
 
+_ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
 _SAME = 1e-3  # relative: -1.57 is -pi/2
 _PIECE = re.compile(r"(\s*)(\S+)")
 
@@ -150,3 +151,43 @@ def tag_edits(source: Source, start: int, old: str, new: str) -> Edits:
     if closing is not None:
         edits.append(source.edit(start + closing.start(), end, f"</{new}>"))
     return tuple(edits)
+
+
+def renamed_tag(source: Source, start: int, new: str) -> Edits:
+    """Return the edits that give the element at an offset another tag, at its start and its end."""
+    text, end = source.text, markup.name_end(source.text, start)
+    edits: Edits = (source.edit(start, end, f"<{new}"),)
+    tail = markup.element_end(text, start)
+    closing = text.rfind("</", start, tail)
+    if not markup.head_end(text, start)[1] and closing >= 0:
+        edits += (source.edit(closing, tail, f"</{new}>"),)
+    return edits
+
+
+def renamed_attribute(source: Source, start: int, old: str, new: str) -> Edits:
+    """Return the edit that gives an attribute of the start tag at an offset another name.
+
+    There is none where the attribute is not written there.
+    """
+    written = markup.attribute(source.text, start, old)
+    if written is None:
+        return ()
+    rest = source.text[written.start + len(old) : written.end]
+    return (source.edit(written.start, written.end, f"{new}{rest}"),)
+
+
+def empty_element(tag: str, attributes: Mapping[str, str]) -> str:
+    """Return the text of an element without content."""
+    return f"<{tag}{attributes_text(attributes)}/>"
+
+
+def attributes_text(attributes: Mapping[str, str]) -> str:
+    """Return attributes as they stand behind the name of a tag."""
+    return "".join(f' {name}="{escaped(value)}"' for name, value in attributes.items())
+
+
+def escaped(value: str) -> str:
+    """Return a text as an attribute contains it."""
+    for character, entity in _ESCAPES:
+        value = value.replace(character, entity)
+    return value

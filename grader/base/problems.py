@@ -1,10 +1,10 @@
-"""Problems of files: their kinds, each with a stable code, and one problem at its location."""
+"""Problems of files: their kinds, each with a stable code, and one problem with its fixes."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import Literal, NamedTuple
 
-from grader.base.source import Location
+from grader.base.source import Edits, Location
 
 Severity = Literal["error", "warning", "note"]
 Effect = Literal["rejects", "undetermined", "drops", "loads", "other"]
@@ -26,6 +26,60 @@ class Kind(NamedTuple):
     is_before_ros: bool = False  # xacro stops at it, before ROS 2 gets the file
 
 
+class Fix(NamedTuple):
+    """The edits after which a problem is gone, and what they assume."""
+
+    edits: Edits
+    assumption: str  # "<colision> is read as <collision>"
+    is_certain: bool = True  # whether nothing else can be meant
+
+
+class Fixes:
+    """The fixes of a problem, which are computed when they are first asked for: most never are.
+
+    What finds a problem makes them; hints and editors read them. They take no part in comparison:
+    all are equal, and a copy in another process has none.
+
+    >>> fixes = Fixes(lambda: [Fix((), "<colision> is read as <collision>")])
+    >>> [fix.assumption for fix in fixes]
+    ['<colision> is read as <collision>']
+    >>> fixes == NO_FIXES
+    True
+    """
+
+    __slots__ = ("_compute", "_computed")
+
+    def __init__(self, compute: Callable[[], Iterable[Fix]]) -> None:
+        """`compute` returns the fixes; it is called once at most."""
+        self._compute = compute
+        self._computed: tuple[Fix, ...] | None = None
+
+    def __iter__(self) -> Iterator[Fix]:
+        """Iterate over the fixes: the one that is most likely meant comes first."""
+        if self._computed is None:
+            self._computed = tuple(self._compute())
+        return iter(self._computed)
+
+    def __eq__(self, other: object) -> bool:
+        """Return that fixes are equal, whatever they are."""
+        return isinstance(other, Fixes)
+
+    def __hash__(self) -> int:
+        """Return one number for all."""
+        return 0
+
+    def __repr__(self) -> str:
+        """Return nothing of what they are."""
+        return "Fixes()"
+
+    def __reduce__(self) -> tuple[type["Fixes"], tuple[Callable[[], tuple[Fix, ...]]]]:
+        """Return how a copy without fixes is made: those that are not computed need the files."""
+        return Fixes, (tuple,)
+
+
+NO_FIXES = Fixes(tuple)
+
+
 class Problem(NamedTuple):
     """One problem of one file."""
 
@@ -35,6 +89,8 @@ class Problem(NamedTuple):
     # what it is about: the link that loses content with it, a tag, or a few words
     subject: str = ""
     rule: str = ""  # the name of the rule of a workspace that found it
+    related: Location | None = None  # of what it is compared with
+    fixes: Fixes = NO_FIXES
 
     @property
     def code(self) -> str:

@@ -1,8 +1,11 @@
 """A slip: a word of a file that surely stands for another one."""
 
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
-from grader.base.source import Edits, Location
+from grader.base.problems import Fix, Fixes
+from grader.base.source import Edit, Edits, Location
+from grader.base.text import enumerated
 
 
 class Slip(NamedTuple):
@@ -19,3 +22,23 @@ class Slip(NamedTuple):
     assumption: str  # "the attribute lenght of <cylinder> is read as length"
     location: Location
     is_refused: bool = False  # whether nothing of the file is used for it
+
+    @property
+    def fix(self) -> Fix:
+        """The fix that writes what is meant."""
+        return Fix(self.edits, self.assumption)
+
+
+def fix_together(find_slips: Callable[[], Sequence[Slip]]) -> Fixes:
+    """Return one fix of a file that nothing reads before all of its slips are corrected."""
+
+    def compute() -> list[Fix]:
+        slips = find_slips()
+        edits: list[Edit] = []
+        for slip in slips:
+            edits += slip.edits
+        if not edits:
+            return []
+        return [Fix(tuple(edits), enumerated([slip.assumption for slip in slips]))]
+
+    return Fixes(compute)

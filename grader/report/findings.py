@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from grader.base.problems import Problem, Severity
+from grader.base.problems import NO_FIXES, Fixes, Problem, Severity
 from grader.base.source import Base, Location
 from grader.base.text import printable, sentence
 from grader.files.reading import sha256_of
@@ -36,6 +36,8 @@ class Finding(NamedTuple):
     severity: Severity
     message: str  # printable, in one line
     location: Location
+    related: Location | None = None  # of what it is compared with
+    fixes: Fixes = NO_FIXES  # of a problem, for editors alone
 
 
 def findings_in_inspection(inspection: Inspection) -> list[Finding]:
@@ -53,7 +55,8 @@ def finding_of_problem(problem: Problem) -> Finding:
     kind, where = problem.kind, problem.location
     page = f"{DOCUMENTATION}problems.html#{kind.code.lower()}"
     rule = FindingKind(kind.code, kind.title, explanation_of(kind), page, problem.rule)
-    return Finding(rule, kind.severity, printable(problem.message) + calls_text(where), where)
+    message = printable(problem.message) + calls_text(where)
+    return Finding(rule, kind.severity, message, where, problem.related, problem.fixes)
 
 
 def place_in_repository(finding: Finding, base: Base) -> tuple[str, Location | None]:

@@ -14,7 +14,8 @@ a pose is a `Transform`: `T_a_b` maps points of frame b to frame a. What a file 
 MissingElement, which names what exists; what cannot be determined statically raises NotDecided; a
 shape whose size is not known raises UnknownShape.
 
-**Show.** Every element, `Problem` and `Mismatch` has its place: path, line and column from 1.
+**Show.** Every element and `Problem` has its place: path, line and column from 1. The `fixes` of a
+problem are computed when they are iterated over.
 
 A name is imported with its module when it is first asked for: most commands need few of them.
 
@@ -69,7 +70,6 @@ if TYPE_CHECKING:
     from grader.ros.workspace.opened import OpenedWorkspace as OpenedWorkspace
     from grader.ros.workspace.opening import STANDARD_INPUT as STANDARD_INPUT
     from grader.ros.workspace.opening import open_workspace as open_workspace
-    from grader.ros.workspace.rules.names import Mismatch as Mismatch
     from grader.ros.workspace.rules.problem_kinds import EVERY_KIND as EVERY_KIND
     from grader.ros.workspace.rules.rule_table import RULES as RULES
     from grader.ros.workspace.rules.rule_table import Rule as Rule
@@ -93,7 +93,6 @@ else:
         "workspace.all_robots": "read_workspace",
         "workspace.extent": "Extent",
         "workspace.name_places": "NamePlaces",
-        "workspace.rules.names": "Mismatch",
         "workspace.opened": "OpenedWorkspace",
         "workspace.opening": "STANDARD_INPUT open_workspace",
         "workspace.rules.problem_kinds": "EVERY_KIND",

@@ -17,6 +17,7 @@ _ROBOT = "diffdrive_robot/urdf/diffdrive.urdf.xacro"
 _SYSTEM = "diffdrive_robot/urdf/diffdrive.ros2_control.xacro"
 _CONTROLLERS = "diffdrive_robot/config/controllers.yaml"
 _LAUNCH = "diffdrive_robot/launch/diffdrive.launch.py"
+_XACRO = "diffdrive_robot/urdf/diffdrive.urdf.xacro"
 _LAB6 = "my_robot/urdf/my_robot.urdf"
 _WRONG_JOINT = f"{_CONTROLLERS}:12:23-38: REF002"
 
@@ -419,6 +420,27 @@ def test_corrects_a_word_for_which_ros_2_rejects_the_file(in_lab6: Run) -> None:
             assert "\n".join(rows) == text
 
     in_lab6(act)
+
+
+@pytest.mark.slow
+def test_corrects_a_word_that_xacro_refuses(in_diffdrive: Run) -> None:
+    """It is offered once, although two problems have the same fix."""
+
+    async def act(one: Editor) -> None:
+        await one.open(_XACRO)
+        right, wrong = 'xyz="0 0 ${wheel_radius}"', 'xyz="0 0 ${wheel_radus}"'
+        await one.type(_XACRO, one.text(_XACRO).replace(right, wrong, 1))
+        found = one.client.diagnostics[one.uri(_XACRO)]
+        context = lsp.CodeActionContext(found)
+        asked = lsp.CodeActionParams(one.document(_XACRO), found[0].range, context)
+        [action] = await one.client.text_document_code_action_async(asked) or ()
+        assert isinstance(action, lsp.CodeAction)
+        assert action.edit is not None
+        assert action.edit.changes is not None
+        [edit] = action.edit.changes[one.uri(_XACRO)]
+        assert edit.new_text == right
+
+    in_diffdrive(act)
 
 
 @pytest.mark.slow

@@ -95,6 +95,27 @@ def test_what_may_run(old: str, new: str) -> None:
     assert reactions(SCRIPT.replace(old, new)) == []
 
 
+@pytest.mark.parametrize("module", ["cv2", "tf_transformations", "my_srvs.srv"])
+def test_what_does_nothing_for_rclpy(module: str) -> None:
+    """A node that imports it and is not spun certainly does nothing."""
+    text = SCRIPT.replace("import rclpy\n", f"import rclpy\nimport {module}\n")
+    assert reactions(text) == []
+    [found] = reactions(text.replace("rclpy.spin(DriveCircle())", "DriveCircle()"))
+    assert found.startswith("rclpy.spin() is missing")
+
+
+def test_the_server_of_an_action_calls_its_callback() -> None:
+    """It is a callback like that of a timer."""
+    server = "        ActionServer(self, Reset, 'drive', self.send())\n"
+    imports = "from rclpy.action import ActionServer\nfrom my_actions.action import Reset\n"
+    text = SCRIPT.replace(CREATE, server + CREATE).replace(
+        "import rclpy\n", f"import rclpy\n{imports}"
+    )
+    [found] = reactions(text)
+    assert found == "ActionServer() is given what self.send() returns, not the function"
+    assert reactions(text.replace("self.send())\n", "self.send)\n", 1)) == []
+
+
 def test_an_entry_point_calls_its_function() -> None:
     """Then the end of the file does not count, and names in other functions do not."""
     text = SCRIPT.replace("    main()\n", "    pass\n") + "\n\ndef other():\n    math.sin(0)\n"

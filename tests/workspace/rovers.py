@@ -5,7 +5,6 @@ from grader.files.tree import make_tree, overlaid
 from grader.ros.workspace.all_robots import read_workspace
 from grader.ros.workspace.opened import OpenedWorkspace
 from grader.ros.workspace.rules.name_problems import name_problems
-from grader.ros.workspace.rules.reading import read_agreement
 
 Edit = tuple[
     str, str, str
@@ -256,7 +255,7 @@ def rover(*edits: Edit) -> OpenedWorkspace:
 
 def problems_of(*edits: Edit) -> list[str]:
     """Return the problems of the workspace with some texts replaced, each with its code and place."""
-    found = name_problems(read_agreement(rover(*edits).workspace))
+    found = name_problems(rover(*edits).workspace)
     texts = []
     for problem in found:
         if problem.code not in _OTHERS:

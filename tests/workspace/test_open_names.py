@@ -11,7 +11,6 @@ from grader.ros.workspace.all_robots import read_workspace
 from grader.ros.workspace.opened import OpenedWorkspace
 from grader.ros.workspace.rules.file_problems import listed_problems
 from grader.ros.workspace.rules.name_problems import name_problems
-from grader.ros.workspace.rules.reading import read_agreement
 
 _MANIFEST = """\
 <package format="3">
@@ -119,7 +118,7 @@ def _kit(more: Mapping[str, str] = {}, **parts: str) -> OpenedWorkspace:
 
 def _names(kit: OpenedWorkspace) -> list[str]:
     """Return the problems of names, each with its code."""
-    found: tuple[Problem, ...] = name_problems(read_agreement(kit.workspace))
+    found: tuple[Problem, ...] = name_problems(kit.workspace)
     return [f"{it.code} {it.message}" for it in found]
 
 

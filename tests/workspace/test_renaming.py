@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from grader.base.source import Edit
-from grader.lab.hints.name_edits import correction_edits
-from grader.ros.workspace.rules.names import Correction, Use
+from grader.ros.workspace.rules.name_fixes import NameFixes
+from grader.ros.workspace.rules.names import Use
 from grader.ros.workspace.rules.reading import read_facts
 from grader.ros.workspace.rules.rule_table import DEFINED, Family
 from tests.examples import examples
@@ -85,14 +85,11 @@ def _uses() -> list[tuple[Use, Edit]]:
         for it in read_facts(cart(cart_files()).workspace)
         if isinstance(it, Use)
     }
-    slips = (
-        (use, Correction(use.location, use.name, f"{use.name[:-1]}{_SLIP}"))
-        for use in facts.values()
-    )
+    name_fixes = NameFixes(cart(cart_files()).workspace)
     return [
         (use, edit)
-        for use, slip in slips
-        for edit in correction_edits(cart(cart_files()).source, slip)[:1]
+        for use in facts.values()
+        for edit in name_fixes.edits(use.location, use.name, f"{use.name[:-1]}{_SLIP}")[:1]
     ]
 
 

@@ -160,10 +160,10 @@ def _related(
     for name, call in shown.finding.location.calls:
         text = f"the macro {name} is called here"
         found.append(lsp.DiagnosticRelatedInformation(ranges.place(call), text))
-    mismatch = look.mismatch_of(shown.finding)
-    if mismatch is not None and mismatch.related is not None:
+    related = shown.finding.related
+    if related is not None:
         text = "this is what it is compared with"
-        found.append(lsp.DiagnosticRelatedInformation(ranges.place(mismatch.related), text))
+        found.append(lsp.DiagnosticRelatedInformation(ranges.place(related), text))
     for at, text in shown.notes:
         if at.path in look.tree.files:
             found.append(lsp.DiagnosticRelatedInformation(ranges.place(at), text))

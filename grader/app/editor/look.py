@@ -17,7 +17,6 @@ from grader.report.inspection import InspectedRobot, Inspection
 from grader.report.mistakes import Mistake
 from grader.ros.api import (
     Configuration,
-    Mismatch,
     NamePlaces,
     OpenedWorkspace,
     Read,
@@ -54,11 +53,6 @@ class Look:
     def names(self) -> NamePlaces:
         """The names that files define and use."""
         return NamePlaces(self.opened)
-
-    def mismatch_of(self, finding: Finding) -> Mismatch | None:
-        """Return the names that do not agree for which there is a finding; None for another one."""
-        at = finding.location
-        return self.names.mismatches.get((finding.message, at.path, at.line, at.column))
 
     @cached_property
     def graded(self) -> Graded:

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator
 
 from grader.base.source import Edit, Source
 from grader.lab.authoring.mutants import MAX_LABEL, MutantEdit, misspelt, mutants
-from grader.lab.hints.name_edits import correction_edits
 from grader.lab.submission.submission import Submission
 from grader.ros.config.yaml_nodes import YamlNode, yaml_root
 from grader.ros.package.package import CMAKE, MANIFEST
-from grader.ros.workspace.rules.names import Correction, Fact, Use
+from grader.ros.workspace.rules.name_fixes import NameFixes
+from grader.ros.workspace.rules.names import Fact, Use
 from grader.ros.workspace.rules.reading import compared_facts
 from grader.ros.workspace.rules.rule_table import Family
 
@@ -32,10 +32,9 @@ def compared_names(
     """Yield the names of these families that files use or define, each with the edit that misspells
     it there.
     """
-    known = frozenset(families)
+    known, name_fixes = frozenset(families), NameFixes(submission.workspace)
     for fact in compared_facts(submission.workspace, known) if known else ():
-        correction = Correction(fact.location, fact.name, misspelt(fact.name))
-        for edit in correction_edits(submission.source, correction)[:1]:
+        for edit in name_fixes.edits(fact.location, fact.name, misspelt(fact.name))[:1]:
             yield fact, edit
 
 

@@ -16,9 +16,9 @@ from grader.ros.xml.urdf_format import numbers_in
 
 if TYPE_CHECKING:
     from grader.lab.submission.submission import Submission
-    from grader.ros.api import Mismatch
     from grader.ros.launch.launch_model import Launch, StartedNode
     from grader.ros.workspace.model.workspace import Workspace
+    from grader.ros.workspace.rules.names import Mismatch
 
 _VERBS: Mapping[str, str] = {
     "publisher": "publishes",

@@ -17,7 +17,7 @@ from grader.base.source import Edit, Edits
 from grader.base.text import enumerated, in_backticks, quoted, texts_in
 from grader.lab.hints.edits import MAX_IN_HINT, FoundHint, Proposal
 from grader.lab.hints.robot_difference import MissingPart, Piece, RobotDifference
-from grader.lab.hints.robot_draft import Draft, Set
+from grader.lab.hints.robot_draft import Draft
 from grader.lab.hints.robot_variants import (
     exchanges,
     in_another_unit,
@@ -254,11 +254,11 @@ def _repairs(reading: Reading) -> Iterator[Proposal]:
         if not repaired.is_lossy:
             edits = tuple(reading.source.edit(*change) for change in repaired.changes)
             yield Proposal(edits, _syntax_in_words(edits))
-    draft = Draft.of(reading)
-    if draft is not None and reading.undone:
+    if reading.undone:
         edits_of_words: list[Edit] = []
         for word in reading.undone:
-            edits_of_words += word_edits(draft, word)
+            for fix in word.fixes:
+                edits_of_words += fix.edits
         written = dict.fromkeys(map(_word_in_words, reading.undone))
         cause = enumerated(written, MAX_IN_HINT)
         yield Proposal(tuple(edits_of_words), cause)
@@ -285,17 +285,6 @@ def _word_in_words(word: Word) -> str:
     if attribute in word.attributes:
         return f"{attribute}={quoted(str(element.attrib[attribute]))} of <{element.tag}>"
     return f"the attribute {attribute} of <{element.tag}>"
-
-
-def word_edits(draft: Draft, word: Word) -> Edits:
-    """Return the edits of a word: of a tag, of an attribute's name, or of its value."""
-    element, attribute = word.element, word.attribute
-    if attribute is None:
-        return draft.rename_tag(element, word.tag)
-    if attribute in word.attributes:
-        return next(iter(draft.ways([Set(element, "", attribute, word.attributes[attribute])])), ())
-    new = next(name for name in word.attributes if name not in element.attrib)
-    return draft.rename_attribute(element, attribute, new)
 
 
 def _with_xacro(submission: Submission) -> Iterator[Proposal]:

@@ -42,7 +42,7 @@ class _HintedReport(NamedTuple):
     faults: list[str]
 
 
-class Fix(NamedTuple):
+class FixedFiles(NamedTuple):
     """The files of a submission that all proven edits change, None for one that is gone, and the
     report on the result.
 
@@ -147,7 +147,7 @@ def _loses_expression(edit: Edit) -> bool:
     return edit.old.count("$") > edit.new.count("$")
 
 
-def fixed(found: _HintedReport, submission: Submission) -> Fix:
+def fixed(found: _HintedReport, submission: Submission) -> FixedFiles:
     """Return the files with all proven edits that fit together, graded again."""
     report, why_nothing = found.report, "no edit that was tried gains points"
     if not report.hints_complete:
@@ -158,7 +158,7 @@ def fixed(found: _HintedReport, submission: Submission) -> Fix:
         why_nothing = "the submission is too large to search for edits"
     files = edited_files(submission, found.edits) or {}
     after = with_files(submission, files) if files else submission
-    return Fix(
+    return FixedFiles(
         files,
         grade(report.rubric, after, report.parts, is_one_of_class=not submission.is_single),
         why_nothing,

@@ -7,11 +7,12 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
 
+from grader.base.element_edits import escaped
 from grader.base.names import near
 from grader.base.source import Edits
 from grader.base.text import enumerated, quoted
 from grader.lab.hints.edits import MAX_IN_HINT
-from grader.lab.hints.robot_draft import Draft, Set, child_of, end_of, escaped
+from grader.lab.hints.robot_draft import Draft, Set, child_of, end_of
 from grader.lab.hints.robot_numbers import mistake_in, values_of
 from grader.lab.hints.tree_difference import Node, Step, paired, steps
 from grader.ros.xml.parsing import Element

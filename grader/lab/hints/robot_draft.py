@@ -7,8 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.base import markup
 from grader.base.element_edits import (
+    attributes_text,
     element_text,
+    empty_element,
+    escaped,
     merged,
+    renamed_attribute,
+    renamed_tag,
     with_attribute,
     with_child,
     with_element,
@@ -28,7 +33,6 @@ if TYPE_CHECKING:
     from grader.ros.xacro.rewriting import ExpandedEdits, NumberDefinition
 
 
-_ESCAPES = (("&", "&amp;"), ("<", "&lt;"), ('"', "&quot;"))
 _MAX_WAYS = 4
 _COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
 
@@ -251,7 +255,7 @@ class Draft:
         for element, values in attributes.items():
             added += self.add_attributes(element, values)
         for (owner, tag), values in children.items():
-            added += self.insert(owner, _empty_element(tag, values))
+            added += self.insert(owner, empty_element(tag, values))
         ways_that_change: list[Edits] = []
         for edits in self._exchanged(sets, ways)[:_MAX_WAYS]:
             every_edit = dict.fromkeys((*edits, *added))
@@ -296,9 +300,9 @@ class Draft:
         if self._expanded is not None:
             return self._expanded.rewrites(attribute, wanted)
         source, start = self.source.element(tag)
-        if self._broken_tag(source.text, start):
-            edits = self.add_attributes(element, {attribute: value})
-            return [edits] if edits else []
+        rewritten = self._rewrite_broken(element, {attribute: value})
+        if rewritten is not None:
+            return [rewritten] if rewritten else []
         return [(with_attribute(source, start, attribute, escaped(value)),)]
 
     def exchange(self, *elements: Element, attribute: str) -> Edits:
@@ -337,47 +341,30 @@ class Draft:
 
     def rename_attribute(self, element: Element, old: str, new: str) -> Edits:
         """Return the edit that gives an attribute another name."""
-        source, start = self.source.element(self._tags[element])
-        found = markup.attribute(source.text, start, old)
-        if found is None:
-            return ()
-        rest = source.text[found.start + len(old) : found.end]
-        return (source.edit(found.start, found.end, f"{new}{rest}"),)
+        return renamed_attribute(*self.source.element(self._tags[element]), old, new)
 
     def rename_tag(self, element: Element, new: str) -> Edits:
         """Return the edits that give an element another name, at its start and at its end."""
-        source, start = self.source.element(self._tags[element])
-        text, end = source.text, markup.name_end(source.text, start)
-        edits: Edits = (source.edit(start, end, f"<{new}"),)
-        tail = markup.element_end(text, start)
-        closing = text.rfind("</", start, tail)
-        if not markup.head_end(text, start)[1] and closing >= 0:
-            edits += (source.edit(closing, tail, f"</{new}>"),)
-        return edits
+        return renamed_tag(*self.source.element(self._tags[element]), new)
 
     def add_attributes(self, element: Element, values: Mapping[str, str]) -> Edits:
         """Return the edit that adds attributes to an element, or writes a broken tag with them."""
+        rewritten = self._rewrite_broken(element, values)
+        if rewritten is not None:
+            return rewritten
         source, start = self.source.element(self._tags[element])
         end = markup.name_end(source.text, start)
-        broken = self._broken_tag(source.text, start)
-        if broken:
-            if not broken.endswith(">"):
-                return ()
-            given = {str(name): str(value) for name, value in element.attrib.items()}
-            new = _empty_element(str(element.tag), {**given, **values})
-            if not broken.endswith("/>"):
-                new = f"{new[:-2]}>"
-            return (source.edit(start, start + len(broken), new),)
-        return (source.edit(start, end, f"{source.text[start:end]}{_attributes_text(values)}"),)
+        return (source.edit(start, end, f"{source.text[start:end]}{attributes_text(values)}"),)
 
-    def _broken_tag(self, text: str, start: int) -> str:
+    def _rewrite_broken(self, element: Element, values: Mapping[str, str]) -> Edits | None:
+        """Return the edit of a broken tag that gets attributes; None if it is not broken."""
         if not self.is_broken:
-            return ""
-        from grader.ros.xml.repair import (
-            broken_tag,  # late: its patterns take long, and few files need them
-        )
+            return None
+        from grader.ros.xml.repair import rewritten_tag  # late: its patterns take long
 
-        return broken_tag(text, start)
+        source, start = self.source.element(self._tags[element])
+        given = {str(name): str(value) for name, value in element.attrib.items()}
+        return rewritten_tag(source, start, str(element.tag), {**given, **values})
 
     def insert(self, parent: Element, xml: str) -> Edits:
         """Return the edit that inserts an element as the first child of another one."""
@@ -400,22 +387,6 @@ def _attribute_text(source: Source, start: int, name: str) -> str | None:
     if found is None:
         return None
     return source.text[found.value_start : found.value_end]
-
-
-def _empty_element(tag: str, values: Mapping[str, str]) -> str:
-    """Return the text of an element without content."""
-    return f"<{tag}{_attributes_text(values)}/>"
-
-
-def _attributes_text(values: Mapping[str, str]) -> str:
-    return "".join(f' {name}="{escaped(value)}"' for name, value in values.items())
-
-
-def escaped(value: str) -> str:
-    """Return a text as an attribute contains it."""
-    for character, entity in _ESCAPES:
-        value = value.replace(character, entity)
-    return value
 
 
 def end_of(joint: Element, role: str) -> str:

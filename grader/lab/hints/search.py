@@ -3,7 +3,7 @@ found before it.
 
 A `Piece` is what one mistake needs, with its words; a `Proposal` is one way to write it into the
 files; what grading proves becomes a `FoundHint`, and in a report a `Hint`. All of them together are
-the `Fix`.
+the `FixedFiles`.
 """
 
 from collections import Counter

@@ -9,8 +9,10 @@ from typing import NamedTuple
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.problems import Problem
 from grader.base.reuse import reuse
+from grader.base.slips import fix_together
 from grader.base.source import Location, Source
 from grader.ros.config.yaml_nodes import YamlFault, YamlNode, read_yaml
+from grader.ros.config.yaml_slips import yaml_slips
 from grader.ros.installation import package_problems as kinds
 from grader.ros.installation.places import is_of_one_machine
 
@@ -122,7 +124,9 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
         problem = Problem(kinds.BAD_RVIZ, message, start)
     except YamlFault as fault:
         manager = None
-        problem = Problem(kinds.BAD_RVIZ, f"not readable as YAML: {fault}", fault.location)
+        message = f"not readable as YAML: {fault}"
+        fixes = fix_together(lambda: yaml_slips(data, path))
+        problem = Problem(kinds.BAD_RVIZ, message, fault.location, fixes=fixes)
     if manager is None:
         return RvizFile(source, problem, None, start, ())
     frame = manager.get("Global Options", "Fixed Frame")

@@ -12,6 +12,7 @@ from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml
 from grader.ros.config.yaml_values import PARAMETERS, is_misspelt_key
 
 _MAX_SLIPS = 5  # in one file
+_MAX_BYTES = 32 * 1024  # of a file: what may be meant is tried by reading it again
 _MAX_LENGTH = 1_000  # characters of a line
 _MAX_SHOWN = 60
 _MAX_DEPTH = 5  # of the keys of nodes
@@ -23,6 +24,8 @@ def yaml_slips(data: bytes, path: str) -> list[Slip]:
     """Return what YAML refuses in a file, each with the change of one line after which it can be
     read on; nothing where a line may mean several things.
     """
+    if len(data) > _MAX_BYTES:
+        return []
     text = data.decode("utf-8", "surrogateescape")
     lines = [line.removesuffix("\r") for line in text.split("\n")]
     slips: list[Slip] = []

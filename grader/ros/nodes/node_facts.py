@@ -5,6 +5,7 @@ The readers of the languages make these facts; names and parameters are compared
 
 from typing import Literal, NamedTuple
 
+from grader.base.problems import NO_FIXES, Fixes
 from grader.base.source import Location
 from grader.ros.python.parse import SyntaxFault
 from grader.ros.python.values import Value
@@ -160,6 +161,7 @@ class CodeFault(NamedTuple):
     location: Location
     related: Location | None = None
     is_certain: bool = True
+    fixes: Fixes = NO_FIXES
 
 
 class NodeFacts(NamedTuple):

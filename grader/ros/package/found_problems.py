@@ -6,14 +6,15 @@ from collections.abc import Collection, Iterable, Iterator
 from fnmatch import fnmatchcase
 
 from grader.base.names import did_you_mean
-from grader.base.problems import Problem
-from grader.base.source import Location
+from grader.base.problems import NO_FIXES, Fixes, Problem
+from grader.base.slips import Slip, fix_together
+from grader.base.source import Location, Source
 from grader.base.text import enumerated
 from grader.ros.installation import package_problems as kinds
 from grader.ros.installation.installation import Installation
 from grader.ros.installation.places import is_of_one_machine, one_machine_only
 from grader.ros.known.releases import Release
-from grader.ros.launch.launch_model import Launch
+from grader.ros.launch.launch_model import Launch, LaunchFault
 from grader.ros.package.package import MANIFEST, RESOURCE_INDEX, Package
 
 _MAX_FILES = 5  # launch files, and RViz files
@@ -61,7 +62,8 @@ def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
         text = (
             setup.fault_text if fault.is_certain else f"{setup.file} is not read: {fault.message}"
         )
-        yield Problem(kind, text, fault.location)
+        fixes = NO_FIXES if setup.is_cmake else syntax_fixes(setup.source)
+        yield Problem(kind, text, fault.location, fixes=fixes)
         return
     for error in setup.faults:
         yield Problem(kinds.SETUP_NAME, error.message, setup.location(error.at))
@@ -121,7 +123,7 @@ def _launch_problems(launch: Launch) -> Iterator[Problem]:
         message = f"the launch file is not read: {launch.unread}"
         yield Problem(kinds.LAUNCH_UNKNOWN, message, Location(launch.source.path, 1, 1))
     if launch.syntax is not None:
-        yield Problem(kinds.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
+        yield launch_syntax(launch, launch.syntax)
     for fault in launch.faults:
         yield Problem(kinds.LAUNCH_FAULT, fault.message, fault.location)
     for unknown in launch.unknown:
@@ -129,6 +131,23 @@ def _launch_problems(launch: Launch) -> Iterator[Problem]:
     for reference in launch.references:
         if reference.path is not None and is_of_one_machine(reference.path):
             yield Problem(kinds.HARD_CODED, one_machine_only(reference.path), reference.location)
+
+
+def launch_syntax(launch: Launch, syntax: LaunchFault) -> Problem:
+    """Return that Python cannot read a launch file."""
+    fixes = syntax_fixes(launch.source)
+    return Problem(kinds.LAUNCH_SYNTAX, syntax.message, syntax.location, fixes=fixes)
+
+
+def syntax_fixes(source: Source) -> Fixes:
+    """Return the fix of a file that Python cannot read."""
+
+    def find() -> list[Slip]:
+        from grader.ros.python.python_slips import python_slips  # late: few problems are fixed
+
+        return python_slips(source.text.encode("utf-8", "surrogateescape"), source.path)
+
+    return fix_together(find)
 
 
 def why_no_match(package: Package, pattern: str) -> str:

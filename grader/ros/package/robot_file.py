@@ -14,7 +14,7 @@ from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.problems import Problem, causes, in_order
 from grader.base.reuse import Answers, Memory
 from grader.base.slips import Slip
-from grader.base.source import Source
+from grader.base.source import Edits, Source
 from grader.files.reading import URDF_LIMIT
 from grader.files.tree import Tree, make_tree, parents
 from grader.ros.known.releases import Release
@@ -24,7 +24,7 @@ from grader.ros.python.values import Undetermined
 from grader.ros.urdf.reader import Reading, find_xacro, read_robot, read_urdf
 from grader.ros.urdf.urdf_problems import OF_SLIPS, RAW_XACRO
 from grader.ros.urdf.versions import UrdfVersion, newest_version
-from grader.ros.xml.parsing import read_document
+from grader.ros.xml.parsing import XmlDocument, read_document
 from grader.ros.xml.xml_problems import DOCTYPE, NOT_WELL_FORMED
 
 if TYPE_CHECKING:
@@ -112,9 +112,13 @@ class Read(NamedTuple):
             slips += xacro_slips(cast("ExpandedSource", self.reading.source))
         kinds = {problem.kind for problem in self.reading.problems}
         if self.reading.elements is not None and not OF_SLIPS.isdisjoint(kinds):
-            from grader.ros.urdf.robot_slips import robot_slips  # late: most files have none
+            from grader.ros.urdf.robot_slips import RobotSlips  # late: most files have none
 
-            slips += robot_slips(self.reading)
+            undone = {word.element for word in self.reading.undone}
+            search = RobotSlips(
+                self.reading.elements, self.reading.source, self.reading.unresolved, undone
+            )
+            slips += search.listed()
         return slips
 
 
@@ -441,15 +445,32 @@ def _read_expanded(
             problem for problem in raw.problems if problem.kind not in (RAW_XACRO, NOT_WELL_FORMED)
         ]
         return Reading("rejected", raw.robot, (*expansion.problems, *problems), raw.source)
-    reading = read_robot(expansion.document, newest)
+    reading = _read_document(expansion.document, newest)
     if reading.verdict == "rejected" and expansion.meant is None and expansion.source.is_expanded:
         unmarked = cast("ExpandedSource", expansion.source).unmarked
         changed = read(unmarked) if unmarked else expansion
         if changed.meant is not None:
-            reread = read_robot(changed.meant.document, newest)
-            expansion = changed if reread.verdict != "rejected" else expansion
+            after = read_robot(changed.meant.document, newest)
+            expansion = expansion if after.verdict == "rejected" else changed
     if expansion.meant is None:
         return reading
-    meant = read_robot(expansion.meant.document, newest)
+    meant = _read_document(expansion.meant.document, newest)
     found = dict.fromkeys([*causes(reading.problems), *expansion.assumed, *meant.problems])
     return meant._replace(verdict="rejected", problems=in_order(found))
+
+
+def _read_document(document: XmlDocument, newest: UrdfVersion) -> Reading:
+    """Return the robot of a document.
+
+    The fixes of a text that xacro expanded edit what it was expanded from.
+    """
+    if not document.source.is_expanded:
+        return read_robot(document, newest)
+
+    def rewrites(index: int, attribute: str, values: tuple[str, str]) -> list[Edits]:
+        from grader.ros.xacro.rewriting import ExpandedEdits  # late: few problems are fixed
+
+        edits = ExpandedEdits(cast("ExpandedSource", document.source))
+        return edits.rewrites(attribute, {index: values})
+
+    return read_robot(document._replace(rewrites=rewrites), newest)

@@ -16,6 +16,7 @@ from grader.base.text import cut, quoted
 from grader.ros.python.parse import Code, SyntaxFault, parse
 
 _MAX_SLIPS = 5  # in one file
+_MAX_BYTES = 32 * 1024  # of a file: what may be meant is tried by reading it again
 _MAX_LINES = 40  # over which a bracket is searched
 _MAX_LENGTH = 1_000  # characters of a line
 _MAX_TRIED = 50  # changes of one kind
@@ -43,6 +44,8 @@ def python_slips(data: bytes, path: str) -> list[Slip]:
     """Return what Python refuses in a file, in the order in which it meets it, each with the change
     of one line after which it reads on; nothing where a line may mean several things.
     """
+    if len(data) > _MAX_BYTES:
+        return []
     slips: list[Slip] = []
     found = parse(data, path)
     if not isinstance(found, SyntaxFault) or not found.is_certain:

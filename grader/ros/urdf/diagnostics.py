@@ -3,12 +3,14 @@ location.
 """
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
+from functools import cached_property
 from math import nan
 from typing import TypeVar
 
 from grader.base.names import MAX_GUESSES, closest, did_you_mean
-from grader.base.problems import Effect, Kind, Problem
+from grader.base.problems import NO_FIXES, Effect, Fix, Fixes, Kind, Problem
+from grader.base.slips import Slip
 from grader.base.source import LazyLocation
 from grader.base.text import cut, quoted
 from grader.base.transforms import FULL_TURN, Transform, Vector, rotation_from_quaternion
@@ -57,6 +59,10 @@ class Problems:
         self.source = document.source
         self.root = root
         self.unresolved = document.unresolved
+        self.is_broken = document.root is None  # whether tags in the text are broken
+        self.rewrites = document.rewrites
+        # the words for which ROS 2 rejects the file and that surely are others: tags and attributes
+        self.undone: Mapping[tuple[Element, str | None], Fixes] = {}
         self.listed: list[Problem] = []
         self.effects: set[Effect] = set()
         self.unlisted = 0
@@ -136,7 +142,10 @@ class Problems:
         self.effects.add(kind.effect)
         if len(self.listed) < _MAX_PROBLEMS:
             location = self.source.tag(self._indices[element], attribute)
-            self.listed.append(Problem(kind, message, location, subject))
+            fixes = NO_FIXES
+            if kind.effect == "rejects" or kind in urdf_problems.OF_SLIPS:
+                fixes = Fixes(lambda: self._fixes_at(element, attribute))
+            self.listed.append(Problem(kind, message, location, subject, fixes=fixes))
         else:
             self.unlisted += 1
 
@@ -161,9 +170,26 @@ class Problems:
             self.add(urdf_problems.IGNORED_QUATERNION, message, element, attribute)
         return True
 
-    def assumed(self, element: Element, attribute: str | None, sentence: str) -> Problem:
+    def _fixes_at(self, element: Element, attribute: str | None) -> Iterable[Fix]:
+        """Return the fix of an element or an attribute that surely is another one."""
+        if (element, attribute) in self.undone:
+            return self.undone[element, attribute]
+        slip = self._slips.get((element, attribute))
+        return [slip.fix] if slip is not None else []
+
+    @cached_property
+    def _slips(self) -> Mapping[tuple[Element, str | None], Slip]:
+        from grader.ros.urdf.robot_slips import RobotSlips  # late: few problems are fixed
+
+        undone = {element for element, _ in self.undone}
+        return RobotSlips(self.root, self.source, self.unresolved, undone).at_places()
+
+    def assumed(
+        self, element: Element, attribute: str | None, sentence: str, fixes: Fixes
+    ) -> Problem:
         """Return what is assumed about a tag or an attribute for which ROS 2 rejects the file."""
-        return Problem(RECOVERED, sentence, self.source.tag(self._indices[element], attribute))
+        location = self.source.tag(self._indices[element], attribute)
+        return Problem(RECOVERED, sentence, location, fixes=fixes)
 
     def duplicate(self, kind: Kind, element: Element, first: Element) -> None:
         """Add that an element has the name of an earlier one of its kind."""

@@ -8,8 +8,16 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import NamedTuple
 
+from grader.base.element_edits import (
+    escaped,
+    merged,
+    renamed_attribute,
+    renamed_tag,
+    with_attribute,
+)
 from grader.base.names import near
-from grader.base.problems import Problem
+from grader.base.problems import NO_FIXES, Fix, Fixes, Problem
+from grader.base.source import Edits
 from grader.base.text import quoted
 from grader.ros.urdf.diagnostics import Problems
 from grader.ros.urdf.model import Robot
@@ -44,6 +52,12 @@ class Word(NamedTuple):
     tag: str
     attributes: dict[str, str]
     sentence: str
+    fixes: Fixes = NO_FIXES
+
+    @property
+    def place(self) -> tuple[Element, str | None]:
+        """The element, with the attribute."""
+        return self.element, self.attribute
 
 
 class _AsMeant(NamedTuple):
@@ -83,14 +97,58 @@ def read_as_meant(
             undone += words
             robot, problems = read()
             if "rejects" not in problems.effects:
-                assumed = [
-                    problems.assumed(word.element, word.attribute, word.sentence) for word in undone
-                ]
-                return _AsMeant(robot, [*problems.listed, *assumed], undone)
+                words = [word._replace(fixes=_fixes_of(word, problems)) for word in undone]
+                for word in words:
+                    problems.undone = {**problems.undone, word.place: word.fixes}
+                    problems.listed.append(problems.assumed(*word.place, word.sentence, word.fixes))
+                return _AsMeant(robot, problems.listed, words)
         return None
     finally:
         for element, tag, attributes in reversed(before):
             _rewrite_element(element, tag, attributes)
+
+
+def _fixes_of(word: Word, problems: Problems) -> Fixes:
+    return Fixes(lambda: [Fix(edits, word.sentence) for edits in _edits_of(word, problems)])
+
+
+def _edits_of(word: Word, problems: Problems) -> Iterator[Edits]:
+    """Yield the edits of a word, if they change the text.
+
+    The word is a tag, the name of an attribute, or its value.
+    """
+    place, attribute = problems.location(word.element), word.attribute
+    source, start = place.source.element(place.tag)
+    if attribute is None:
+        edits = renamed_tag(source, start, word.tag)
+    elif attribute in word.attributes:
+        edits = _edits_of_value(word, attribute, problems)
+    else:
+        new = next(name for name in word.attributes if name not in word.element.attrib)
+        edits = renamed_attribute(source, start, attribute, new)
+    if edits:
+        yield edits
+
+
+def _edits_of_value(word: Word, attribute: str, problems: Problems) -> Edits:
+    element, value = word.element, word.attributes[attribute]
+    written, place = element.get(attribute), problems.location(element)
+    if problems.rewrites is not None and written is not None:
+        ways = problems.rewrites(place.tag, attribute, (written, escaped(value)))
+        edits = next(iter(ways), ())
+        return tuple(edit for edit in dict.fromkeys(edits) if edit.old != edit.new)
+    if PARTS.get(attribute):  # numbers
+        value = merged(written or "", value)
+    source, start = place.source.element(place.tag)
+    if problems.is_broken:
+        from grader.ros.xml.repair import rewritten_tag  # late: few texts are broken
+
+        given = {str(name): str(text) for name, text in element.attrib.items()}
+        rewritten = rewritten_tag(source, start, str(element.tag), {**given, attribute: value})
+        if rewritten is not None:
+            return rewritten
+    edit = with_attribute(source, start, attribute, escaped(value))
+    return (edit,) if edit.old != edit.new else ()
 
 
 def _rewrite_element(element: Element, tag: str, attributes: dict[str, str]) -> None:

@@ -201,6 +201,7 @@ def _read_content(document: XmlDocument, root: Element, newest: UrdfVersion) -> 
         meant = read_as_meant(root, robot, read)
         if meant is not None:
             is_meant, robot, undone = True, meant.robot, tuple(meant.words)
+            problems.undone = {word.place: word.fixes for word in undone}
             own = _without_other_guesses(read, causes(found), meant.problems)
             found = [*own, *meant.problems]
     if document.root is None:
@@ -258,13 +259,14 @@ def _without_other_guesses(
     """
     lines = {problem.location.line for problem in assumed if problem.kind is RECOVERED}
     _, problems = read(NO_GUESSES)
-    plain = {(problem.kind, problem.location): problem for problem in problems.listed}
-    return [
-        problem
-        if problem.location.line in lines
-        else plain.get((problem.kind, problem.location), problem)
-        for problem in found
-    ]
+    plain = {(problem.kind, problem.location): problem.message for problem in problems.listed}
+    changed = []
+    for problem in found:
+        message = problem.message
+        if problem.location.line not in lines:
+            message = plain.get((problem.kind, problem.location), message)
+        changed.append(problem._replace(message=message))
+    return changed
 
 
 def _read_robot(

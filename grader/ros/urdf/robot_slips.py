@@ -1,7 +1,7 @@
 """The slips of a URDF that ROS 2 loads all the same: it ignores a word, or drops the element."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 
 from grader.base import markup
 from grader.base.element_edits import tag_edits
@@ -9,7 +9,6 @@ from grader.base.names import near
 from grader.base.slips import Slip
 from grader.base.source import Edits, Source
 from grader.base.text import cut, quoted
-from grader.ros.urdf.reader import Reading
 from grader.ros.urdf.words import meant_attribute, meant_tag, meant_value
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN
@@ -18,31 +17,43 @@ _MAX_SLIPS = 20
 _MAX_ATTRIBUTES = 50  # of one element, because lxml searches each name from the first
 _MAX_SHOWN = 60  # characters of a value
 
+_Place = tuple[Element, str | None]  # an element, or one of its attributes
 
-def robot_slips(reading: Reading) -> list[Slip]:
-    """Return the slips of a URDF in the order of its elements, each place once. The words for which
-    ROS 2 rejects a file are not among them.
+
+class RobotSlips:
+    """The search for the slips of one URDF.
+
+    The words for which ROS 2 rejects the file, `undone`, are not among them.
     """
-    slips: dict[Edits, Slip] = {}
-    for slip in _Slips(reading).found():
-        slips.setdefault(slip.edits, slip)
-        if len(slips) == _MAX_SLIPS:
-            break
-    return [*slips.values()]
 
+    def __init__(
+        self,
+        root: Element,
+        source: Source,
+        unresolved: Collection[Element],
+        undone: Collection[Element],
+    ) -> None:
+        self._root, self._source = root, source
+        self._unresolved, self._undone = unresolved, undone
+        self._indices = {element: index for index, element in enumerate(root.iter())}
+        self._at_places: dict[_Place, Slip] = {}
 
-class _Slips:
-    """The search for the slips of one URDF."""
+    def listed(self) -> list[Slip]:
+        """Return the slips in the order of the elements, each place once."""
+        slips: dict[Edits, Slip] = {}
+        for slip in self._find():
+            slips.setdefault(slip.edits, slip)
+            if len(slips) == _MAX_SLIPS:
+                break
+        return [*slips.values()]
 
-    def __init__(self, reading: Reading) -> None:
-        assert reading.elements is not None
-        self._root = reading.elements
-        self._source = reading.source
-        self._unresolved = reading.unresolved
-        self._undone = {word.element for word in reading.undone}
-        self._indices = {element: index for index, element in enumerate(self._root.iter())}
+    def at_places(self) -> Mapping[_Place, Slip]:
+        """Return the slips by the elements and attributes that they are in."""
+        for _ in self._find():
+            pass
+        return self._at_places
 
-    def found(self) -> Iterator[Slip]:
+    def _find(self) -> Iterator[Slip]:
         """Yield the slips in document order: those of an element, then those inside of it."""
         waiting: list[tuple[Element, str]] = [(self._root, "robot")]
         materials = self._material_slips()
@@ -79,7 +90,9 @@ class _Slips:
         attribute: str | None = None,
     ) -> Slip:
         location = self._source.tag(self._indices[element], attribute)
-        return Slip(edits, reaction, assumption, location._replace(calls=()))
+        slip = Slip(edits, reaction, assumption, location._replace(calls=()))
+        self._at_places[element, attribute] = slip
+        return slip
 
     def _tag_slip(self, element: Element, written: str, meant: str, parent: str) -> Iterator[Slip]:
         edits = tag_edits(*self._place(element), written, meant)

@@ -1,6 +1,6 @@
 """What an editor asks of the names of a workspace."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection
 from functools import cached_property
 
 from grader.ros.workspace.index.all_names import WorkspaceNames
@@ -8,12 +8,10 @@ from grader.ros.workspace.index.offered_names import offered_names
 from grader.ros.workspace.index.offered_parameters import parameter_text, parameters_below
 from grader.ros.workspace.index.written_names import WrittenName
 from grader.ros.workspace.opened import OpenedWorkspace
-from grader.ros.workspace.rules.names import Mismatch
-from grader.ros.workspace.rules.reading import read_agreement
 
 
 class NamePlaces:
-    """The names that the files of a workspace define and use, and what is wrong with them."""
+    """The names that the files of a workspace define and use."""
 
     def __init__(self, opened: OpenedWorkspace) -> None:
         self._opened = opened
@@ -21,15 +19,6 @@ class NamePlaces:
     @cached_property
     def _names(self) -> WorkspaceNames:
         return self._opened.names()
-
-    @cached_property
-    def mismatches(self) -> Mapping[tuple[str, str, int, int], Mismatch]:
-        """What does not agree, by its message and place."""
-        found = {}
-        for mismatch in read_agreement(self._opened.workspace).mismatches:
-            at = mismatch.location
-            found[mismatch.message, at.path, at.line, at.column] = mismatch
-        return found
 
     def at(self, path: str, line: int, column: int) -> WrittenName | None:
         """Return the name at a place of a file, the shortest of several; None where there is none.

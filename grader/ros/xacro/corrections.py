@@ -10,6 +10,7 @@ from typing import NamedTuple
 from grader.base import markup
 from grader.base.element_edits import tag_edits, with_attribute
 from grader.base.names import closest
+from grader.base.problems import Fix
 from grader.base.source import Edit, Edits, Location
 from grader.base.text import cut, quoted
 from grader.ros.python.budget import Budget
@@ -43,10 +44,9 @@ _UNMARKED = re.compile(
 
 
 class XacroCorrection(NamedTuple):
-    """Edits after which xacro does not refuse something, and what they assume."""
+    """The fix of what xacro refuses, and where something is read as another thing."""
 
-    edits: Edits
-    sentence: str
+    fix: Fix
     location: Location
     # of a name that may bring others with it: that of a macro, of an attribute, of a file
     is_of_element: bool = False
@@ -71,7 +71,7 @@ class Corrections:
         location = place.at(attribute)
         unknown = error.unknown if isinstance(error, XacroFails) else None
         if isinstance(error, XmlFails) and error.repair:
-            return XacroCorrection(error.repair, error.assumed, location, is_of_element=True)
+            return XacroCorrection(Fix(error.repair, error.assumed), location, is_of_element=True)
         parameters = self._parameters(refusal)
         if parameters:
             return _correction(parameters, location, is_of_element=True)
@@ -137,9 +137,8 @@ class Corrections:
                 f"the {unknown.kind} {unknown.name} is defined in line {moved[1].line}, below "
                 "its use: move it up"
             )
-            return XacroCorrection(
-                moved[0], sentence, moved[1], is_of_element=True, problem=problem
-            )
+            fix = Fix(moved[0], sentence)
+            return XacroCorrection(fix, moved[1], is_of_element=True, problem=problem)
         definitions = []
         included: Edits = ()
         for node in self.nodes():
@@ -171,13 +170,12 @@ class Corrections:
             edits = _rename(*definition, meant, unknown.name) if not self._uses(meant) else ()
             if edits:
                 sentence = f"the {unknown.kind} {quoted(meant)} is read as {quoted(unknown.name)}"
-                return XacroCorrection(
-                    edits, sentence, definition[0].at(definition[1]), is_of_element=True
-                )
+                at = definition[0].at(definition[1])
+                return XacroCorrection(Fix(edits, sentence), at, is_of_element=True)
         edits = _rename(place, attribute, unknown.name, meant)
         sentence = f"the {unknown.kind} {quoted(unknown.name)} is read as {quoted(meant)}"
         if edits:
-            return XacroCorrection(edits, sentence, place.at(attribute), is_of_element)
+            return XacroCorrection(Fix(edits, sentence), place.at(attribute), is_of_element)
         return None
 
     def _uses(self, name: str) -> int:
@@ -349,9 +347,8 @@ def _correction(
 ) -> XacroCorrection:
     """Return a correction that is where the first edit is."""
     at = Location(edits[0].path, edits[0].line, edits[0].column)
-    return XacroCorrection(
-        edits, sentence_of(edits), location if location[:3] == at[:3] else at, is_of_element
-    )
+    fix = Fix(edits, sentence_of(edits))
+    return XacroCorrection(fix, location if location[:3] == at[:3] else at, is_of_element)
 
 
 def sentence_of(edits: Edits) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from itertools import chain
 from typing import NamedTuple
 
-from grader.base.problems import Kind, Problem
+from grader.base.problems import NO_FIXES, Fixes, Kind, Problem
 from grader.base.source import Location
 from grader.base.text import enumerated, quoted
 from grader.ros.python.budget import CHARACTERS, Budget, OutOfBudget
@@ -203,12 +203,16 @@ class Expander:
         refusal = (error, place, attribute)
         self.refused.append(refusal)
         correction = self._meant.of(refusal) if len(self.refused) <= _MAX_CORRECTED else None
+        fixes = NO_FIXES
         if correction is not None:
             self.corrections.append(correction)
             message = correction.problem or message
+            fix = correction.fix
+            fixes = Fixes(lambda: [fix])
         joint = " " if message.endswith("?") else "; "
         kind = _KINDS.get(type(error), xacro_problems.XACRO_EXPRESSION)
-        self.problems.append(Problem(kind, f"{message}{joint}{STOPS}", location))
+        problem = Problem(kind, f"{message}{joint}{STOPS}", location, fixes=fixes)
+        self.problems.append(problem)
         return ""
 
     def warn(

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import NotDecided
 from grader.base.merge_conflicts import describe_conflicts, find_conflicts
-from grader.base.problems import Problem
+from grader.base.problems import Fix, Fixes, Problem
 from grader.base.source import Edit, Edits, Location, Source
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.values import EvaluationFails, Undetermined
@@ -226,21 +226,22 @@ def expand(
     meant = expansion
     corrected, assumed = dict.fromkeys(edits), dict[str, Problem]()
     if edits:
-        sentence, first = sentence_of(edits), edits[0]
-        assumed[sentence] = Problem(
-            RECOVERED, sentence, Location(first.path, first.line, first.column)
-        )
+        fix, first = Fix(edits, sentence_of(edits)), edits[0]
+        at = Location(first.path, first.line, first.column)
+        fixes = Fixes(lambda: [fix])
+        assumed[fix.assumption] = Problem(RECOVERED, fix.assumption, at, fixes=fixes)
         meant, expander = read(_by_path(corrected))
     while expander is not None and expander.corrections and len(assumed) < _MAX_ASSUMED:
         of_elements = [
             found for found in expander.corrections if found.is_of_element
         ]  # first: they may define names
         new = of_elements or expander.corrections
-        if all(corrected.keys() >= set(found.edits) for found in new):
+        if all(corrected.keys() >= set(found.fix.edits) for found in new):
             break
         for found in new:
-            corrected |= dict.fromkeys(found.edits)
-            assumed.setdefault(found.sentence, Problem(RECOVERED, found.sentence, found.location))
+            corrected |= dict.fromkeys(found.fix.edits)
+            sentence = found.fix.assumption
+            assumed.setdefault(sentence, Problem(RECOVERED, sentence, found.location))
         meant, expander = read(_by_path(corrected))
     if expander is None or meant is expansion:
         return expansion

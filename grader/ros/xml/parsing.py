@@ -3,14 +3,14 @@ TinyXML2 reads it.
 """
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 from lxml import etree
 
 from grader.base.merge_conflicts import describe_conflicts, find_conflicts, without_conflicts
 from grader.base.problems import Problem
-from grader.base.source import Location, Source
+from grader.base.source import Edits, Location, Source
 from grader.ros.xml.xml_problems import (
     MERGE_CONFLICT,
     MISMATCHED_TAG,
@@ -79,6 +79,9 @@ class XmlDocument(NamedTuple):
     # of a refused text, the robot as it is after the edits that repair the text
     recovered: Element | None = None
     is_meant: bool = True  # whether the text means these elements although it is refused
+    # of a text that xacro expanded: the ways to write an attribute of the element with an index, of
+    # its value and the new one
+    rewrites: Callable[[int, str, tuple[str, str]], Sequence[Edits]] | None = None
 
 
 def recover_xml(data: bytes) -> Element | None:

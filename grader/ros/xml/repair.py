@@ -7,11 +7,14 @@ format of a URDF: a tag that does not fit closes those that are in its way.
 
 import re
 from bisect import bisect_right
+from collections.abc import Mapping
 from typing import Literal, NamedTuple
 
+from grader.base.element_edits import empty_element
 from grader.base.markup import indentation
 from grader.base.merge_conflicts import find_conflicts, without_conflicts
 from grader.base.names import near
+from grader.base.source import Edits, Source
 from grader.base.text import enumerated
 from grader.ros.xml import xml_problems
 from grader.ros.xml.tinyxml2 import (
@@ -457,7 +460,7 @@ def _joined(changes: list[_TextEdit]) -> list[_TextEdit]:
     return found
 
 
-def broken_tag(text: str, start: int) -> str:
+def _broken_tag(text: str, start: int) -> str:
     """Return the broken tag at an offset; empty if it is not broken."""
     try:
         read_tag(text, start, lambda *_: None)
@@ -467,3 +470,21 @@ def broken_tag(text: str, start: int) -> str:
             return found[0].rstrip()
         return ""
     return ""
+
+
+def rewritten_tag(
+    source: Source, start: int, tag: str, attributes: Mapping[str, str]
+) -> Edits | None:
+    """Return the edit that writes the broken tag at an offset anew, with these attributes.
+
+    There is none where the end of the tag is not known. Return None if it is not broken.
+    """
+    broken = _broken_tag(source.text, start)
+    if not broken:
+        return None
+    if not broken.endswith(">"):
+        return ()
+    new = empty_element(tag, attributes)
+    if not broken.endswith("/>"):
+        new = f"{new[:-2]}>"
+    return (source.edit(start, start + len(broken), new),)

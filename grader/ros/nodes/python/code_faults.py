@@ -1,29 +1,25 @@
 """What stops a node in Python, or keeps it from doing anything, in one module.
 
-Each rule is about what certainly fails once it runs. A callback is a function that is given to
-create_timer(), create_subscription(), create_service() or ActionServer.
+Each rule is about what certainly fails once it runs, in any code of the module: whether it is run,
+only `node_slips` asks. A callback is a function that is given to create_timer(),
+create_subscription(), create_service() or ActionServer.
 """
 
 import ast
-import sys
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.base.names import closest, near
+from grader.base.problems import NO_FIXES, Fix, Fixes
 from grader.base.source import Location
 from grader.ros.known.package_tables import python_table
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
 from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.python.rclpy_names import CALLBACKS, is_passive
 from grader.ros.python.constants import binds_unseen, dotted, last_name
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
 
 _MAX_FAULTS = 20  # of one module and rule
-_CALLBACKS = {
-    "create_timer": (1, "callback"),
-    "create_subscription": (2, "callback"),
-    "create_service": (2, "callback"),
-    "ActionServer": (3, "execute_callback"),
-}
 _ANSWERING = ("create_service", "ActionServer")
 # Messages of pyflakes about what certainly fails when it runs.
 _CERTAIN = frozenset(
@@ -42,13 +38,6 @@ _LATER_BUILTINS = ("PythonFinalizationError", "EncodingWarning", "WindowsError")
 # Names of groups and executors with which a callback may wait for another one.
 _CONCURRENT = ("MultiThreadedExecutor", "ReentrantCallbackGroup", "MutuallyExclusiveCallbackGroup")
 _CONCURRENT_MODULES = frozenset({"threading", "multiprocessing", "concurrent", "asyncio"})
-# Packages that neither initialise rclpy nor spin a node, besides those of messages and the standard
-# library.
-_PASSIVE = frozenset(
-    {"rclpy", "numpy", "cv2", "cv_bridge", "tf2_ros", "tf_transformations", "transforms3d"}
-    | {"ament_index_python", "yaml", "scipy", "std_srvs", "message_filters"}
-)
-_MESSAGES = ("_msgs", "_interfaces", "_srvs", "_actions")
 _ENDING = frozenset({"sys.exit", "exit", "quit", "os._exit"})
 
 
@@ -171,13 +160,25 @@ class _Search:
         for part in self._module.parts:
             for call in part.calls:
                 name = last_name(call.func)
-                if name in _CALLBACKS:
-                    given = given_argument(call, *_CALLBACKS[name])
+                if name in CALLBACKS:
+                    given = given_argument(call, *CALLBACKS[name])
                     if given is not None:
                         yield _Registered(name, call, given, part)
 
     def _at(self, node: ast.expr | ast.stmt) -> Location:
         return location_in(self._code.source, position_of(node))
+
+    def _end(self, node: ast.expr) -> int:
+        """Return the offset of the end of an expression."""
+        position = Position(node.end_lineno or node.lineno, (node.end_col_offset or 0) + 1)
+        at = location_in(self._code.source, position)
+        return self._code.source.offset(at.line, at.column)
+
+    def _rewrite(self, start: int, end: int, new: str) -> Fixes:
+        """Return the fix of a text between two offsets."""
+        edit = self._code.source.edit(start, end, new)
+        fix = Fix((edit,), f"{edit.old} is read as {new}")
+        return Fixes(lambda: [fix])
 
     def _function(
         self, node: ast.expr, part: CodePart
@@ -212,13 +213,16 @@ class _Search:
             if name in own or name in known or name in asked or name.startswith("_"):
                 continue
             asked.add(name)
-            meant = near(name, own.union(known)) or closest(name, own)
+            sure = near(name, own.union(known))
+            meant = sure or closest(name, own)
             hint = f"; did you mean {meant}?" if meant is not None else ""
             message = f"{owner.name} has no attribute {name}{hint}"
-            at = Position(
-                node.end_lineno or node.lineno, (node.end_col_offset or 0) - len(name) + 1
-            )
-            yield CodeFault("undefined name", message, location_in(self._code.source, at))
+            end = self._end(node)
+            at = self._code.source.at(end - len(name))
+            fixes = NO_FIXES
+            if sure is not None:
+                fixes = self._rewrite(end - len(name), end, sure)
+            yield CodeFault("undefined name", message, at, fixes=fixes)
 
     # --- Callbacks
 
@@ -238,7 +242,11 @@ class _Search:
             else:
                 continue
             message = f"{found.by}() {what}; write {name} without the parentheses"
-            yield CodeFault("callback is called", message, self._at(found.given))
+            at, fixes = self._at(found.given), NO_FIXES
+            if not (found.given.args or found.given.keywords):
+                start = self._code.source.offset(at.line, at.column)
+                fixes = self._rewrite(start, self._end(found.given), name)
+            yield CodeFault("callback is called", message, at, fixes=fixes)
 
     def without_response(self) -> Iterator[CodeFault]:
         """Yield callbacks of services and actions that return nothing."""
@@ -372,16 +380,13 @@ class _Search:
         pending = [self._module]
         while pending:
             for full in pending.pop().imports:
-                top = full.partition(".")[0]
                 names = [full, full.rpartition(".")[0]]
                 own = next((self._others[it] for it in names if it in self._others), None)
                 if own is not None:
                     if own.name not in reached:
                         reached[own.name] = own
                         pending.append(own)
-                elif not (
-                    top in _PASSIVE or top in sys.stdlib_module_names or top.endswith(_MESSAGES)
-                ):
+                elif not is_passive(full):
                     return None
         return [*reached.values()]
 

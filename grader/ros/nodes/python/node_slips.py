@@ -1,12 +1,12 @@
 """The slips in a node written in Python for which it certainly stops, or does nothing.
 
 Only what the program certainly runs counts: the body of its file, the function that starts it, the
-constructors of its nodes and their callbacks, without what is under a condition or caught.
+constructors of its nodes and their callbacks, without what is under a condition or caught. A slip
+is assumed for the grade; `code_faults` lists what is wrong in any code of a module.
 """
 
 import ast
 import builtins
-import sys
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
@@ -15,21 +15,18 @@ from grader.base.names import near
 from grader.base.slips import Slip
 from grader.base.source import Edit
 from grader.ros.known.package_tables import python_table
+from grader.ros.nodes.message_uses import given_argument
+from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
 from grader.ros.python.constants import binds_unseen, dotted
 from grader.ros.python.parse import Code, Position, location_in, position_of
 
 _MAX_NAMES = 20  # that are not defined
 _GLOBAL = frozenset({*dir(builtins), "__file__", "__name__", "__doc__", "__spec__"})
-_NODES = ("rclpy.node.Node", "rclpy.Node", "rclpy.lifecycle.LifecycleNode", "rclpy.lifecycle.Node")
-# Which argument of these methods of a node is called later.
-_CALLBACKS = {"create_timer": 1, "create_subscription": 2, "create_service": 2}
 # What a handler of these does not keep from stopping the program.
 _INTERRUPTS = frozenset({"KeyboardInterrupt", "SystemExit", "ExternalShutdownException"})
 # Modules that students forget to import, and names in modules.
 _MODULES = ("rclpy", "math", "time", "os", "sys", "random")
 _IMPORTED = {"Node": "rclpy.node"}
-# Packages that do not initialise rclpy, besides those of messages and the standard library.
-_PASSIVE = frozenset({"rclpy", "numpy", "std_srvs", "tf2_ros", "ament_index_python"})
 _WAITING = frozenset({"threading", "asyncio", "time", "signal", "multiprocessing"})
 
 
@@ -78,7 +75,7 @@ class _NodeSlips:
         for node in code.tree.body:
             if not isinstance(node, ast.ClassDef) or len(node.bases) != 1:
                 continue
-            if self._full_name(node.bases[0]) in _NODES:
+            if self._full_name(node.bases[0]) in NODE_CLASSES:
                 self._classes[node.name] = node
 
     def _bind(self, node: ast.AST) -> None:
@@ -346,8 +343,9 @@ class _NodeSlips:
             yield from self._before(function.node.body, f"{code}; ", statement, reaction, code)
         waits = any(isinstance(it, ast.While | ast.For | ast.AsyncFor) for it in self._nodes)
         modules = {full.partition(".")[0] for full in self._imports.values()}
-        methods = {getattr(it, "attr", "") for it in ast.walk(self._classes[name])}
-        if "spin" in text or waits or modules & _WAITING or methods.isdisjoint(_CALLBACKS):
+        inside = ast.walk(self._classes[name])
+        called = {getattr(node, "attr", getattr(node, "id", "")) for node in inside}
+        if "spin" in text or waits or modules & _WAITING or called.isdisjoint(CALLBACKS):
             return
         reaction = "rclpy.spin() is missing, so that the program ends at once"
         match statement:
@@ -365,12 +363,7 @@ class _NodeSlips:
 
     def _is_closed(self) -> bool:
         """Return whether all that the file imports is known to do nothing for rclpy."""
-        for full in self._imports.values():
-            top = full.partition(".")[0]
-            is_known = top in _PASSIVE or top in sys.stdlib_module_names
-            if not is_known and not top.endswith(("_msgs", "_interfaces")):
-                return False
-        return not self._has_star
+        return not self._has_star and all(map(is_passive, self._imports.values()))
 
     def _of_main_that_is_not_called(self) -> Iterator[Slip]:
         for node in self._code.tree.body:
@@ -500,13 +493,10 @@ def _calls(statement: ast.stmt) -> Iterator[ast.Call]:
 
 
 def _callback(call: ast.Call) -> ast.expr | None:
-    """Return what a method of a node is given to call later."""
-    place = _CALLBACKS.get(dotted(call.func).removeprefix("self."))
-    for keyword in call.keywords:
-        if place is not None and keyword.arg == "callback":
-            return keyword.value
-    if place is not None and place < len(call.args):
-        return call.args[place]
+    """Return what a method of a node, or the server of an action, is given to call later."""
+    argument = CALLBACKS.get(dotted(call.func).removeprefix("self."))
+    if argument is not None:
+        return given_argument(call, *argument)
     return None
 
 

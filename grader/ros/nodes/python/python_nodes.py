@@ -38,6 +38,7 @@ from grader.ros.nodes.python.endpoint_names import Bindings, EndpointNames, bind
 from grader.ros.nodes.python.message_content import SUBSCRIBER, ContentReader
 from grader.ros.nodes.python.node_slips import Program as StartedProgram
 from grader.ros.nodes.python.node_slips import node_slips
+from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
 from grader.ros.package.entry_points import (
     entry_points,
     module_path,
@@ -67,17 +68,7 @@ _OF_CALL = 4  # parts of a call that leads to a node
 _BYTES_A_PART = 2  # of a program in which slips are searched, charged as one part
 _MAX_FIRST_LINE = 100  # bytes
 _DEPTH_OF_FILTERS = 10  # by message_filters of Jazzy
-_NODES = frozenset(
-    f"rclpy.{name}"
-    for name in (
-        "node.Node",
-        "Node",
-        "lifecycle.Node",
-        "lifecycle.LifecycleNode",
-        "lifecycle.node.Node",
-    )
-)
-_CREATES = frozenset({"rclpy.create_node", *_NODES})
+_CREATES = frozenset({"rclpy.create_node", *NODE_CLASSES})
 _KINDS: dict[str, EndpointKind] = {
     "create_publisher": "publisher",
     "create_lifecycle_publisher": "publisher",
@@ -174,7 +165,7 @@ def read_nodes(package: Package) -> PackageNodes:
     for full, found in bases.items():
         for base in found:
             derived.setdefault(base, []).append(full)
-    kinds, reached = set(_NODES), [*_NODES]
+    kinds, reached = set(NODE_CLASSES), [*NODE_CLASSES]
     while reached:
         more = [full for full in derived.get(reached.pop(), ()) if full not in kinds]
         kinds.update(more)
@@ -412,7 +403,7 @@ class _Module:
         """Return the nodes, once the full names of all classes of nodes are known."""
         for at, full in self._classes.items():
             if full in kinds:
-                is_own = _NODES.issuperset(self.bases[full])
+                is_own = NODE_CLASSES.issuperset(self.bases[full])
                 self._facts[at] = (
                     [] if is_own else [Doubt("what another base class does is not added", at)]
                 )
@@ -460,7 +451,7 @@ class _Module:
         nodes = {
             at: self._class_nodes[at]
             for at, full in self._classes.items()
-            if self.bases[full] and _NODES.issuperset(self.bases[full])
+            if self.bases[full] and NODE_CLASSES.issuperset(self.bases[full])
         }
         return ModuleText(self._name, self._code, self._parts, self._constants.imported, nodes)
 
@@ -669,8 +660,8 @@ class _Module:
         assert part.of is not None
         is_super = isinstance(owner, ast.Call) and dotted(owner.func) == "super"
         base = self._constants.value_of(owner, part.scope)
-        is_base = isinstance(base, QualifiedName) and base.name in _NODES
-        if (is_super or is_base) and _NODES.intersection(self.bases[self._classes[part.of]]):
+        is_base = isinstance(base, QualifiedName) and base.name in NODE_CLASSES
+        if (is_super or is_base) and NODE_CLASSES.intersection(self.bases[self._classes[part.of]]):
             name = self._argument(part, call, 0 if is_super else 1, "node_name")
             yield _Name(_text(name))
             for keyword in call.keywords:

@@ -2,5 +2,5 @@
 
 `rule_table` has a row for each rule, `reading` runs all modules, and `names` joins the names that
 they define and use. `name_problems`, `release_problems` and `file_problems` make problems of what
-is found. All other modules find something.
+is found, and `name_fixes` finds the edits that fix names. All other modules find something.
 """

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from grader.ros.nodes.node_facts import CodeRule
+from grader.ros.package.found_problems import syntax_fixes
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, Undecided
 from grader.ros.workspace.rules.rule_table import (
@@ -48,9 +49,11 @@ def code_facts(workspace: Workspace) -> Iterator[Fact]:
                 at = program.syntax.location
                 message = f"Python cannot read the file: {program.syntax.message}"
                 if program.syntax.is_certain:
-                    yield Mismatch(CODE_SYNTAX, message, at)
+                    fixes = syntax_fixes(program.syntax.source)
+                    yield Mismatch(CODE_SYNTAX, message, at, fixes=fixes)
                 else:
                     yield Undecided("code", f"{at.path} is not read")
         for fault in nodes.faults:
             rule = _RULES[fault.rule]
-            yield Mismatch(rule, fault.message, fault.location, fault.related, fault.is_certain)
+            at, related = fault.location, fault.related
+            yield Mismatch(rule, fault.message, at, related, fault.is_certain, fixes=fault.fixes)

@@ -11,7 +11,12 @@ from grader.base.text import counted
 from grader.ros.installation import package_problems as kinds
 from grader.ros.known.releases import releases_with
 from grader.ros.launch.launch_model import Launch
-from grader.ros.package.found_problems import build_problems, launch_problems, sorted_problems
+from grader.ros.package.found_problems import (
+    build_problems,
+    launch_problems,
+    launch_syntax,
+    sorted_problems,
+)
 from grader.ros.package.installed_files import are_installs_known
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.workspace.model.workspace import Workspace
@@ -30,7 +35,7 @@ def _file_problems(workspace: Workspace) -> Iterator[Problem]:
     wrong_programs = {it.location for it in mismatches if it.family == "programs"}
     for _, path, launch in workspace.launches.files:
         if launch.syntax is not None:
-            yield Problem(kinds.LAUNCH_SYNTAX, launch.syntax.message, launch.syntax.location)
+            yield launch_syntax(launch, launch.syntax)
         found = launch_problems(_started(workspace, path, launch)) if id(launch) in roots else []
         for problem in found:
             if problem.location not in wrong_programs:  # which is also a name that does not agree

@@ -4,17 +4,19 @@ docs/examples/ref.toml explains their kinds.
 """
 
 from grader.base.problems import Problem
-from grader.ros.workspace.rules.names import Agreement
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.name_fixes import NameFixes
+from grader.ros.workspace.rules.reading import read_agreement
 from grader.ros.workspace.rules.rule_table import FILE_USED
 
 
-def name_problems(agreement: Agreement) -> tuple[Problem, ...]:
-    """Return what does not agree as problems, in the order of files and lines."""
+def name_problems(workspace: Workspace) -> tuple[Problem, ...]:
+    """Return what does not agree as problems with their fixes, in the order of files and lines."""
+    agreement, name_fixes = read_agreement(workspace), NameFixes(workspace)
     problems = []
     for wrong in agreement.mismatches:
-        problems.append(
-            wrong.rule.problem(wrong.message, wrong.location, is_certain=wrong.is_certain)
-        )
+        problem = wrong.rule.problem(wrong.message, wrong.location, is_certain=wrong.is_certain)
+        problems.append(problem._replace(related=wrong.related, fixes=name_fixes.of(wrong)))
     for at in agreement.unused:
         message = "no other file of the workspace names this file"
         problems.append(FILE_USED.problem(message, at))

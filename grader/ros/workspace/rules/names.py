@@ -7,6 +7,7 @@ from fnmatch import fnmatchcase
 from typing import NamedTuple
 
 from grader.base.names import are_of_one_side, closest, near
+from grader.base.problems import NO_FIXES, Fixes
 from grader.base.source import Location
 from grader.base.text import counted, quoted
 from grader.ros.workspace.rules.rule_table import DEFINED, FAMILIES, AnyFamily, DefinedKind, Rule
@@ -78,6 +79,7 @@ class Mismatch(NamedTuple):
     corrections: tuple[
         Correction, ...
     ] = ()  # with each of which it agrees: first of the use, then of the definition
+    fixes: Fixes = NO_FIXES  # of what is no name
 
     @property
     def family(self) -> AnyFamily:

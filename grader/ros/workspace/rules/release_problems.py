@@ -27,7 +27,7 @@ def compared_names(workspace: Workspace) -> Iterator[Problem]:
     other releases.
     """
     agreement = read_agreement(workspace)
-    yield from name_problems(agreement)
+    yield from name_problems(workspace)
     try:
         yield from _release_problems(workspace, agreement)
     except NotDecided:

@@ -1,0 +1,40 @@
+"""What nodes in Python are made of: classes, callbacks, and modules that do nothing for them.
+
+Two readers search code for faults with these names. `node_slips` searches what a program certainly
+runs, and `code_faults` all code of a module.
+"""
+
+import sys
+from collections.abc import Mapping
+
+# Of rclpy of Jazzy: rclpy/__init__.py, rclpy/node.py and rclpy/lifecycle/ of ros2/rclpy.
+NODE_CLASSES = frozenset(
+    {
+        "rclpy.Node",
+        "rclpy.node.Node",
+        "rclpy.lifecycle.LifecycleNode",
+        "rclpy.lifecycle.Node",
+        "rclpy.lifecycle.node.Node",
+    }
+)
+# What is given a callback, with the position and the name of that argument: rclpy/node.py and
+# rclpy/action/server.py.
+CALLBACKS: Mapping[str, tuple[int, str]] = {
+    "create_timer": (1, "callback"),
+    "create_subscription": (2, "callback"),
+    "create_service": (2, "callback"),
+    "ActionServer": (3, "execute_callback"),
+}
+# Packages that neither initialise rclpy nor spin a node, besides those of messages and the standard
+# library; tf2_ros.TransformListener does if it is asked to, with the argument spin_thread.
+_PASSIVE = frozenset(
+    {"rclpy", "numpy", "cv2", "cv_bridge", "tf2_ros", "tf_transformations", "transforms3d"}
+    | {"ament_index_python", "yaml", "scipy", "std_srvs", "message_filters"}
+)
+_MESSAGES = ("_msgs", "_interfaces", "_srvs", "_actions")
+
+
+def is_passive(module: str) -> bool:
+    """Return whether a module surely neither initialises rclpy nor spins a node."""
+    top = module.partition(".")[0]
+    return top in _PASSIVE or top in sys.stdlib_module_names or top.endswith(_MESSAGES)

@@ -1,0 +1,143 @@
+"""The fixes of names that do not agree: where they are used, or where they are defined."""
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import cached_property
+from os.path import commonprefix
+
+from grader.base.problems import Fix, Fixes
+from grader.base.source import Edits, Location, Source
+from grader.base.text import quoted
+from grader.files.reading import URDF_LIMIT
+from grader.ros.package.package import CMAKE, MANIFEST, Package
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Correction, Mismatch
+
+_TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".sdf", ".txt", ".cfg")
+_MAX_KEY = 400  # characters from a key to its value
+_SEPARATED = re.compile(r".*[./:]")
+# Files in which a name stands several times for one thing.
+_WITH_ALL = (f"/{CMAKE}", f"/{MANIFEST}")
+
+
+class NameFixes:
+    """The fixes of what does not agree in a workspace, in the texts of its files."""
+
+    def __init__(self, workspace: Workspace) -> None:
+        self._workspace = workspace
+
+    @cached_property
+    def sources(self) -> list[Source]:
+        """The texts in which packages write names. Raises NotDecided."""
+        return self.sources_of(self._workspace.packages)
+
+    def sources_of(self, packages: Iterable[Package]) -> list[Source]:
+        """Return the texts in which some packages write names. Raises NotDecided."""
+        sources: list[Source] = []
+        for package in packages:
+            sources += self._workspace.texts.sources_of(package, _TEXTS)
+        return sources
+
+    def of(self, mismatch: Mismatch) -> Fixes:
+        """Return the fixes of a mismatch, one for each of its corrections.
+
+        A correction has none if its old name is not written as a whole where it is used or defined.
+        """
+        if mismatch.corrections:
+            return Fixes(lambda: self._fixes(mismatch, self._edits))
+        return mismatch.fixes
+
+    def guesses(self, mismatch: Mismatch) -> list[Fix]:
+        """Return the fixes of a mismatch for hints, which try them.
+
+        A name that is made of parts may also be changed in the only place where packages write it.
+
+        Raises:
+            NotDecided: Not all texts are read.
+        """
+        return self._fixes(mismatch, self._guess)
+
+    def _fixes(self, mismatch: Mismatch, edits_of: Callable[[Correction], Edits]) -> list[Fix]:
+        is_certain = mismatch.is_certain and len(mismatch.corrections) == 1
+        fixes = []
+        for correction in mismatch.corrections:
+            edits = edits_of(correction)
+            if edits:
+                assumption = f"{quoted(correction.old)} is read as {quoted(correction.new)}"
+                fixes.append(Fix(edits, assumption, is_certain))
+        return fixes
+
+    def _edits(self, correction: Correction) -> Edits:
+        return self.edits(correction.location, correction.old, correction.new)
+
+    def _guess(self, correction: Correction) -> Edits:
+        return self._edits(correction) or self._only_edit(correction)
+
+    def edits(self, at: Location, old: str, new: str) -> Edits:
+        """Return the edits that change a name at a place.
+
+        There are none where the name is not written there as a whole.
+        """
+        source = self._source(at.path)
+        if source is None:
+            return ()
+        for written, wanted in _as_written(old, new):
+            spans = _spans(source, written)
+            if not f"/{at.path}".endswith(_WITH_ALL):
+                spans = _meant(source.text, written, spans, source.offset(at.line, at.column))
+            if spans:
+                return tuple(source.edit(*span, wanted) for span in spans)
+        return ()
+
+    def _source(self, path: str) -> Source | None:
+        """Return the text of a file; None if it cannot be read."""
+        for urdf in self._workspace.urdfs:
+            if urdf.path == path:
+                return urdf.source
+        data = self._workspace.tree.read(path, URDF_LIMIT)
+        if data is not None:
+            return Source(path, data.decode("utf-8", "replace"))
+        return None
+
+    def _only_edit(self, correction: Correction) -> Edits:
+        """Return the edit of a name in the one place where packages write it."""
+        old, new = correction.old.strip("/"), correction.new.strip("/")
+        places: list[tuple[Source, tuple[int, int]]] = []
+        for source in self.sources:
+            places += [(source, span) for span in _spans(source, old)]
+        if len(places) != 1:
+            return ()
+        [(source, span)] = places
+        return (source.edit(*span, new),)
+
+
+def _spans(source: Source, name: str) -> list[tuple[int, int]]:
+    whole = re.compile(rf"(?<![\w-]){re.escape(name)}(?![\w-]|\.\w)")
+    return [match.span() for match in whole.finditer(source.text)]
+
+
+def _as_written(old: str, new: str) -> Iterator[tuple[str, str]]:
+    """Yield two names as they may be written in a text.
+
+    These are the names without the slash that begins them, and without the folders or tables that
+    both are in.
+    """
+    yield old.strip("/"), new.strip("/")
+    shared = _SEPARATED.match(commonprefix((old, new)))  # noqa: RUF071  of names, not of paths
+    if shared is not None and len(shared[0]) < min(len(old), len(new)):
+        yield old[shared.end() :], new[shared.end() :]
+
+
+def _meant(
+    text: str, name: str, spans: Sequence[tuple[int, int]], at: int
+) -> list[tuple[int, int]]:
+    """Return the occurrence of a name that a place is about.
+
+    This is its key, else the first behind the place, or the last before it.
+    """
+    key = re.compile(rf"{re.escape(name)}[\"']?\s*:\s*(?:\{{?\s*(?:ros__parameters|type)\s*:\s*)?")
+    before = [span for span in spans if span[0] < at]
+    after = [span for span in spans if span[0] >= at]
+    if before and at - before[-1][0] < _MAX_KEY and key.fullmatch(text, before[-1][0], at):
+        return before[-1:]
+    return after[:1] or before[-1:]
