@@ -16,7 +16,7 @@ from grader.ros.known.package_rows import (
 )
 from grader.ros.known.ros_machine import ros_machine
 from grader.ros.known.shared_names import shared_names
-from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
 from grader.ros.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.ros.workspace.graph.unread_ends import may_publish_type
@@ -102,36 +102,52 @@ def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
 
 
 def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
-    """Yield a robot with moving joints whose positions nothing publishes."""
-    publishers = [
-        it for _, it in workspace.launches.nodes if it.executable == _ROBOT_PUBLISHER and it.when
-    ]
+    """Yield a robot with moving joints whose positions nothing publishes.
+
+    Joints that follow others have no positions of their own. Nothing is said where there may be
+    other robots, or where a node, a bridge, a controller or a plugin of Gazebo may publish them, or
+    a page says what does.
+    """
+    publisher = None
+    for _, node in workspace.launches.nodes:
+        if node.executable == _ROBOT_PUBLISHER and node.when and publisher is None:
+            publisher = node
     moving = []
     for robot in workspace.robots.known:
-        moving += [it for it in robot.robot.joints if it.has_position and it.mimic is None]
-    if not publishers or not moving or workspace.robots.may_be_others:
+        for joint in robot.robot.joints:
+            if joint.has_position and joint.mimic is None:
+                moving.append(joint)
+    if publisher is None or not moving or workspace.robots.may_be_others:
         return
-    for _, node in workspace.launches.nodes:
-        if program_row(node.package, node.executable).publishes_joint_states:
-            return
-        if may_publish_type(workspace, node, _JOINT_STATE):
-            return
-    if any(row.is_published and row.ros_type == _JOINT_STATE for row in bridge_rows(workspace)):
+    if _may_publish_joint_states(workspace):
         return
-    if _broadcasters(workspace) or _is_mentioned(workspace, _JOINT_STATE_WORDS):
-        return
-    if any(
-        word in robot.source.text for robot in workspace.robots.known for word in _JOINT_STATE_WORDS
-    ):
-        return  # a plugin of Gazebo may publish them
-    joint = moving[0]
+    first = moving[0]
     message = (
         f"nothing publishes joint_states, so the links of {len(moving)} moving joints such as "
-        f"{quoted(joint.name)} have no transform: start joint_state_publisher or a "
+        f"{quoted(first.name)} have no transform: start joint_state_publisher or a "
         "joint_state_broadcaster"
     )
-    at = joint.location.resolve() if joint.location is not None else None
-    yield warning(JOINT_STATES, message, publishers[0].location, at)
+    at = first.location.resolve() if first.location is not None else None
+    yield warning(JOINT_STATES, message, publisher.location, at)
+
+
+def _may_publish_joint_states(workspace: Workspace) -> bool:
+    """Return whether something may publish the positions of the joints."""
+    for _, node in workspace.launches.nodes:
+        if program_row(node.package, node.executable).publishes_joint_states:
+            return True
+        if may_publish_type(workspace, node, _JOINT_STATE):
+            return True
+    if _is_bridged(workspace, _JOINT_STATE) or _broadcasters(workspace):
+        return True
+    texts = [robot.source.text for robot in workspace.robots.known]  # of plugins of Gazebo
+    is_in_robot = any(word in text for text in texts for word in _JOINT_STATE_WORDS)
+    return is_in_robot or _is_mentioned(workspace, _JOINT_STATE_WORDS)
+
+
+def _is_bridged(workspace: Workspace, message: str) -> bool:
+    """Return whether a bridge publishes messages of a type."""
+    return any(row.is_published and row.ros_type == message for row in bridge_rows(workspace))
 
 
 def _is_mentioned(workspace: Workspace, words: Sequence[str]) -> bool:
@@ -184,26 +200,37 @@ def _may_have_clock(workspace: Workspace) -> bool:
     """Return whether something may publish /clock: a node, a launch file or a command that is not
     read, or what a page tells people to start.
     """
-    if any(row.is_published and row.ros_type == _CLOCK for row in bridge_rows(workspace)):
+    if _is_bridged(workspace, _CLOCK):
         return True
     for _, launch in workspace.launches.roots:
-        ending = (*ros_machine().ending_commands, *commands_that_end())
-        if not all(command.startswith(ending) for command in launch.commands):
+        if _may_start_clock(workspace, launch):
             return True
-        for passed in launch.passed:
-            package = share_parts(f"{PREFIX}/{passed.path}")[0]
-            is_own = workspace.installed.source_of(passed.path) is not None
-            if not is_own and not package_row(package).launches_no_clock:
-                return True
     for _, node in workspace.launches.nodes:
-        if workspace.package_of(node) is None:
-            is_open = _says_clock(f"{node.package} {node.executable}")
-            is_open = is_open and "frames" not in package_row(node.package).without
-        else:
-            is_open = may_publish_type(workspace, node, _CLOCK)
-        if is_open or (node.package == BRIDGE and None in (node.arguments or (None,))):
+        is_open_bridge = node.package == BRIDGE and None in (node.arguments or (None,))
+        if is_open_bridge or _may_be_clock(workspace, node):
             return True
     return _is_told(workspace)
+
+
+def _may_start_clock(workspace: Workspace, launch: Launch) -> bool:
+    """Return whether a command or an included launch file may start a simulation."""
+    ending = (*ros_machine().ending_commands, *commands_that_end())
+    if not all(command.startswith(ending) for command in launch.commands):
+        return True
+    for passed in launch.passed:
+        package = share_parts(f"{PREFIX}/{passed.path}")[0]
+        is_own = workspace.installed.source_of(passed.path) is not None
+        if not is_own and not package_row(package).launches_no_clock:
+            return True
+    return False
+
+
+def _may_be_clock(workspace: Workspace, node: StartedNode) -> bool:
+    """Return whether a node may publish /clock: own code, or a program whose name says so."""
+    if workspace.package_of(node) is not None:
+        return may_publish_type(workspace, node, _CLOCK)
+    is_open = "frames" not in package_row(node.package).without
+    return is_open and _says_clock(f"{node.package} {node.executable}")
 
 
 def _says_clock(text: str) -> bool:

@@ -44,17 +44,17 @@ def component_facts(workspace: Workspace) -> Iterator[Fact]:
 def _unregistered(
     workspace: Workspace, package: Package, component: LoadedComponent
 ) -> Iterator[Fact]:
-    """Yield that a package of the workspace does not have the class that a container loads."""
+    """Yield that a package of the workspace does not have the class that a container loads.
+
+    It is certain where all is known that the package registers. Otherwise it is said only if there
+    is a class with a similar name. A class that a file of CMake names may be registered there.
+    """
     name, plugin = component.package, component.plugin
     owner = package.find(name) if name is not None else None
-    if owner is None or plugin is None:
+    if owner is None or plugin is None or not workspace.folder.means_one(package, owner.name):
         return
     setup = owner.installation
-    if (
-        setup is None
-        or setup.fault is not None
-        or not workspace.folder.means_one(package, owner.name)
-    ):
+    if setup is None or setup.fault is not None:
         return
     yield Compared("programs")
     registered: dict[str, Location] = {}
@@ -66,19 +66,23 @@ def _unregistered(
         return
     workspace.charge(cost_of_guess(len(registered)))
     meant = near(plugin, registered) or closest(plugin, registered)
-    is_open = any(_COMPUTED.search(text) or _OTHER_WAY in text for text in texts)
-    is_known = not (setup.unknown or setup.unread or is_open)
-    message = f"the package {owner.name!r} registers no component {quoted(plugin)}"
-    if meant is not None:
-        message += f"; did you mean {quoted(meant)} ({registered[meant].file_and_line})?"
-    elif not is_known:
+    is_open = bool(setup.unknown) or bool(setup.unread) or any(map(_may_register, texts))
+    if meant is None and is_open:
         yield Undecided("programs", f"which components {owner.name} has is not evaluated")
         return
-    else:
-        message += f"; it registers {', '.join(registered) or 'none'}"
     related = registered[meant] if meant is not None else None
+    if meant is not None and related is not None:
+        hint = f"did you mean {quoted(meant)} ({related.file_and_line})?"
+    else:
+        hint = f"it registers {', '.join(registered) or 'none'}"
+    message = f"the package {owner.name!r} registers no component {quoted(plugin)}; {hint}"
     either = corrections(plugin, component.location, meant, related)
-    yield Mismatch(COMPONENT_REGISTERED, message, component.location, related, is_known, either)
+    yield Mismatch(COMPONENT_REGISTERED, message, component.location, related, not is_open, either)
+
+
+def _may_register(text: str) -> bool:
+    """Return whether a file of CMake may register components whose classes are not read."""
+    return _COMPUTED.search(text) is not None or _OTHER_WAY in text
 
 
 def _no_container(workspace: Workspace, launch: Launch) -> Iterator[Mismatch]:
@@ -105,21 +109,26 @@ def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | N
     """Return the nodes of a launch file that may be containers, by their full names; None where
     not all of them are known, or none is a container.
     """
-    places = {it.location for it in launch.containers}
-    places |= {it.loaded_at for it in launch.components}
-    if any(unknown.location not in places for unknown in launch.unknown):
+    if _may_start_others(workspace, launch):
         return None
-    if not all(workspace.installed.has_file(passed.path) for passed in launch.passed):
-        return None
-    found: dict[str, Location] = {}
+    containers: dict[str, Location] = {}
     for container in launch.containers:
         if container.name is None:
             return None
-        found[container.name] = container.location
+        containers[container.name] = container.location
     for node in launch.nodes:
         may_be = node.package == _CONTAINERS or workspace.package_of(node) is not None
         if may_be and (not node.node_name or node.namespace is None):
             return None
-        if node.node_name and found:
-            found[node.full_name(node.node_name)] = node.location
-    return found or None
+        if node.node_name and containers:
+            containers[node.full_name(node.node_name)] = node.location
+    return containers or None
+
+
+def _may_start_others(workspace: Workspace, launch: Launch) -> bool:
+    """Return whether a launch file may start containers that are not known."""
+    places = {container.location for container in launch.containers}
+    places |= {component.loaded_at for component in launch.components}
+    if any(unknown.location not in places for unknown in launch.unknown):
+        return True
+    return not all(workspace.installed.has_file(passed.path) for passed in launch.passed)
