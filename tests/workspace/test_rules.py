@@ -7,6 +7,7 @@ from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
 from grader.ros.workspace.rules import rule_table
 from grader.ros.workspace.rules.rule_table import FAMILIES, NAME_CATALOGUE, RULES, Rule
 from tests.command_line import ROOT, run
+from tests.workspace.rule_examples import EXAMPLES
 
 _ROWS = {name: rule for name, rule in vars(rule_table).items() if isinstance(rule, Rule)}
 
@@ -62,8 +63,9 @@ def test_problems_are_selected_and_ignored_by_the_names_of_rules() -> None:
 
 
 def test_a_rule_is_explained() -> None:
-    """By what is right, with its codes."""
+    """By what is right, with its codes and its own example."""
     text = run(("explain", "topic-type")).stdout.decode()
     assert text.startswith("topic-type: a rule of `grader inspect`\n\nPublishers and subscriptions")
     assert "REF007 (error)" in text
     assert "REF009 (warning)" in text
+    assert f"Wrong:\n\n    {EXAMPLES['topic-type']['wrong']}\n" in text

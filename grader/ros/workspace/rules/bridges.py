@@ -111,18 +111,20 @@ def _topics_of_gazebo(workspace: Workspace, bridged: set[str]) -> _GazeboTopics:
     by_name: dict[str, list[GazeboTopic]] = {}
     for topic in topics:
         by_name.setdefault(topic.name, []).append(topic)
-    of_images = set()
+    taken = {*bridged}
     for _, node in workspace.launches.nodes:
         if node.package == "ros_gz_image":
-            of_images |= {(word or "").strip("/") for word in node.arguments or ()}
+            taken |= {(word or "").strip("/") for word in node.arguments or ()}
+    unused = [topic for topic in topics if topic.name not in taken]
     is_known = not _is_open(workspace)
+    are_expanded = any(_EXPANDED in text for text in workspace.texts.searched_launch_texts())
     return _GazeboTopics(
         by_name=by_name,
         named=_named_topics(workspace),
-        unused=[topic for topic in topics if topic.name not in bridged | of_images],
+        unused=unused,
         nameless=_nameless_sensors(workspace, topics) if is_known else {},
         is_known=is_known,
-        are_expanded=any(_EXPANDED in text for text in workspace.texts.searched_launch_texts()),
+        are_expanded=are_expanded,
     )
 
 
@@ -183,7 +185,8 @@ def _incomplete_rows(workspace: Workspace) -> Iterator[Mismatch]:
 def _other_arguments(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the first argument of a bridge that is no topic with types, with which it ends."""
     for _, node in workspace.launches.nodes:
-        word = _first_other_argument(node) if _is_bridge(node) else None
+        is_bridge = node.package == BRIDGE and node.executable == "parameter_bridge"
+        word = _first_other_argument(node) if is_bridge else None
         if word is not None:
             message = (
                 f"the bridge ends with an error at the argument {quoted(word)}: write "
@@ -191,11 +194,6 @@ def _other_arguments(workspace: Workspace) -> Iterator[Mismatch]:
             )
             is_certain = node.when is True
             yield Mismatch(BRIDGE_ARGUMENT, message, node.location, is_certain=is_certain)
-
-
-def _is_bridge(node: StartedNode) -> bool:
-    """Return whether a node is the program that bridges topics."""
-    return node.package == BRIDGE and node.executable == "parameter_bridge"
 
 
 def _first_other_argument(node: StartedNode) -> str | None:

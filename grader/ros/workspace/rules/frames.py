@@ -142,17 +142,16 @@ def _may_publish(workspace: Workspace, package: Package) -> bool:
     started = {
         node.executable for _, node in workspace.launches.nodes if node.package == package.name
     }
-    others = [program for program in nodes.programs if program.name not in started]
-    return any(_publishes_frame(facts) for program in others for facts in program.nodes)
+    frames: list[NodeFrame] = []
+    for program in nodes.programs:
+        for facts in program.nodes if program.name not in started else ():
+            frames += facts.frames
+    return any(frame.use == "publishes" for frame in frames)
 
 
 def _may_open_transforms(facts: NodeFacts) -> bool:
     """Return whether a node may open a topic of transforms itself."""
     return bool(facts.doubts) or any(end.type == _TRANSFORMS for end in facts.endpoints)
-
-
-def _publishes_frame(facts: NodeFacts) -> bool:
-    return any(frame.use == "publishes" for frame in facts.frames)
 
 
 def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:

@@ -264,16 +264,12 @@ def _used_at(
     elif field is not None and not rest:
         yield from _other_value(workspace, field, shown, use)
     elif field is not None:
-        rest = _path_in_item(rest) if field.type.is_list else rest
+        if field.type.is_list:
+            rest = rest[1:] if rest[0] == ITEM else []
         inner_section = _section_of_type(workspace, field.type)
         if rest and inner_section is not None:
             shown = f"{field.type.package}/msg/{field.type.name}"
             yield from _used_at(workspace, shown, inner_section, rest, use)
-
-
-def _path_in_item(path: list[str]) -> list[str]:
-    """Return the rest of a path that goes on in an item of a list; empty for another one."""
-    return path[1:] if path[0] == ITEM else []
 
 
 def _section_of_type(workspace: Workspace, kind: FieldType) -> InterfaceSection | None:

@@ -4,6 +4,7 @@ somewhere.
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
+from itertools import chain
 from typing import NamedTuple
 
 from grader.base.names import are_of_one_side, closest, near
@@ -227,12 +228,11 @@ class _DefinedNames:
 
 def _in_order(mismatches: Iterable[Mismatch]) -> tuple[Mismatch, ...]:
     """Return mismatches, each once, in the order of their places."""
-    return tuple(sorted(dict.fromkeys(mismatches), key=_place))
-
-
-def _place(mismatch: Mismatch) -> tuple[str, int, int]:
-    at = mismatch.location
-    return at.path, at.line, at.column
+    by_place: dict[tuple[str, int, int], list[Mismatch]] = {}
+    for mismatch in dict.fromkeys(mismatches):
+        at = mismatch.location
+        by_place.setdefault((at.path, at.line, at.column), []).append(mismatch)
+    return tuple(chain.from_iterable(by_place[place] for place in sorted(by_place)))
 
 
 def cost_of_guess(known: int) -> int:

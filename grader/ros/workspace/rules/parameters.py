@@ -213,7 +213,9 @@ def _sections_of_others(
             continue
         workspace.charge(cost_of_guess(len(unread)))
         meant = near(name, unread)
-        if meant is None and (is_passed or not _is_known(workspace, node)):
+        is_own = workspace.package_of(node) is not None
+        is_known = is_own or "frames" in package_row(node.package).without
+        if meant is None and (is_passed or not is_known):
             continue
         key = meant or unread[0]
         at = tree.key_location(*sections[key])
@@ -231,13 +233,11 @@ def _without_section(
     """Return the names of nodes for which a file has no section, and no pattern of their names."""
     patterns = [key for key in sections if _WILDCARD.search(key)]
     workspace.charge(len(names) * (1 + len(patterns)))
-    lacking = set(names).difference(sections)
-    return {name for name in lacking if not any(fnmatchcase(name, key) for key in patterns)}
-
-
-def _is_known(workspace: Workspace, node: StartedNode) -> bool:
-    """Return whether a node is of the workspace, or one that surely has no others inside."""
-    return workspace.package_of(node) is not None or "frames" in package_row(node.package).without
+    lacking = set()
+    for name in set(names).difference(sections):
+        if not any(fnmatchcase(name, key) for key in patterns):
+            lacking.add(name)
+    return lacking
 
 
 def _unread_sections(
@@ -477,19 +477,15 @@ def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Ite
             waiting.append((f"{above}/{key.strip('/')}", inner))
             if isinstance(inner.value, dict):
                 sections[key] = inner.location
-        lists = [key for key in node.value if sections and _is_list_of_plugins(key)]
-        for key in lists:
-            inner = node.value[key]
+        for key, inner in node.value.items() if sections else ():
+            if key in _NOT_LISTS or not (key in _LISTS or key.endswith("_plugins")):
+                continue
             owner = f"{tree.source.path}:{inner.location.line}"
             for name, at in sections.items():
                 yield Definition("plugin section", name, at, owner)
             for name, at in _listed(key, inner):
                 if (above, name) not in elsewhere:
                     yield Use("plugin section", name, at, key, owner)
-
-
-def _is_list_of_plugins(key: str) -> bool:
-    return (key in _LISTS or key.endswith("_plugins")) and key not in _NOT_LISTS
 
 
 def _listed(key: str, node: YamlNode) -> Iterator[tuple[str, Location]]:

@@ -227,7 +227,7 @@ def _faults_of(source: _Source, robot: Configuration) -> Iterator[Mismatch]:
         is_of_sides = bool(faults) and kind in _SIDED  # a number of these wheels means nothing
         if not is_of_sides and not _is_corrected(source, row):
             for number in source.parameters(key):
-                yield from _faults_of_number(_Number(key, kind, number), wheels)
+                yield from _faults_of_number(_WheelNumber(key, kind, number), wheels)
 
 
 def _is_corrected(source: _Source, row: WheelRow) -> bool:
@@ -371,7 +371,7 @@ def _place(wheel: WheelSize) -> Location | None:
     return location.resolve() if location is not None else None
 
 
-class _Number(NamedTuple):
+class _WheelNumber(NamedTuple):
     """A number that a source has for wheels."""
 
     key: str
@@ -379,7 +379,7 @@ class _Number(NamedTuple):
     word: _Word
 
 
-def _faults_of_number(number: _Number, wheels: _Wheels) -> Iterator[Mismatch]:
+def _faults_of_number(number: _WheelNumber, wheels: _Wheels) -> Iterator[Mismatch]:
     """Yield that a number is not what the wheels of the robot have."""
     value = finite_number(number.word.text)
     is_size = number.kind in ("radius", "diameter")
@@ -389,7 +389,7 @@ def _faults_of_number(number: _Number, wheels: _Wheels) -> Iterator[Mismatch]:
         yield from _other_distance(number, value, wheels)
 
 
-def _other_distance(number: _Number, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
+def _other_distance(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
     """Yield that the wheels of the robot are not as far apart as a number says, by more than their
     width and 2 %.
 
@@ -432,7 +432,7 @@ def _is_near(value: float, other: float) -> bool:
     return abs(value - other) <= _TOLERANCE * other
 
 
-def _other_sizes(number: _Number, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
+def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
     """Yield that no wheel has a radius, and that wheels of one radius have several; for certain
     that a radius is negative.
     """
@@ -442,16 +442,15 @@ def _other_sizes(number: _Number, value: float, wheels: _Wheels) -> Iterator[Mis
         return
     factor = 2.0 if kind == "diameter" else 1.0
     sized = [wheel for wheel in wheels.all if wheel.radii]
-    fitting = [wheel for wheel in sized if _has_radius(wheel, value / factor)]
+    fitting = []
+    for wheel in sized:
+        if any(_is_near(value, factor * radius) for radius in wheel.radii):
+            fitting.append(wheel)
     others = [wheel for wheel in sized if wheel not in fitting]
     for wheel in others if fitting else others[:1]:
         name, size = quoted(wheel.joint.name), factor * wheel.radii[0]
         message = f"{key} is {value:g} m; the wheel of {name} has the {kind} {size:.4g} m"
         yield warning(WHEEL_SIZE, message, at, _place(wheel))
-
-
-def _has_radius(wheel: WheelSize, radius: float) -> bool:
-    return any(_is_near(radius, other) for other in wheel.radii)
 
 
 def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:
