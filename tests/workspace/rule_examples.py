@@ -118,3 +118,16 @@ def _setup(programs: list[str], folders: set[str]) -> str:
         f"    version='1.0.0',\n    packages=['rover'],\n    data_files=[{', '.join(installed)}],\n"
         f"    entry_points={{'console_scripts': [{', '.join(entries)}]}},\n)\n"
     )
+
+
+_VARIANTS = ROOT / "tests/workspace/rule_variants.toml"
+VARIANTS: list[dict[str, Any]] = tomllib.loads(_VARIANTS.read_text(encoding="utf-8"))["variant"]
+
+
+def files_of_variant(variant: Mapping[str, Any]) -> dict[str, str]:
+    """Return the package that a variant of an example is in."""
+    example = EXAMPLES[variant["of"]]
+    given = {name: variant[name] for name in ("frame",) if name in variant}
+    beside = {**example.get("beside", {}), **variant.get("beside", {})}
+    text = variant.get("text", example["wrong"])
+    return files_of_example({**example, **given, "beside": beside, "wrong": text}, "wrong").files

@@ -9,7 +9,13 @@ from grader.ros.python import budget
 from grader.ros.workspace.rules.rule_table import NAME_CATALOGUE, RULES
 from tests.test_catalogue_examples import ENTRIES, KINDS
 from tests.test_misconfigurations import inspected
-from tests.workspace.rule_examples import EXAMPLES, FRAMES, files_of_rule
+from tests.workspace.rule_examples import (
+    EXAMPLES,
+    FRAMES,
+    VARIANTS,
+    files_of_rule,
+    files_of_variant,
+)
 
 _MAX_LINES, _MAX_WIDTH = 16, 110
 
@@ -60,3 +66,14 @@ def test_an_example_breaks_the_rule_where_it_says(
         assert at in [place["path"] for place in places], found
     left = problems_of(tmp_path / "right", right.files)
     assert [each for each in left if each["rule"] == name or each["severity"] == "error"] == []
+
+
+@pytest.mark.parametrize("variant", VARIANTS, ids=[variant["about"] for variant in VARIANTS])
+def test_a_variant_of_an_example(variant: dict[str, Any], tmp_path: Path) -> None:
+    """What may be right is not reported, and what is wrong in another way is."""
+    problems = problems_of(tmp_path, files_of_variant(variant))
+    messages = [each["message"] for each in problems if each["rule"] == variant["of"]]
+    if variant["found"] is False:
+        assert messages == []
+    else:
+        assert any(variant["found"] in message for message in messages), problems

@@ -106,6 +106,7 @@ def _newer_gz_type(written: str) -> str:
 
 
 def _row_in_yaml(row: YamlNode, *, is_used: bool) -> BridgeRow | None:
+    """Return a row of a file; None where it has no topics or types, with which it is left out."""
     both = row.get("topic_name")
     ros, gz = row.get("ros_topic_name") or both, row.get("gz_topic_name") or both
     ros_type, gz_type = row.get("ros_type_name"), row.get("gz_type_name")
@@ -114,15 +115,18 @@ def _row_in_yaml(row: YamlNode, *, is_used: bool) -> BridgeRow | None:
     if ros_type is None or gz_type is None:
         return None
     direction = row.get("direction")
+    written = direction.text if direction is not None else None
+    taken, brought = ros_type.text or "", gz_type.text or ""
+    at = gz.location if direction is None else direction.location
     return BridgeRow(
         ros=ros.text.strip("/"),
         gz=gz.text.strip("/"),
-        ros_type=_newer_ros_type(ros_type.text or ""),
-        gz_type=_newer_gz_type(gz_type.text or ""),
-        direction=(direction.text if direction is not None else None) or _BOTH,
+        ros_type=_newer_ros_type(taken),
+        gz_type=_newer_gz_type(brought),
+        direction=written or _BOTH,
         location=gz.location,
         ros_type_location=ros_type.location,
         gz_type_location=gz_type.location,
-        direction_location=(direction or gz).location,
+        direction_location=at,
         is_used=is_used,
     )

@@ -40,7 +40,7 @@ from grader.ros.workspace.rules.rule_table import (
     BRIDGE_TYPE,
     SENSOR_TOPIC,
 )
-from grader.ros.xml.parsing import Element
+from grader.ros.xml.parsing import Element, XmlFile
 
 _TOPIC_KEYS = ("topic_name", "ros_topic_name", "gz_topic_name", "ign_topic_name")
 _COMPUTED = re.compile("^(world|model)/|[${<%]")  # names that Gazebo or a program makes
@@ -256,8 +256,8 @@ def _files_named(workspace: Workspace) -> Iterator[Any]:
                 yield value.value
     for _, launch in workspace.launches.roots:
         for passed in launch.passed:
-            if f"/{BRIDGE}/" in passed.path:
-                yield from (value for name, value in passed.values if name == "config_file")
+            values = dict(passed.values) if f"/{BRIDGE}/" in passed.path else {}
+            yield values.get("config_file")
 
 
 def _conversions(row: BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
@@ -350,12 +350,11 @@ def _not_there(
     for topic in unused:
         if f"gz.msgs.{topic.type}" == row.gz_type and topic.is_input != row.is_published:
             fitting[topic.name] = topic.location
-    if not fitting:
-        return
     meant = closest(row.gz, fitting)
-    if meant is None and not is_known:
+    if meant is None and is_known:
+        meant = min(fitting, default=None)
+    if meant is None:
         return
-    meant = meant or min(fitting)
     at = fitting[meant]
     what = "no sensor publishes" if row.is_published else "nothing reads"
     message = (
@@ -380,7 +379,9 @@ def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]
     for package, node in workspace.launches.nodes:
         given = workspace.parameters.given_to(package, node)
         sim_time = given.values.get("use_sim_time")
-        if sim_time is not None and str(sim_time.value).lower() == "true" and node.when:
+        # A launch file may give a text of which ROS makes a boolean.
+        is_told = sim_time is not None and str(sim_time.value).lower() == "true"
+        if node.when and sim_time is not None and is_told:
             message = (
                 f"{node.executable} waits for the time of the simulation, but no bridge takes "
                 "clock from Gazebo"
@@ -437,9 +438,13 @@ def _is_open(workspace: Workspace) -> bool:
         is_known = node.arguments is not None and None not in node.arguments
         if node.package in (BRIDGE, "ros_gz_image") and not is_known:
             return True
-    for file in workspace.texts.sdf_files:
-        for include in file.root.iter("include"):
-            model = (include.findtext("uri") or "").strip().rpartition("/")[2]
-            if model.lower() not in _WITHOUT_SENSORS:
-                return True
+    return any(map(_includes_model, workspace.texts.sdf_files))
+
+
+def _includes_model(file: XmlFile) -> bool:
+    """Return whether a world includes a model that may have sensors."""
+    for include in file.root.iter("include"):
+        model = (include.findtext("uri") or "").strip().rpartition("/")[2]
+        if model.lower() not in _WITHOUT_SENSORS:
+            return True
     return False

@@ -17,6 +17,7 @@ from grader.ros.known.package_rows import (
 from grader.ros.known.ros_machine import ros_machine
 from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.urdf.model import Joint
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
 from grader.ros.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.ros.workspace.graph.unread_ends import may_publish_type
@@ -108,16 +109,12 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
     other robots, or where a node, a bridge, a controller or a plugin of Gazebo may publish them, or
     a page says what does.
     """
-    publisher = None
+    publishers = []
     for _, node in workspace.launches.nodes:
-        if node.executable == _ROBOT_PUBLISHER and node.when and publisher is None:
-            publisher = node
-    moving = []
-    for robot in workspace.robots.known:
-        for joint in robot.robot.joints:
-            if joint.has_position and joint.mimic is None:
-                moving.append(joint)
-    if publisher is None or not moving or workspace.robots.may_be_others:
+        if node.executable == _ROBOT_PUBLISHER and node.when:
+            publishers.append(node)
+    moving = _moving_joints(workspace)
+    if not publishers or not moving or workspace.robots.may_be_others:
         return
     if _may_publish_joint_states(workspace):
         return
@@ -128,7 +125,17 @@ def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
         "joint_state_broadcaster"
     )
     at = first.location.resolve() if first.location is not None else None
-    yield warning(JOINT_STATES, message, publisher.location, at)
+    yield warning(JOINT_STATES, message, publishers[0].location, at)
+
+
+def _moving_joints(workspace: Workspace) -> list[Joint]:
+    """Return the joints of the robots that have positions of their own."""
+    moving: list[Joint] = []
+    for robot in workspace.robots.known:
+        for joint in robot.robot.joints:
+            if joint.has_position and joint.mimic is None:
+                moving.append(joint)
+    return moving
 
 
 def _may_publish_joint_states(workspace: Workspace) -> bool:

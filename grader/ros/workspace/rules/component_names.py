@@ -3,11 +3,12 @@ starts their containers.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from grader.base.names import closest, near
 from grader.base.source import Location
 from grader.base.text import quoted
+from grader.ros.installation.installation import Installation
 from grader.ros.launch.launch_model import Launch, LoadedComponent
 from grader.ros.package.package import Package
 from grader.ros.workspace.model.workspace import Workspace
@@ -49,35 +50,42 @@ def _unregistered(
     It is certain where all is known that the package registers. Otherwise it is said only if there
     is a class with a similar name. A class that a file of CMake names may be registered there.
     """
-    name, plugin = component.package, component.plugin
-    owner = package.find(name) if name is not None else None
+    plugin = component.plugin
+    owner = package.find(component.package) if component.package is not None else None
     if owner is None or plugin is None or not workspace.folder.means_one(package, owner.name):
         return
     setup = owner.installation
     if setup is None or setup.fault is not None:
         return
     yield Compared("programs")
-    registered: dict[str, Location] = {}
-    for target in setup.targets:
-        for own in target.components:
-            registered[own.plugin] = setup.location(own.at)
+    registered = _registered_in(setup)
     texts = [source.text for source in workspace.texts.sources_of(owner, _CMAKE)]
     if plugin in registered or any(plugin in text for text in texts):
         return
     workspace.charge(cost_of_guess(len(registered)))
     meant = near(plugin, registered) or closest(plugin, registered)
-    is_open = bool(setup.unknown) or bool(setup.unread) or any(map(_may_register, texts))
-    if meant is None and is_open:
+    is_open = bool(setup.unknown or setup.unread) or any(map(_may_register, texts))
+    message = f"the package {owner.name!r} registers no component {quoted(plugin)}"
+    at = component.location
+    if meant is not None:
+        related = registered[meant]
+        message = f"{message}; did you mean {quoted(meant)} ({related.file_and_line})?"
+        either = corrections(plugin, at, meant, related)
+        yield Mismatch(COMPONENT_REGISTERED, message, at, related, not is_open, either)
+    elif is_open:
         yield Undecided("programs", f"which components {owner.name} has is not evaluated")
-        return
-    related = registered[meant] if meant is not None else None
-    if meant is not None and related is not None:
-        hint = f"did you mean {quoted(meant)} ({related.file_and_line})?"
     else:
-        hint = f"it registers {', '.join(registered) or 'none'}"
-    message = f"the package {owner.name!r} registers no component {quoted(plugin)}; {hint}"
-    either = corrections(plugin, component.location, meant, related)
-    yield Mismatch(COMPONENT_REGISTERED, message, component.location, related, not is_open, either)
+        message = f"{message}; it registers {', '.join(registered) or 'none'}"
+        yield Mismatch(COMPONENT_REGISTERED, message, at)
+
+
+def _registered_in(setup: Installation) -> Mapping[str, Location]:
+    """Return the components that a package registers, with their places."""
+    registered: dict[str, Location] = {}
+    for target in setup.targets:
+        for component in target.components:
+            registered[component.plugin] = setup.location(component.at)
+    return registered
 
 
 def _may_register(text: str) -> bool:
@@ -109,20 +117,21 @@ def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | N
     """Return the nodes of a launch file that may be containers, by their full names; None where
     not all of them are known, or none is a container.
     """
-    if _may_start_others(workspace, launch):
-        return None
     containers: dict[str, Location] = {}
     for container in launch.containers:
         if container.name is None:
             return None
         containers[container.name] = container.location
+    if not containers or _may_start_others(workspace, launch):
+        return None
     for node in launch.nodes:
+        is_named = node.node_name and node.namespace is not None
         may_be = node.package == _CONTAINERS or workspace.package_of(node) is not None
-        if may_be and (not node.node_name or node.namespace is None):
+        if may_be and not is_named:
             return None
-        if node.node_name and containers:
+        if node.node_name:
             containers[node.full_name(node.node_name)] = node.location
-    return containers or None
+    return containers
 
 
 def _may_start_others(workspace: Workspace, launch: Launch) -> bool:

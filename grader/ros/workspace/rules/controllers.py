@@ -2,7 +2,7 @@
 joints.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from grader.base.names import closest, near
 from grader.base.source import Location
@@ -94,28 +94,33 @@ def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismat
     a similar name. Nothing is said of types that a release, a plugin in the workspace or a package
     of it may have, and of other packages only if there is a similar type.
     """
-    written = controller.type.text or ""
+    written, types = controller.type.text or "", controller_types()
     package, _, class_name = written.partition("/")
-    types = controller_types()
     is_known = any(kind.startswith(f"{package}/") for kind in types)
     if _may_have_type(workspace, written, is_known=is_known):
         return
     same_class = [kind for kind in types if kind.partition("/")[2] == class_name]
-    similar = closest(written, same_class)
-    if similar is None and len(same_class) == 1:
-        similar = same_class[0]
-    elif similar is None and is_known:
-        similar = closest(written, types)
-    elif similar is None:
-        similar = closest(written, types, likeness=_LIKENESS)
-    if not is_known and similar is None:
+    meant = _meant_type(written, same_class, is_known=is_known)
+    if meant is None and not is_known:
         return
-    guess = f"; did you mean {similar!r}?" if similar is not None else ""
+    guess = f"; did you mean {meant!r}?" if meant is not None else ""
     message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
     is_certain = is_known or near(written, same_class) is not None
     at = controller.location
-    either = corrections(written, at, similar)
+    either = corrections(written, at, meant)
     yield Mismatch(CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
+
+
+def _meant_type(written: str, same_class: Sequence[str], *, is_known: bool) -> str | None:
+    """Return the type that is meant: of the same class in another package, or a similar one."""
+    similar = closest(written, same_class)
+    if similar is not None:
+        return similar
+    if len(same_class) == 1:
+        return same_class[0]
+    if is_known:
+        return closest(written, controller_types())
+    return closest(written, controller_types(), likeness=_LIKENESS)
 
 
 def _may_have_type(workspace: Workspace, written: str, *, is_known: bool) -> bool:
@@ -245,18 +250,23 @@ def _no_interface(
     said only where the robot has no more than is read.
     """
     interfaces = workspace.robots.command_interfaces or {}
-    is_complete = bool(interfaces) and workspace.robots.has_all_interfaces
-    joints: set[str] = set()
-    for known_robot in workspace.robots.known:
-        joints |= {joint.name for joint in known_robot.robot.joints}
+    are_comparable = _are_all_joints(workspace, interfaces)
     for joint, needed in _needed_in(section, controller_row(controller.type.text).joints):
         name = joint.text or ""
         message = f"{controller.name} needs the command interface {name}"
         if name in interfaces:
             yield from _missing_interfaces(workspace, joint, needed, message)
-        elif is_complete and needed and joints.issuperset([name, *interfaces]):
+        elif are_comparable and needed and _are_all_joints(workspace, [name]):
             text = f"{message}/{needed[0]}; <ros2_control> has no joint {name!r}"
             yield Mismatch(CONTROLLER_INTERFACE, text, joint.location)
+
+
+def _are_all_joints(workspace: Workspace, names: Collection[str]) -> bool:
+    """Return whether all of some names, if any, are joints of robots that are read whole."""
+    joints: set[str] = set()
+    for known_robot in workspace.robots.known:
+        joints |= {joint.name for joint in known_robot.robot.joints}
+    return bool(names) and joints.issuperset(names) and workspace.robots.has_all_interfaces
 
 
 def _missing_interfaces(

@@ -4,7 +4,7 @@ them.
 
 import re
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import NamedTuple
 
 from grader.base.names import near
@@ -14,7 +14,7 @@ from grader.ros.known.gazebo_rows import gazebo
 from grader.ros.known.package_rows import frame_parameters, package_row
 from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.nodes.node_facts import NodeFacts, NodeFrame
+from grader.ros.nodes.node_facts import NodeFacts, NodeFrame, NodeProgram
 from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
@@ -121,9 +121,12 @@ def _may_be_published(workspace: Workspace) -> bool:
             return True
     if any(_may_publish(workspace, package) for package in workspace.packages):
         return True
-    if any(word in text for text in workspace.texts.python_texts for word in _BROADCASTING):
-        return True
-    systems = (system_of(plugin) for root, _ in roots(workspace) for plugin in root.iter("plugin"))
+    for text in workspace.texts.python_texts:
+        if any(word in text for word in _BROADCASTING):
+            return True
+    systems: set[str] = set()
+    for root, _ in roots(workspace):
+        systems |= {system_of(plugin) for plugin in root.iter("plugin")}
     return _POSES in systems
 
 
@@ -139,14 +142,21 @@ def _may_publish(workspace: Workspace, package: Package) -> bool:
         return True
     if any(_may_open_transforms(facts) for facts in nodes.nodes):
         return True
-    started = {
-        node.executable for _, node in workspace.launches.nodes if node.package == package.name
-    }
-    frames: list[NodeFrame] = []
-    for program in nodes.programs:
-        for facts in program.nodes if program.name not in started else ():
-            frames += facts.frames
-    return any(frame.use == "publishes" for frame in frames)
+    started = set()
+    for _, node in workspace.launches.nodes:
+        if node.package == package.name:
+            started.add(node.executable)
+    # The frames of programs that are started are known.
+    others = [program for program in nodes.programs if program.name not in started]
+    return any(map(_publishes_frame, others))
+
+
+def _publishes_frame(program: NodeProgram) -> bool:
+    """Return whether a node of a program publishes a frame."""
+    uses = set()
+    for facts in program.nodes:
+        uses |= {frame.use for frame in facts.frames}
+    return "publishes" in uses
 
 
 def _may_open_transforms(facts: NodeFacts) -> bool:
@@ -157,7 +167,10 @@ def _may_open_transforms(facts: NodeFacts) -> bool:
 def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
     """Yield the frames that own nodes publish, look up and name in messages."""
     named: list[_NamedFrame] = []
+    above = set()  # the frames that static transforms have as their parent: the root of a map
     for _, node in workspace.launches.nodes:
+        if _is_static(node):
+            above.add(frames_named(node)[0])
         for name, frame in frames_of(workspace, node) if node.when is not False else ():
             if name is not None and name.strip("/"):
                 named.append(_NamedFrame(name.removeprefix("/"), frame, node))
@@ -166,8 +179,6 @@ def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[F
     if named:
         yield from _prefixed_frames(workspace)
         yield from _frames_of_others(workspace)
-    # Those that static transforms have as their parent, such as the root of a map.
-    above = {frames_named(node)[0] for _, node in workspace.launches.nodes if _is_static(node)}
     for each in named:
         if each.frame.use != "looks up" or each.name not in above:
             yield _definition_or_use(each)
@@ -238,13 +249,13 @@ def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> It
     anywhere. It is certain for a node that is started, with one robot.
     """
     publishing = [each for each in named if each.frame.use == "publishes"]
-    placed = {joint.child for robot in robots for joint in robot.joints}
-    placed |= {each.name for each in publishing}
+    placed = {each.name for each in publishing}
     roots: dict[str, Location] = {}
     for robot in robots:
-        for link in robot.links:
-            if link.name not in placed:
-                roots[link.name] = _place(link.location)
+        placed |= {joint.child for joint in robot.joints}
+        roots |= {link.name: _place(link.location) for link in robot.links}
+    for name in placed.intersection(roots):
+        roots.pop(name)
     for each in publishing:
         meant = near(each.name, roots)
         if meant is None:
@@ -316,19 +327,23 @@ def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
     may be others.
     """
     key = value.keys[-1] if value.keys else ""
-    texts = [(text, node.location) for text, node in value.texts() if "$" not in text]
+    names = {node.location: text for text, node in value.texts() if "$" not in text}
     if _JOINTS.search(key):
-        for text, at in texts:
-            if text and "/" not in text:
-                yield Use("joint", text, at, value.said, optional=not is_of_controller)
+        for at, name in names.items():
+            if name and "/" not in name:
+                yield Use("joint", name, at, value.said, optional=not is_of_controller)
     elif _FRAMES.search(key):
-        is_made = _OWN_FRAMES.search(key) is not None
-        for text, at in texts:
-            name = text.removeprefix("/")
-            if name and not is_made:
-                yield Use("frame", name, at, value.said)
-            elif name and key in frame_parameters():
-                yield Definition("frame", name, at)
+        for at, text in names.items():
+            yield from _frame_in_yaml(text.removeprefix("/"), at, value)
+
+
+def _frame_in_yaml(name: str, at: Location, value: YamlValue) -> Iterator[Definition | Use]:
+    """Yield a frame that a parameter names, or that its program makes."""
+    key = value.keys[-1]
+    if name and _OWN_FRAMES.search(key) is None:
+        yield Use("frame", name, at, value.said)
+    elif name and key in frame_parameters():
+        yield Definition("frame", name, at)
 
 
 def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
@@ -367,7 +382,8 @@ def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[
     """
     created = _created_models(workspace)
     defaults = [*gazebo().odometry_frames]
-    defaults += [link.name for robot in robots for link in robot.links]
+    for robot in robots:
+        defaults += [link.name for link in robot.links]
     for root, place in roots(workspace):
         for plugin in root.iter("plugin"):
             if system_of(plugin) not in gazebo().odometry_systems:
@@ -376,9 +392,8 @@ def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[
             for element in plugin.iterchildren(*gazebo().odometry_elements):
                 yield Definition("frame", (element.text or "").strip(), at)
             around = {model.get("name", "") for model in plugin.iterancestors("robot", "model")}
-            for model in sorted(around | created):
-                for frame in defaults:
-                    yield Definition("frame", f"{model}/{frame}", at)
+            for model, frame in product(sorted(around | created), defaults):
+                yield Definition("frame", f"{model}/{frame}", at)
 
 
 def _created_models(workspace: Workspace) -> set[str]:
@@ -399,12 +414,10 @@ def _sensor_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Us
     links = {link.name for robot in robots for link in robot.links}
     for file in workspace.texts.sdf_files:
         for model in file.root.iter("model"):
-            own = {element.get("name") for element in model.iter("link", "frame")}
-            if own.isdisjoint(links):
-                continue
-            for element in model.iter(*_SENSOR_FRAMES):
+            made = {element.get("name") for element in model.iter("link", "frame")}
+            for element in model.iter(*_SENSOR_FRAMES) if made & links else ():
                 name = (element.text or "").strip().removeprefix("/")
-                if name and name not in own:
+                if name and name not in made:
                     at = file.location(element)
                     yield Use("frame", name, at, f"<{element.tag}>", optional=True)
 

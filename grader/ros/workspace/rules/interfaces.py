@@ -190,19 +190,28 @@ def _no_type(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
         if own.location is None:
             reason = f"{package} does not call rosidl_generate_interfaces()"
         return Mismatch(INTERFACE_TYPE, f"{shown}: {reason}", at, own.location)
-    names = own.types if own is not None else known_interfaces(package, workspace.releases)
-    names = names or {}
+    if own is not None:
+        names = [*own.types]
+    else:
+        names = [*(known_interfaces(package, workspace.releases) or {})]
     workspace.charge(len(names))
+    for other in names:
+        if other.partition(".")[2] == short:
+            hint = f"there is {package}/{other.replace('.', '/')}"
+            return Mismatch(INTERFACE_TYPE, f"{shown}; {hint}", at)
     of_kind = [each.partition(".")[2] for each in names if each.startswith(f"{kind}.")]
-    of_other_kind = [each for each in names if each.partition(".")[2] == short]
-    meant = near(short, of_kind) or closest(short, of_kind)
-    hint, either = "", corrections(short, at, meant)
-    if of_other_kind:
-        hint, either = f"; there is {package}/{of_other_kind[0].replace('.', '/')}", ()
-    elif meant is not None:
+    return _no_type_of_kind(shown, short, of_kind, at)
+
+
+def _no_type_of_kind(shown: str, name: str, names: Sequence[str], at: Location) -> Mismatch:
+    """Return that there is no type of a name, among those of its kind, and which one is meant."""
+    meant = near(name, names) or closest(name, names)
+    hint = ""
+    if meant is not None:
         hint = f"; did you mean {meant}?"
-    elif of_kind and len(of_kind) <= MAX_NAMED:
-        hint = f"; there is {enumerated(of_kind)}"
+    elif names and len(names) <= MAX_NAMED:
+        hint = f"; there is {enumerated(names)}"
+    either = corrections(name, at, meant)
     return Mismatch(INTERFACE_TYPE, f"{shown}{hint}", at, corrections=either)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from grader.ros.nodes.node_facts import EndpointKind
-from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, BridgeRow, bridge_rows
 from grader.ros.workspace.graph.code_ends import End, EndSource
 from grader.ros.workspace.graph.graph import Graph, distinct, graph_of, grouped
 from grader.ros.workspace.graph.node_ends import deciding_parameter
@@ -169,13 +169,15 @@ def _other_type_of_bridge(graph: Graph) -> Iterator[Mismatch]:
         workspace.charge(len(of_topic))
         for end in of_topic:
             meets = row.is_published if end.kind == "subscription" else row.is_read
-            if not meets or end.type is None or end.type == row.ros_type:
-                continue
-            verb = "published" if row.is_published else "subscribed to"
-            message = (
-                f"the topic {end.name} has {end.type} here, but is {verb} by the bridge with "
-                f"{row.ros_type} ({row.location.file_and_line})"
-            )
-            is_certain = row.is_used and end.is_certain
-            place, related = end.location, row.location
-            yield Mismatch(TOPIC_TYPE, message, place, related, is_certain)
+            if meets and end.type not in (None, row.ros_type):
+                yield _other_type_in_row(end, row)
+
+
+def _other_type_in_row(end: End, row: BridgeRow) -> Mismatch:
+    verb = "published" if row.is_published else "subscribed to"
+    message = (
+        f"the topic {end.name} has {end.type} here, but is {verb} by the bridge with "
+        f"{row.ros_type} ({row.location.file_and_line})"
+    )
+    is_certain = row.is_used and end.is_certain
+    return Mismatch(TOPIC_TYPE, message, end.location, row.location, is_certain)

@@ -139,26 +139,35 @@ def _without_subscription(
     subscribed = {end.name for end in subscriptions}
     published = {end.name for end in of_code}
     unheard = [end for end in of_code if end.name not in subscribed]
-    waiting_ends = []
-    for end in subscriptions:
-        if end.source == "controller" and end.name not in published:
-            waiting_ends.append(end)
+    of_controllers = [end for end in subscriptions if end.source == "controller"]
     named: set[Location] = set()
-    for waiting in waiting_ends:
+    for waiting in of_controllers:
+        if waiting.name in published:
+            continue
         workspace.charge(len(unheard))
         fitting = [end for end in unheard if _are_alike(end, waiting)]
         for publisher in fitting:
-            if publisher.location in named or _may_be_of_gazebo(workspace, publisher, waiting):
+            if publisher.location in named:
                 continue
-            is_certain = publisher.surely_meets(waiting) and is_all_read(workspace, waiting.launch)
-            is_same = _last_names(publisher, 1) == _last_names(waiting, 1)
-            if is_same or (is_certain and len(fitting) == 1):
+            mismatch = _unheard(workspace, publisher, waiting, is_only=len(fitting) == 1)
+            if mismatch is not None:
                 named.add(publisher.location)
-                yield _unheard(publisher, waiting, is_certain=is_certain)
+                yield mismatch
 
 
-def _unheard(publisher: End, waiting: End, *, is_certain: bool) -> Mismatch:
+def _unheard(
+    workspace: Workspace, publisher: End, waiting: End, *, is_only: bool
+) -> Mismatch | None:
+    """Return that a publisher means the topic on which a controller waits; None where that is not
+    known.
+    """
+    if _may_be_of_gazebo(workspace, publisher, waiting):
+        return None
     at, place = publisher.location, waiting.location
+    is_certain = publisher.surely_meets(waiting) and is_all_read(workspace, waiting.launch)
+    is_same = _last_names(publisher, 1) == _last_names(waiting, 1)
+    if not is_same and not (is_certain and is_only):
+        return None
     message = (
         f"nothing subscribes to {publisher.name}; did you mean {waiting.name} "
         f"({place.file_and_line})?"
@@ -191,18 +200,16 @@ def _without_server(graph: Graph, meeting: Meeting) -> Iterator[Mismatch]:
     called = {end.name for end in clients}
     served = {end.name for end in servers}
     uncalled = [end for end in servers if end.name not in called]
-    for client in clients:
-        if client.name in served or client.type is None:
-            continue
+    unserved = [end for end in clients if end.name not in served and end.type is not None]
+    for client in unserved:
         workspace.charge(1 + len(uncalled))
-        alike = [end for end in uncalled if _are_alike(end, client)]
-        names = {end.name for end in alike}
-        if len(names) != 1 or _may_be_served(workspace, meeting, client, names):
+        alike = {end.name: end for end in reversed(uncalled) if _are_alike(end, client)}
+        if len(alike) != 1 or _may_be_served(workspace, meeting, client, alike):
             continue
-        [meant] = names
+        [(meant, server)] = alike.items()
         what = f"nothing serves the {meeting.noun} {client.name}"
-        mismatch = _no_other_end(SERVICE_SERVED, what, client, meant, alike[0].location)
-        yield mismatch._replace(is_certain=client.is_certain and alike[0].is_certain)
+        mismatch = _no_other_end(SERVICE_SERVED, what, client, meant, server.location)
+        yield mismatch._replace(is_certain=client.is_certain and server.is_certain)
 
 
 def _may_be_served(

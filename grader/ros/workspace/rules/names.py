@@ -156,17 +156,11 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
     work of comparing names is charged.
     """
     every = [*facts]
-    counts = {fact.family: fact for fact in every if isinstance(fact, Counted)}
-    mismatches = [fact for fact in every if isinstance(fact, Mismatch)]
-    undecided = _undecided(every, counts.values())
-    compared: set[AnyFamily] = set()
-    files: set[str] = set()
-    for fact in every:
-        if isinstance(fact, Compared | Mismatch):
-            compared.add(fact.family)
-        if isinstance(fact, Compared) and fact.name:
-            files.add(fact.name)
     names = _DefinedNames(every)
+    mismatches = [fact for fact in every if isinstance(fact, Mismatch)]
+    counts = {fact.family: fact for fact in every if isinstance(fact, Counted)}
+    undecided = _undecided(every, counts.values())
+    compared, files = _compared(every)
     for use in [fact for fact in every if isinstance(fact, Use)]:
         family = DEFINED[use.kind].family
         if names.holds(use) or not (use.optional or names.are_open(use)):
@@ -181,9 +175,19 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
             mismatches.append(mismatch)
         if names.why_open(use):
             undecided.setdefault(family, names.why_open(use))
-    return Agreement(
-        _in_order(mismatches), undecided, frozenset(compared), frozenset(files), counts
-    )
+    return Agreement(_in_order(mismatches), undecided, frozenset(compared), files, counts)
+
+
+def _compared(facts: Iterable[Fact]) -> tuple[set[AnyFamily], frozenset[str]]:
+    """Return of which families something is compared, and the files that are looked for."""
+    families: set[AnyFamily] = set()
+    files: set[str] = set()
+    for fact in facts:
+        if isinstance(fact, Compared | Mismatch):
+            families.add(fact.family)
+        if isinstance(fact, Compared) and fact.name:
+            files.add(fact.name)
+    return families, frozenset(files)
 
 
 class _DefinedNames:

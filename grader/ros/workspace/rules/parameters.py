@@ -194,28 +194,22 @@ def _sections_of_others(
     not in the workspace.
     """
     tree = workspace.installed.yaml.get(path)
-    names = [workspace.code.name_of(node) for node in nodes]
-    known_names = [name for name in names if name is not None]
-    if not isinstance(tree, YamlNode) or _has_container(nodes) or len(known_names) < len(nodes):
+    names = [name for name in map(workspace.code.name_of, nodes) if name is not None]
+    if not isinstance(tree, YamlNode) or _has_container(nodes) or len(names) < len(nodes):
         return
     sections = {keys[-1].rpartition("/")[2]: keys for keys, _ in sections_in(tree) if keys}
-    unread = _unread_sections(workspace, sections, known_names)
-    lacking = _without_section(workspace, sections, known_names)
-    if not unread or not lacking:
-        return
+    unread = _unread_sections(workspace, sections, names)
+    lacking = _without_section(workspace, sections, names)
     is_only_pair = len(unread) == len(lacking) == 1
-    is_passed = path in workspace.installed.passed_files
     keys_of_nodes = keys_of_sections(tree)
-    for node, name in zip(nodes, known_names, strict=True):
+    for node, name in zip(nodes, names, strict=True) if unread and lacking else ():
         workspace.charge(len(keys_of_nodes))
         is_renamed = key_of_program_name(workspace, node, keys_of_nodes) is not None
         if is_renamed or name not in lacking:
             continue
         workspace.charge(cost_of_guess(len(unread)))
         meant = near(name, unread)
-        is_own = workspace.package_of(node) is not None
-        is_known = is_own or "frames" in package_row(node.package).without
-        if meant is None and (is_passed or not is_known):
+        if meant is None and _may_read_another(workspace, path, node):
             continue
         key = meant or unread[0]
         at = tree.key_location(*sections[key])
@@ -225,6 +219,16 @@ def _sections_of_others(
         renamed = name if meant is not None or is_only_pair else None
         either = corrections(key, at, renamed, node.location)
         yield Mismatch(PARAMETER_NODE, message, at, node.location, corrections=either)
+
+
+def _may_read_another(workspace: Workspace, path: str, node: StartedNode) -> bool:
+    """Return whether a section of a file may be that of a node which is not known: of the launch
+    file to which the file is passed, or one inside of a program of another package.
+    """
+    if path in workspace.installed.passed_files:
+        return True
+    is_own = workspace.package_of(node) is not None
+    return not is_own and "frames" not in package_row(node.package).without
 
 
 def _without_section(
@@ -327,13 +331,13 @@ def _given(
         yield Undecided("parameters", given.unknown)
     # What a file gives to every node, or to another of the same name, need not be declared by this.
     shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
+    said = f"the node {name_of_node or node.executable!r}"
     for name, value in given.values.items():
         if value.location not in shared and not name.startswith("qos_overrides."):
-            said = f"the node {name_of_node or node.executable!r}"
             yield Use("parameter", name, value.named_at or value.location, said, owner)
     yield from _types_given(own_node, given.values)
-    if not given.unknown and node.arguments == () and name_of_node is not None:
-        yield from _not_given(workspace, node, own_node, given.values)
+    is_all = not given.unknown and node.arguments == () and name_of_node is not None
+    yield from _not_given(workspace, node, own_node, given.values if is_all else None)
 
 
 def _may_declare_more(workspace: Workspace, node: StartedNode, own_node: NodeFacts) -> bool:
@@ -372,15 +376,16 @@ def _not_given(
     workspace: Workspace,
     node: StartedNode,
     own_node: NodeFacts,
-    values: Mapping[str, ParameterValue],
+    values: Mapping[str, ParameterValue] | None,
 ) -> Iterator[Mismatch]:
     """Yield the parameters that a node declares without a value and reads, and is not given: rclpy
-    and rclcpp raise ParameterUninitializedException.
+    and rclcpp raise ParameterUninitializedException. Nothing is said where `values` is None: the
+    node may get more than is known.
     """
     read = {it.name for it in own_node.parameters if not it.is_declared and it.is_needed}
-    for parameter in own_node.parameters:
+    for parameter in own_node.parameters if values is not None else ():
         name = parameter.name
-        if parameter.is_unset and name in read and name not in values:
+        if parameter.is_unset and name in read and name not in (values or ()):
             named = workspace.code.name_of(node) or node.executable
             message = (
                 f"the node {named!r} stops without a value of the parameter {name!r}, which it "
@@ -472,20 +477,24 @@ def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Ite
         above, node = waiting.pop()
         if not isinstance(node.value, dict) or not visits.enters(node):
             continue
-        sections: dict[str, Location] = {}
         for key, inner in node.value.items():
             waiting.append((f"{above}/{key.strip('/')}", inner))
-            if isinstance(inner.value, dict):
-                sections[key] = inner.location
-        for key, inner in node.value.items() if sections else ():
-            if key in _NOT_LISTS or not (key in _LISTS or key.endswith("_plugins")):
-                continue
-            owner = f"{tree.source.path}:{inner.location.line}"
-            for name, at in sections.items():
-                yield Definition("plugin section", name, at, owner)
-            for name, at in _listed(key, inner):
-                if (above, name) not in elsewhere:
-                    yield Use("plugin section", name, at, key, owner)
+        for fact in _lists_of_plugins(tree.source.path, node.value):
+            if not isinstance(fact, Use) or (above, fact.name) not in elsewhere:
+                yield fact
+
+
+def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[Definition | Use]:
+    """Yield the sections of plugins in a mapping, and the entries of its lists of plugins."""
+    sections = {key: node for key, node in mapping.items() if isinstance(node.value, dict)}
+    for key, inner in mapping.items() if sections else ():
+        if key in _NOT_LISTS or not (key in _LISTS or key.endswith("_plugins")):
+            continue
+        owner = f"{path}:{inner.location.line}"
+        for name, node in sections.items():
+            yield Definition("plugin section", name, node.location, owner)
+        for name, at in _listed(key, inner):
+            yield Use("plugin section", name, at, key, owner)
 
 
 def _listed(key: str, node: YamlNode) -> Iterator[tuple[str, Location]]:
