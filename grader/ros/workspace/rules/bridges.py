@@ -21,6 +21,7 @@ from grader.ros.workspace.graph.gazebo_topics import (
     roots,
     sensor_topics,
 )
+from grader.ros.workspace.graph.graph import graph_of
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import (
     Compared,
@@ -376,12 +377,9 @@ def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]
         return
     if _may_include_bridge(workspace):
         return
-    for package, node in workspace.launches.nodes:
-        given = workspace.parameters.given_to(package, node)
-        sim_time = given.values.get("use_sim_time")
+    for node, sim_time in graph_of(workspace).given("use_sim_time"):
         # A launch file may give a text of which ROS makes a boolean.
-        is_told = sim_time is not None and str(sim_time.value).lower() == "true"
-        if node.when and sim_time is not None and is_told:
+        if node.when and str(sim_time.value).lower() == "true":
             message = (
                 f"{node.executable} waits for the time of the simulation, but no bridge takes "
                 "clock from Gazebo"

@@ -19,9 +19,11 @@ from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.urdf.model import Joint
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
+from grader.ros.workspace.graph.graph import graph_of
+from grader.ros.workspace.graph.running_nodes import RunningNode
 from grader.ros.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.ros.workspace.graph.unread_ends import may_publish_type
-from grader.ros.workspace.model.launches import MANAGER
+from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
@@ -33,7 +35,7 @@ from grader.ros.workspace.rules.rule_table import (
     SIMULATION_TIME,
 )
 
-_ROBOT_PUBLISHER, _CONTROL_NODE = "robot_state_publisher", "ros2_control_node"
+_ROBOT_PUBLISHER = "robot_state_publisher"
 _JOINT_STATE, _CLOCK = "sensor_msgs.msg.JointState", "rosgraph_msgs.msg.Clock"
 _JOINT_STATE_WORDS = ("joint_state", "JointState")
 _TIME = "use_sim_time"
@@ -62,16 +64,16 @@ def companion_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the nodes that a launch file gives a name which it gives another one."""
-    first: dict[tuple[int, str], StartedNode] = {}
-    for launch, node in workspace.launches.launched:
-        if node.when is not True or not node.node_name or node.namespace is None:
+    first: dict[tuple[int, str], RunningNode] = {}
+    for node in graph_of(workspace).nodes:
+        process = node.process if node.kind == "program" else None
+        if process is None or not process.node_name or node.when is not True or not node.name:
             continue
-        name = node.full_name(node.node_name)
-        before = first.setdefault((launch, name), node)
-        if before is not node:
+        before = first.setdefault((node.launch, node.name), node)
+        if before.process is not process:
             message = (
-                f"two nodes are named {name}: their parameters and services cannot be told apart; "
-                f"the other one is at {before.location.file_and_line}"
+                f"two nodes are named {node.name}: their parameters and services cannot be told "
+                f"apart; the other one is at {before.location.file_and_line}"
             )
             yield warning(NODE_NAME, message, node.location, before.location)
 
@@ -171,7 +173,7 @@ def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
     for _, node in workspace.launches.nodes:
         if node.executable == _ROBOT_PUBLISHER:
             return
-        if node.package == MANAGER and node.executable == _CONTROL_NODE:
+        if node.package == MANAGER and node.executable == CONTROL_NODE:
             if node.has_description:
                 return
             managers.append(node)
@@ -187,11 +189,9 @@ def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
 
 def _sim_time(workspace: Workspace) -> Iterator[Location]:
     """Yield where nodes that are started are told to use the time of a simulation."""
-    for package, node in workspace.launches.nodes:
-        if node.when is True:
-            value = workspace.parameters.given_to(package, node).values.get(_TIME)
-            if value is not None and value.value is True:
-                yield value.location
+    for node, value in graph_of(workspace).given(_TIME):
+        if node.when is True and value.value is True:
+            yield value.location
 
 
 def _no_clock(workspace: Workspace) -> Iterator[Mismatch]:

@@ -11,6 +11,7 @@ from grader.base.text import quoted
 from grader.ros.installation.installation import Installation
 from grader.ros.launch.launch_model import Launch, LoadedComponent
 from grader.ros.package.package import Package
+from grader.ros.workspace.graph.graph import graph_of
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import (
     Compared,
@@ -35,10 +36,9 @@ _OTHER_WAY = "ament_index_register_resource"
 
 def component_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield components that nothing registers, and containers that nothing starts."""
-    for package, launch in workspace.launches.roots:
-        workspace.charge(1 + len(launch.components))
-        for component in launch.components:
-            yield from _unregistered(workspace, package, component)
+    for package, component in graph_of(workspace).components():
+        yield from _unregistered(workspace, package, component)
+    for _, launch in workspace.launches.roots:
         yield from _no_container(workspace, launch)
 
 

@@ -21,7 +21,7 @@ from grader.ros.workspace.graph.started_controllers import (
     named_sections,
     parameters_of_controllers,
 )
-from grader.ros.workspace.model.launches import MANAGER
+from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER
 from grader.ros.workspace.model.under_arguments import may_be_offered
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import (
@@ -81,7 +81,7 @@ def _no_hardware(workspace: Workspace) -> Iterator[Mismatch]:
     if robots.command_interfaces is not None or not robots.has_all_interfaces:
         return
     for _, node in workspace.launches.nodes:
-        if node.executable == "ros2_control_node":
+        if node.executable == CONTROL_NODE:
             message = "the controller manager is started, but the robot has no <ros2_control>"
             yield Mismatch(CONTROLLER_HARDWARE, message, node.location)
             return

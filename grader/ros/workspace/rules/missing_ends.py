@@ -47,7 +47,7 @@ def missing_end_facts(workspace: Workspace) -> Iterator[Fact]:
     graph = graph_of(workspace)
     subscriptions, publishers = TOPICS.ends(graph)
     yield from _without_publisher(graph, subscriptions, publishers)
-    yield from _without_subscription(workspace, subscriptions, publishers)
+    yield from _without_subscription(graph, subscriptions, publishers)
     for meeting in SERVICES:
         yield from _without_server(graph, meeting)
 
@@ -127,7 +127,7 @@ def _no_other_end(rule: Rule, what: str, end: End, meant: str, at: Location) -> 
 
 
 def _without_subscription(
-    workspace: Workspace, subscriptions: Sequence[End], publishers: Sequence[End]
+    graph: Graph, subscriptions: Sequence[End], publishers: Sequence[End]
 ) -> Iterator[Mismatch]:
     """Yield publishers that nothing subscribes to, where a controller waits for such messages on
     another topic.
@@ -144,12 +144,11 @@ def _without_subscription(
     for waiting in of_controllers:
         if waiting.name in published:
             continue
-        workspace.charge(len(unheard))
-        fitting = [end for end in unheard if _are_alike(end, waiting)]
+        fitting = graph.alike(waiting, unheard)
         for publisher in fitting:
             if publisher.location in named:
                 continue
-            mismatch = _unheard(workspace, publisher, waiting, is_only=len(fitting) == 1)
+            mismatch = _unheard(graph.workspace, publisher, waiting, is_only=len(fitting) == 1)
             if mismatch is not None:
                 named.add(publisher.location)
                 yield mismatch
@@ -175,11 +174,6 @@ def _unheard(
     return Mismatch(TOPIC_SUBSCRIBED, message, at, place, is_certain)
 
 
-def _are_alike(end: End, other: End) -> bool:
-    """Return whether one launch file starts the nodes of two ends of one type."""
-    return (end.launch, end.type) == (other.launch, other.type)
-
-
 def _last_names(end: End, count: int) -> list[str]:
     """Return the last parts of the name of a topic."""
     return end.name.split("/")[-count:]
@@ -202,8 +196,7 @@ def _without_server(graph: Graph, meeting: Meeting) -> Iterator[Mismatch]:
     uncalled = [end for end in servers if end.name not in called]
     unserved = [end for end in clients if end.name not in served and end.type is not None]
     for client in unserved:
-        workspace.charge(1 + len(uncalled))
-        alike = {end.name: end for end in reversed(uncalled) if _are_alike(end, client)}
+        alike = {end.name: end for end in reversed(graph.alike(client, uncalled))}
         if len(alike) != 1 or _may_be_served(workspace, meeting, client, alike):
             continue
         [(meant, server)] = alike.items()

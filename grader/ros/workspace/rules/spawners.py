@@ -14,7 +14,7 @@ from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.package.package import Package
 from grader.ros.workspace.graph.started_controllers import Controller, defined_controllers
-from grader.ros.workspace.model.launches import MANAGER, SPAWNERS
+from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Fact, Mismatch, Open, Use, corrections
 from grader.ros.workspace.rules.rule_table import (
@@ -104,7 +104,7 @@ def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact
 
 
 def _is_manager(node: StartedNode) -> bool:
-    return node.executable == "ros2_control_node"
+    return node.executable == CONTROL_NODE
 
 
 def _without_type(
