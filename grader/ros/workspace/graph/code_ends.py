@@ -119,8 +119,7 @@ def _values_given(
         if declared.name is not None and declared.is_declared
     }
     package = workspace.package_of(node)
-    if package is None:
-        return {}
+    assert package is not None  # that has the code of the node
     given = workspace.parameters.read_given(
         package, node, workspace.code.name_of(node) or own_node.name or ""
     )

@@ -343,8 +343,7 @@ def _given(
 def _may_declare_more(workspace: Workspace, node: StartedNode, own_node: NodeFacts) -> bool:
     """Return whether a node of the workspace may declare parameters that are not read."""
     package = workspace.package_of(node)
-    if package is None:
-        return False
+    assert package is not None  # that has the code of the node
     nodes = workspace.code.by_package[package.name]
     return bool(own_node.doubts) or nodes.has_loose_declarations
 
