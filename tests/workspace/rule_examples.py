@@ -98,7 +98,7 @@ def _framed(frame: str, text: str) -> tuple[str, range]:
 def _path_of(frame: str) -> str:
     """Return the path in the package of the file of a frame."""
     place = PurePosixPath(frame)
-    if place.name in _OF_ROOT:
+    if place.name in _OF_ROOT or frame.startswith("./"):
         return place.name
     if place.parent.name in _KEPT:
         return frame

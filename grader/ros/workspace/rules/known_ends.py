@@ -152,17 +152,17 @@ def _may_be_published(workspace: Workspace, topic: str) -> bool:
 
 
 def _other_remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:
-    """Yield the remappings of names that surely stand for one that a program has."""
+    """Yield the remappings of names that surely stand for one that a program has. What has a colon,
+    or begins with __, is no topic.
+    """
     names = [*row.subscriptions, *row.publishers, *row.names]
     replaced = [rule[0].removeprefix("~/").strip("/") for rule in node.remaps or ()]
     left = [name for name in names if name not in replaced]
     plain = {name.replace("_", ""): name for name in left}
     for written in replaced:
-        is_topic = ":" not in written and not written.startswith("__")
-        if written in names or not is_topic:
-            continue
         meant = plain.get(written.replace("_", "")) or near(written, left)
-        if meant is not None:
+        is_topic = ":" not in written and not written.startswith("__")
+        if meant is not None and is_topic and written not in names:
             message = (
                 f"{node.executable} has no topic {quoted(written)}, so its remapping does nothing; "
                 f"did you mean {meant}?"
