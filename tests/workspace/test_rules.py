@@ -1,6 +1,7 @@
 """Each rule of a workspace has one row and a name of its own, and some code names it."""
 
 import re
+from textwrap import indent
 
 from grader.lab.checks.registry import check_names
 from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
@@ -68,4 +69,5 @@ def test_a_rule_is_explained() -> None:
     assert text.startswith("topic-type: a rule of `grader inspect`\n\nPublishers and subscriptions")
     assert "REF007 (error)" in text
     assert "REF009 (warning)" in text
-    assert f"Wrong:\n\n    {EXAMPLES['topic-type']['wrong']}\n" in text
+    wrong = EXAMPLES["topic-type"]["wrong"].strip()
+    assert f"Wrong:\n\n{indent(wrong, '    ')}\n" in text
