@@ -1,5 +1,6 @@
 """Each rule of a workspace has one row and a name of its own, and some code names it."""
 
+import ast
 import re
 from textwrap import indent
 
@@ -43,6 +44,18 @@ def test_every_rule_is_named_by_a_finder() -> None:
 
     assert unused == []
     assert [kind for kind in rule_table.DEFINED if f'Use("{kind}"' not in uses] == []
+
+
+def test_a_function_finds_what_breaks_one_rule() -> None:
+    """A finder that makes the findings of two rules is two functions."""
+    several = {}
+    for path in (ROOT / "grader/ros/workspace/rules").glob("*.py"):
+        for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(function, ast.FunctionDef):
+                names = {node.id for node in ast.walk(function) if isinstance(node, ast.Name)}
+                several[f"{path.stem}.{function.name}"] = names & _ROWS.keys()
+    assert sum(map(bool, several.values())) > 100
+    assert {name: rules for name, rules in several.items() if len(rules) > 1} == {}
 
 
 def test_every_kind_of_names_has_a_rule() -> None:
