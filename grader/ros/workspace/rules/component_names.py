@@ -63,20 +63,25 @@ def _unregistered(
     if plugin in registered or any(plugin in text for text in texts):
         return
     workspace.charge(cost_of_guess(len(registered)))
-    meant = near(plugin, registered) or closest(plugin, registered)
     is_open = bool(setup.unknown or setup.unread) or any(map(_may_register, texts))
-    message = f"the package {owner.name!r} registers no component {quoted(plugin)}"
-    at = component.location
+    yield _no_component(owner.name, plugin, component.location, registered, is_open=is_open)
+
+
+def _no_component(
+    package: str, plugin: str, at: Location, registered: Mapping[str, Location], *, is_open: bool
+) -> Fact:
+    """Return that a package registers no component of a name, as far as it is known which."""
+    meant = near(plugin, registered) or closest(plugin, registered)
+    message = f"the package {package!r} registers no component {quoted(plugin)}"
     if meant is not None:
         related = registered[meant]
         message = f"{message}; did you mean {quoted(meant)} ({related.file_and_line})?"
         either = corrections(plugin, at, meant, related)
-        yield Mismatch(COMPONENT_REGISTERED, message, at, related, not is_open, either)
-    elif is_open:
-        yield Undecided("programs", f"which components {owner.name} has is not evaluated")
-    else:
-        message = f"{message}; it registers {', '.join(registered) or 'none'}"
-        yield Mismatch(COMPONENT_REGISTERED, message, at)
+        return Mismatch(COMPONENT_REGISTERED, message, at, related, not is_open, either)
+    if is_open:
+        return Undecided("programs", f"which components {package} has is not evaluated")
+    message = f"{message}; it registers {', '.join(registered) or 'none'}"
+    return Mismatch(COMPONENT_REGISTERED, message, at)
 
 
 def _registered_in(setup: Installation) -> Mapping[str, Location]:

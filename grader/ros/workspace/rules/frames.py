@@ -131,7 +131,9 @@ def _may_be_published(workspace: Workspace) -> bool:
 
 
 def _may_publish(workspace: Workspace, package: Package) -> bool:
-    """Return whether the programs that CMake makes may publish frames that are not known."""
+    """Return whether the programs that CMake makes may publish frames that are not known: the
+    frames of programs that are started are.
+    """
     setup = package.installation
     if not package.is_cmake or setup is None or not setup.programs:
         return False
@@ -140,14 +142,10 @@ def _may_publish(workspace: Workspace, package: Package) -> bool:
     programs = {path.rpartition("/")[2] for path in setup.programs}
     if nodes.doubts or nodes.loose_frames or not programs <= read:
         return True
-    if any(_may_open_transforms(facts) for facts in nodes.nodes):
+    if any(map(_may_open_transforms, nodes.nodes)):
         return True
-    started = set()
-    for _, node in workspace.launches.nodes:
-        if node.package == package.name:
-            started.add(node.executable)
-    # The frames of programs that are started are known.
-    others = [program for program in nodes.programs if program.name not in started]
+    started = {(node.package, node.executable) for _, node in workspace.launches.nodes}
+    others = [each for each in nodes.programs if (package.name, each.name) not in started]
     return any(map(_publishes_frame, others))
 
 

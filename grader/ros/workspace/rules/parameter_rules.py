@@ -118,19 +118,23 @@ def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismat
     if known is None or any(release not in COVERED for release in stated):
         return
     readers = {release: _NodeReader(given, release) for release in COVERED}
-    by_release: list[dict[tuple[Rule, str], Mismatch]] = []
-    for release in stated or COVERED:
-        if known.is_in(release):
-            findings = readers[release].findings()
-            by_release.append({(each.mismatch.rule, each.name): each.mismatch for each in findings})
-    for (rule, name), mismatch in by_release[0].items() if by_release else ():
-        if not all((rule, name) in findings_of_release for findings_of_release in by_release):
-            continue
-        if rule is PARAMETER_NAME:
-            having = [release for release in COVERED if readers[release].has(name)]
-            yield _of_other_release(given, name, mismatch, having, stated)
+    releases = [release for release in stated or COVERED if known.is_in(release)]
+    for finding in _findings_in_all([readers[release] for release in releases]):
+        if finding.mismatch.rule is PARAMETER_NAME:
+            having = [release for release in COVERED if readers[release].has(finding.name)]
+            yield _of_other_release(given, finding.name, finding.mismatch, having, stated)
         else:
-            yield mismatch
+            yield finding.mismatch
+
+
+def _findings_in_all(readers: "Sequence[_NodeReader]") -> Iterator[_RowFinding]:
+    """Yield what is wrong as each of some releases reads the parameters, as the first says it."""
+    by_release: list[dict[tuple[Rule, str], _RowFinding]] = []
+    for reader in readers:
+        by_release.append({(each.mismatch.rule, each.name): each for each in reader.findings()})
+    for key, finding in by_release[0].items() if by_release else ():
+        if all(key in findings for findings in by_release):
+            yield finding
 
 
 def default_in(given: GivenNode, name: str, release: Release) -> Any:

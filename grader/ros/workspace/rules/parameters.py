@@ -201,11 +201,8 @@ def _sections_of_others(
     unread = _unread_sections(workspace, sections, names)
     lacking = _without_section(workspace, sections, names)
     is_only_pair = len(unread) == len(lacking) == 1
-    keys_of_nodes = keys_of_sections(tree)
-    for node, name in zip(nodes, names, strict=True) if unread and lacking else ():
-        workspace.charge(len(keys_of_nodes))
-        is_renamed = key_of_program_name(workspace, node, keys_of_nodes) is not None
-        if is_renamed or name not in lacking:
+    for node, name in zip(nodes, names, strict=True) if unread else ():
+        if name not in lacking or _is_renamed(workspace, tree, node):
             continue
         workspace.charge(cost_of_guess(len(unread)))
         meant = near(name, unread)
@@ -219,6 +216,13 @@ def _sections_of_others(
         renamed = name if meant is not None or is_only_pair else None
         either = corrections(key, at, renamed, node.location)
         yield Mismatch(PARAMETER_NODE, message, at, node.location, corrections=either)
+
+
+def _is_renamed(workspace: Workspace, tree: YamlNode, node: StartedNode) -> bool:
+    """Return whether a file has a section for a node under the name that its program gives it."""
+    keys = keys_of_sections(tree)
+    workspace.charge(len(keys))
+    return key_of_program_name(workspace, node, keys) is not None
 
 
 def _may_read_another(workspace: Workspace, path: str, node: StartedNode) -> bool:
