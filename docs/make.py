@@ -36,7 +36,7 @@ from grader.lab.rubric.keys import (
 )
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.opening import open_submission
-from grader.report.examples import example_blocks, explanation_of, wrong_and_right
+from grader.report.examples import blocks_of, example_blocks, explanation_of
 from grader.report.explanations import CAUSES_OF_CHECK, EFFECTS, default_text, rules_of
 from grader.report.json_data import to_json
 from grader.report.writers.terminal import render_terminal
@@ -58,7 +58,12 @@ KEYS = {
     "[[test.ignore]]": IGNORE,
 }
 LANGUAGES = {
+    ".cpp": "cpp",
     ".launch": "xml",
+    ".msg": "text",
+    ".obj": "text",
+    ".pgm": "text",
+    ".sdf": "xml",
     ".yaml": "yaml",
     ".md": "markdown",
     ".py": "python",
@@ -113,9 +118,15 @@ def problems() -> Iterator[str]:
         effect = f" {EFFECTS[kind.effect]}".rstrip()
         yield from (f"## {kind.code}", "", f"{escaped(kind.title)} ({kind.severity}).", "")
         yield from (escaped(explanation_of(kind)) + effect, "")
-        for rule in rules_of(kind):
-            yield f"- `{rule.name}`: {escaped(rule.sentence)}"
-        yield from ("", *example(kind.code))
+        rules = rules_of(kind)
+        for rule in rules:
+            yield f"- [`{rule.name}`](#{rule.name}): {escaped(rule.sentence)}"
+        own_rules = [rule for rule in rules if rule.kind == kind]
+        yield ""
+        if not own_rules:
+            yield from example(kind.code)
+        for rule in own_rules:
+            yield from (f"### `{rule.name}`", "", escaped(rule.sentence), "", *example(rule.name))
 
 
 def checks() -> Iterator[str]:
@@ -183,9 +194,8 @@ def misconfigurations() -> Iterator[str]:
     that is found, and the files of the examples.
     """
     kinds = tomllib.loads((DOCS / "examples/kinds.toml").read_text(encoding="utf-8"))
-    own_frames = kinds.pop("frames")
-    of_names = tomllib.loads((DOCS / "examples/ref.toml").read_text(encoding="utf-8"))
-    frames = of_names["frames"] | own_frames
+    rules = tomllib.loads((DOCS / "examples/rules.toml").read_text(encoding="utf-8"))
+    frames = rules.pop("frames")
     yield from counts(kinds)
     yield from ("", "| kind | what goes wrong | found as |", "|---|---|---|")
     for name, kind in kinds.items():
@@ -199,13 +209,24 @@ def misconfigurations() -> Iterator[str]:
             yield f"- Found as: {codes(kind)}"
             yield f"- Covers: {escaped(kind['scope'])}"
             yield from (f"- Source: {escaped(kind['source'])}", "")
-            yield from example_of_kind(kind, frames)
+            yield from example_of_kind(kind, rules, frames)
     yield from ("## Files of the examples", "")
-    beside = {file for kind in kinds.values() for file in kind.get("beside", ())}
-    for file in own_frames:
-        if file in beside:
-            yield from (f"### `{file}`", "")
-            yield from code_block(file, own_frames[file].rstrip())
+    beside: set[str] = set()
+    for kind in kinds.values():
+        beside.update(files_beside(rules.get(kind.get("rule", ""), kind)))
+    for file in sorted(beside):
+        yield from (f"### `{file}`", "")
+        yield from code_block(file, without_placeholder(frames[file]).rstrip())
+
+
+def files_beside(example: dict[str, Any]) -> list[str]:
+    """Return the files beside an example that are as their frames."""
+    return [file for file, text in example.get("beside", {}).items() if not text]
+
+
+def without_placeholder(frame: str) -> str:
+    """Return a frame with nothing in it."""
+    return re.sub(r"(?m)^ *EXAMPLE\n", "", frame)
 
 
 def counts(kinds: dict[str, Any]) -> Iterator[str]:
@@ -236,17 +257,21 @@ def codes(kind: dict[str, Any]) -> str:
     return ", ".join(f"[`{code}`](problems.md#{code.lower()})" for code in kind.get("codes", ()))
 
 
-def example_of_kind(kind: dict[str, Any], frames: dict[str, str]) -> Iterator[str]:
+def example_of_kind(
+    kind: dict[str, Any], rules: dict[str, Any], frames: dict[str, str]
+) -> Iterator[str]:
     """Yield the example of a kind of misconfiguration, or where it is."""
-    if "wrong" not in kind:
+    shown = rules.get(kind.get("rule", ""), kind)
+    if "wrong" not in shown:
         code = kind["codes"][0]
         yield from (f"Example: that of [{code}](problems.md#{code.lower()}).", "")
         return
-    files = [f"[`{file}`](#{anchor(file)})" for file in kind.get("beside", ())]
-    for title, file, text in wrong_and_right(kind, frames):
-        beside = f", beside {enumerated(files)}" if files else ""
-        yield from (f"{title}, in `{file}`{beside}:", "")
-        yield from code_block(file, text)
+    files = [f"[`{file}`](#{anchor(file)})" for file in files_beside(shown)]
+    for block in blocks_of(shown, frames):
+        said = f", in `{block.file}`" if block.file not in block.title else ""
+        beside = f", beside {enumerated(files)}" if files and said else ""
+        yield from (f"{block.title}{said}{beside}:", "")
+        yield from code_block(block.file, block.text)
 
 
 def code_block(file: str, text: str) -> Iterator[str]:
@@ -274,9 +299,9 @@ def keys() -> Iterator[str]:
 
 def example(name: str) -> Iterator[str]:
     """Yield the code blocks of the example of a problem or a check."""
-    for title, file, text in example_blocks(name):
-        yield from (f"{title}:", "")
-        yield from code_block(file, text)
+    for block in example_blocks(name):
+        yield from (f"{block.title}:", "")
+        yield from code_block(block.file, block.text)
 
 
 def sample_report() -> Report:

@@ -3,7 +3,6 @@
 import re
 import runpy
 import tomllib
-from collections.abc import Sequence
 from pathlib import Path, PurePath
 from textwrap import indent
 from typing import Any
@@ -25,10 +24,8 @@ from grader.ros.package.finding import read_packages
 from grader.ros.package.found_problems import build_problems, package_problems
 from grader.ros.package.mesh_files import mesh_problems
 from grader.ros.package.robot_file import Absent, Read, read_as_ros
-from grader.ros.python import budget
 from grader.ros.workspace.rules.file_problems import listed_problems
 from grader.ros.workspace.rules.problem_kinds import EVERY_KIND
-from grader.ros.workspace.rules.release_problems import compared_names
 from tests.checks.submissions import png
 from tests.command_line import ROOT
 from tests.oracles.check_urdf import check_urdf
@@ -37,17 +34,22 @@ FILES = {
     path.stem: tomllib.loads(path.read_text(encoding="utf-8"))
     for path in (ROOT / "docs/examples").glob("*.toml")
 }
-FILES["kinds"]["frames"] = {**FILES["ref"]["frames"], **FILES["kinds"]["frames"]}
-FRAMES = {name: file["frames"] for file in FILES.values() for name in file if name != "frames"}
 # The kinds of misconfiguration, of which tests/test_misconfigurations.py tests the examples.
-KINDS: dict[str, Any] = {name: entry for name, entry in FILES["kinds"].items() if name != "frames"}
-ENTRIES: dict[str, Any] = {
-    name: entry
+KINDS: dict[str, Any] = FILES.pop("kinds")
+# The examples of rules, which tests/workspace/test_rule_examples.py tests.
+RULE_EXAMPLES = FILES.pop("rules")
+FRAMES = {
+    name: file["frames"]
     for file in FILES.values()
-    for name, entry in file.items()
-    if name != "frames" and (name not in KINDS or "wrong" in entry)
+    if "frames" in file
+    for name in file
+    if name != "frames"
+}
+ENTRIES: dict[str, Any] = {
+    name: entry for file in FILES.values() for name, entry in file.items() if name != "frames"
 }
 CODES = {kind.code: kind for kind in EVERY_KIND}
+OWN_EXAMPLES = [code for code in CODES if "example" not in ENTRIES[code]]
 CHECKS = {check.name: check for check in own_checks()}
 SIDES = pytest.mark.parametrize("side", ["wrong", "right"])
 # What comes with a problem: an assumption, a consequence, another rule that the same mistake breaks.
@@ -129,18 +131,6 @@ PACKAGE = {
 }
 
 
-def started(programs: Sequence[str]) -> dict[str, str]:
-    """Return the files of the package that install and start its programs."""
-    entries = ", ".join(f"'{it} = rover.{it}:main'" for it in programs)
-    nodes = "\n".join(f"Node(package='rover', executable='{it}')," for it in programs)
-    return {
-        "setup.py": PACKAGE["setup.py"].rstrip().removesuffix(")")
-        + f"    entry_points={{'console_scripts': [{entries}]}},\n)\n",
-        "setup.cfg": "[install]\ninstall_scripts=$base/lib/rover\n",
-        "launch/rover.launch.py": framed("LCH001", nodes)[0],
-    }
-
-
 def path_of(frame: str) -> str:
     """Return the path in the package of the file of a frame."""
     file = frame.rpartition("/")[2]
@@ -170,10 +160,8 @@ def files_of(name: str, side: str) -> tuple[dict[str, bytes], range]:
     if file.endswith((".urdf", ".md")):
         return {file: own}, lines
     path = path_of(file)
-    beside = {path_of(frame): FRAMES[name][frame] for frame in ENTRIES[name].get("beside", ())}
-    programs = [PurePath(it).stem for it in (*beside, path) if PurePath(it).parent.name == "rover"]
     package = COMPILED if path == "CMakeLists.txt" else PACKAGE
-    others = package | (started(programs) if programs else {}) | beside
+    others = {**package}
     if path.startswith("urdf/"):
         others = {it: text for it, text in others.items() if not it.startswith("urdf/")}
         others["urdf/wheel.xacro"] = WHEEL
@@ -193,10 +181,10 @@ def opened(folder: Path, files: dict[str, bytes], distro: Release = "jazzy") -> 
 
 def test_every_code_and_check_has_an_example() -> None:
     """No example is missing, and none is of something else; each is short and shows a difference. Codes are explained."""
-    with_example = [name for name, entry in KINDS.items() if "wrong" in entry]
-    assert sorted(ENTRIES) == sorted([*CODES, *CHECKS, *with_example])
+    assert sorted(ENTRIES) == sorted([*CODES, *CHECKS])
     assert all(ENTRIES[code].get("explanation") for code in CODES)
-    for name, entry in ENTRIES.items():
+    for name in [*OWN_EXAMPLES, *CHECKS]:
+        entry = ENTRIES[name]
         assert entry["wrong"] != entry["right"], name
         for text in (entry["wrong"], entry["right"]):
             assert text.count("\n") <= 16, name
@@ -204,15 +192,9 @@ def test_every_code_and_check_has_an_example() -> None:
 
 
 @pytest.mark.every(kind=str)
-@pytest.mark.parametrize("code", CODES)
-def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(
-    code: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.mark.parametrize("code", OWN_EXAMPLES)
+def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_path: Path) -> None:
     """The problem is at a line of the example, and the right file has no problem at all."""
-    if (
-        code == "REF012"
-    ):  # one file that is short enough for an example asks for less than is allowed
-        monkeypatch.setattr(budget, "_OF_WORKSPACE", 5_000)
     for side in ("wrong", "right"):
         files, lines = files_of(code, side)
         submission = opened(tmp_path / side, files, ENTRIES[code].get("distro", "jazzy"))
@@ -232,12 +214,6 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(
             ]
         if code in ("PKG018", "PKG022"):
             found = listed_problems(submission.workspace)
-        if code.startswith("REF"):
-            found = [
-                it
-                for it in compared_names(submission.workspace)
-                if it.code == code or it.severity == "error" == CODES[code].severity
-            ]
         if code.startswith("IGN"):
             path, text = next(iter(files.items()))
             comments = [*read_ignore_comments(path, text.decode())]
@@ -245,9 +221,7 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(
         if side == "right":
             assert found == []
         else:
-            lines = (
-                range(1, 2) if code in ("REF010", "REF012", "PKG018", "PKG022") else lines
-            )  # of the file as a whole
+            lines = range(1, 2) if code in ("PKG018", "PKG022") else lines  # of the whole file
             assert any(it.code == code and it.location.line in lines for it in found), (
                 found,
                 lines,

@@ -9,12 +9,13 @@ import pytest
 
 from tests.command_line import ROOT, run
 from tests.test_catalogue_examples import CODES, KINDS, files_of
+from tests.workspace.rule_examples import EXAMPLES, files_of_example
 
 FOUND = {name: entry for name, entry in KINDS.items() if "codes" in entry}
 LEAST = 41  # of the kinds that files show
 
 
-def problems_of(folder: Path) -> list[dict[str, Any]]:
+def inspected(folder: Path) -> list[dict[str, Any]]:
     """Return what `grader inspect` reports in a folder, with the release that the examples are for."""
     data = json.loads(run(("inspect", folder, "--format", "json", "--distro", "jazzy")).stdout)
     return [*data["problems"], *(it for robot in data["robots"] for it in robot["problems"])]
@@ -38,20 +39,26 @@ def test_the_kinds_are_those_of_the_study() -> None:
 def test_an_example_of_a_kind_is_found(name: str, tmp_path: Path) -> None:
     """Its first code is reported at a line of the wrong example, and neither it nor an error in the right one."""
     code = FOUND[name]["codes"][0]
-    example = name if "wrong" in FOUND[name] else code
+    shown = EXAMPLES.get(FOUND[name].get("rule", ""), FOUND[name])
     found: dict[str, list[dict[str, Any]]] = {}
     for side in ("wrong", "right"):
-        files, _ = files_of(example, side)
-        for path, data in files.items():
-            (tmp_path / side / path).parent.mkdir(parents=True, exist_ok=True)
-            (tmp_path / side / path).write_bytes(data)
-        found[side] = problems_of(tmp_path / side)
-    files, lines = files_of(example, "wrong")
-    own = next(iter(files))
-    if code == "REF010":  # of the file that nothing names
-        own, lines = "rover/config/speed.yaml", range(1, 2)
-    places = [it["location"] for it in found["wrong"] if it["code"] == code]
-    assert any(it["path"] == own and it["line"] in lines for it in places), found["wrong"]
+        if "wrong" in shown:
+            example = files_of_example(shown, side)
+            files = {path: text.encode() for path, text in example.files.items()}
+            path, lines = example.path, example.lines
+        else:
+            files, lines = files_of(code, side)
+            path = next(iter(files))
+        for file, data in files.items():
+            (tmp_path / side / file).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / side / file).write_bytes(data)
+        found[side] = inspected(tmp_path / side)
+        if side == "wrong":
+            places = [it["location"] for it in found["wrong"] if it["code"] == code]
+            if "at" in shown:
+                assert shown["at"] in [it["path"] for it in places], found["wrong"]
+            else:
+                assert any(it["path"] == path and it["line"] in lines for it in places), found
     right = [it for it in found["right"] if it["code"] == code or it["severity"] == "error"]
     assert right == []
 

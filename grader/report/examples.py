@@ -1,17 +1,25 @@
-"""What docs/examples/ has for a problem code or a check: the explanation, what is wrong, what is
-right.
+"""What docs/examples/ has for a problem code, a rule or a check: an explanation, what is wrong and
+what is right.
 """
 
 from collections.abc import Iterator, Mapping
 from functools import cache
 from string import digits
-from typing import Any
+from typing import Any, NamedTuple
 
 from grader.base.problems import Kind
 from grader.base.toml_file import read_toml, toml_literal
 from grader.files.reading import shipped_folder
 
-_CHECKS = "checks"
+_CHECKS, _RULES = "checks", "rules"
+
+
+class _ExampleBlock(NamedTuple):
+    """A part of an example: a text in a file."""
+
+    title: str
+    file: str  # its name
+    text: str
 
 
 def explanation_of(kind: Kind) -> str:
@@ -22,35 +30,43 @@ def explanation_of(kind: Kind) -> str:
     return " ".join(entry.get("explanation", kind.title).split())
 
 
-def example_blocks(name: str) -> Iterator[tuple[str, str, str]]:
-    """Yield title, file name and text of a check's row in a rubric, of what is wrong and of what is
-    right, if known.
+def example_blocks(name: str) -> Iterator[_ExampleBlock]:
+    """Yield a check's row in a rubric, and the example of a check, a rule or a code, if known; that
+    of a code may be that of one of its rules.
     """
     family = _family_of(name)
     entries = _family(family)
     example = entries.get(name, {})
+    if "example" in example:
+        yield from example_blocks(example["example"])
     if "wrong" in example:
         if family == _CHECKS:
             given = f"\nwith = {toml_literal(example['with'])}" if "with" in example else ""
-            yield "In a rubric", "rubric.toml", f'check = "{name}"{given}'
-        yield from wrong_and_right(example, entries["frames"])
+            yield _ExampleBlock("In a rubric", "rubric.toml", f'check = "{name}"{given}')
+        yield from blocks_of(example, entries["frames"])
 
 
-def wrong_and_right(
-    example: Mapping[str, Any], frames: Mapping[str, str]
-) -> Iterator[tuple[str, str, str]]:
-    """Yield title, file name and text of what is wrong and of what is right in an example, which is
-    in the first frame unless it names another one.
+def blocks_of(example: Mapping[str, Any], frames: Mapping[str, str]) -> Iterator[_ExampleBlock]:
+    """Yield what is wrong and what is right in an example, which is in the first frame unless it
+    names another one, and what is in other files beside it.
     """
-    file = example.get("frame", next(iter(frames))).rpartition("/")[2]
-    yield "Wrong", file, example["wrong"].rstrip() or "(an empty file)"
-    yield "Right", file, example["right"].rstrip()
+    file = _name_of(example.get("frame", next(iter(frames))))
+    yield _ExampleBlock("Wrong", file, example["wrong"].rstrip() or "(an empty file)")
+    yield _ExampleBlock("Right", file, example["right"].rstrip())
+    for frame, text in example.get("beside", {}).items():
+        other = _name_of(frame)
+        if text:
+            yield _ExampleBlock(f"Beside it, in {other}", other, text.rstrip())
+
+
+def _name_of(frame: str) -> str:
+    return frame.rpartition("/")[2]
 
 
 def _family_of(name: str) -> str:
     if name.isupper():
         return name.rstrip(digits).lower()
-    return _CHECKS
+    return _RULES if "-" in name else _CHECKS
 
 
 @cache

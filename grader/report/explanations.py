@@ -166,8 +166,7 @@ def _rule_text(rule: Rule) -> str:
     texts = [f"{rule.name}: a rule of `grader inspect`", rule.sentence]
     for kind in dict.fromkeys((rule.kind, rule.doubtful)):
         texts.append(_fill(f"{kind.code} ({kind.severity}): {kind.title}. {explanation_of(kind)}"))
-    texts.append(f"`grader explain {rule.kind.code}` shows an example.")
-    return _paragraphs(texts)
+    return _paragraphs([*texts, *_examples(rule.name)])
 
 
 def _paragraphs(texts: Iterable[str]) -> str:
@@ -257,9 +256,8 @@ def _fill(text: str, width: int = _WIDTH) -> str:
 
 def _examples(name: str) -> Iterator[str]:
     """Yield these blocks as paragraphs."""
-    return (
-        f"{title}:\n\n{textwrap.indent(text, '    ')}" for title, _, text in example_blocks(name)
-    )
+    for block in example_blocks(name):
+        yield f"{block.title}:\n\n{textwrap.indent(block.text, '    ')}"
 
 
 def default_text(value: object) -> str:

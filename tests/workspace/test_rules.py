@@ -1,12 +1,15 @@
 """Each rule of a workspace has one row and a name of its own, and some code names it."""
 
+import ast
 import re
+from textwrap import indent
 
 from grader.lab.checks.registry import check_names
 from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
 from grader.ros.workspace.rules import rule_table
 from grader.ros.workspace.rules.rule_table import FAMILIES, NAME_CATALOGUE, RULES, Rule
 from tests.command_line import ROOT, run
+from tests.workspace.rule_examples import EXAMPLES
 
 _ROWS = {name: rule for name, rule in vars(rule_table).items() if isinstance(rule, Rule)}
 
@@ -43,6 +46,18 @@ def test_every_rule_is_named_by_a_finder() -> None:
     assert [kind for kind in rule_table.DEFINED if f'Use("{kind}"' not in uses] == []
 
 
+def test_a_function_finds_what_breaks_one_rule() -> None:
+    """A finder that makes the findings of two rules is two functions."""
+    several = {}
+    for path in (ROOT / "grader/ros/workspace/rules").glob("*.py"):
+        for function in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(function, ast.FunctionDef):
+                names = {node.id for node in ast.walk(function) if isinstance(node, ast.Name)}
+                several[f"{path.stem}.{function.name}"] = names & _ROWS.keys()
+    assert sum(map(bool, several.values())) > 100
+    assert {name: rules for name, rules in several.items() if len(rules) > 1} == {}
+
+
 def test_every_kind_of_names_has_a_rule() -> None:
     """A certain finding of each family that a rubric can ask for is an error or a declared warning."""
     kinds = {kind for rule in RULES.values() for kind in (rule.kind, rule.doubtful)}
@@ -62,8 +77,10 @@ def test_problems_are_selected_and_ignored_by_the_names_of_rules() -> None:
 
 
 def test_a_rule_is_explained() -> None:
-    """By what is right, with its codes."""
+    """By what is right, with its codes and its own example."""
     text = run(("explain", "topic-type")).stdout.decode()
     assert text.startswith("topic-type: a rule of `grader inspect`\n\nPublishers and subscriptions")
     assert "REF007 (error)" in text
     assert "REF009 (warning)" in text
+    wrong = EXAMPLES["topic-type"]["wrong"].strip()
+    assert f"Wrong:\n\n{indent(wrong, '    ')}\n" in text

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from grader.lab.submission.submission import Submission
     from grader.ros.launch.launch_model import Launch, StartedNode
     from grader.ros.workspace.model.workspace import Workspace
-    from grader.ros.workspace.rules.names import Mismatch
 
 _VERBS: Mapping[str, str] = {
     "publisher": "publishes",
@@ -205,16 +204,6 @@ class _NodeTopic(NamedTuple):
     node: "StartedNode"
 
 
-def _stopping_mistakes(mismatches: Sequence["Mismatch"]) -> Mapping[str, "Mismatch"]:
-    """Return the first mistake of each file for which its node certainly ends."""
-    stopping: dict[str, Mismatch] = {}
-    for mismatch in mismatches:
-        is_of_code = mismatch.family in ("code", "interfaces")
-        if is_of_code and mismatch.is_certain and mismatch.rule.name not in _HARMLESS:
-            stopping.setdefault(mismatch.location.path, mismatch)
-    return stopping
-
-
 class _NodeTopics:
     """The topics, services and actions of the nodes of a workspace that a launch file starts."""
 
@@ -225,10 +214,17 @@ class _NodeTopics:
         self._topics: list[_NodeTopic] = []
         self._is_open = bool(launch.unknown)
         self._unread: list[Fault] = []  # of programs that cannot run, and so open nothing
-        stopping = _stopping_mistakes(read_agreement(workspace).mismatches)
+        # by file, the first mistake for which its node certainly ends
+        self._stopping = {
+            mistake.location.path: mistake
+            for mistake in reversed(read_agreement(workspace).mismatches)
+            if mistake.family in ("code", "interfaces")
+            and mistake.is_certain
+            and mistake.rule.name not in _HARMLESS
+        }
         for node in launch.nodes:
             package = workspace.package_of(node)
-            if package is None or not self._may_run(node, workspace, package.name, stopping):
+            if package is None or not self._may_run(node, workspace, package.name):
                 continue
             for end in opened_by(workspace, node):
                 self._is_open = self._is_open or not end.is_known
@@ -236,13 +232,7 @@ class _NodeTopics:
                 verb, opened = _VERBS[end.endpoint.kind], end.endpoint
                 self._topics.append(_NodeTopic(name, verb, opened.type, opened.location, node))
 
-    def _may_run(
-        self,
-        node: "StartedNode",
-        workspace: "Workspace",
-        package: str,
-        stopping: Mapping[str, "Mismatch"],
-    ) -> bool:
+    def _may_run(self, node: "StartedNode", workspace: "Workspace", package: str) -> bool:
         """Return whether a node is read and may run; note why not, and what is not known of it."""
         code = workspace.code.by_package.get(package)
         doubts = list(code.doubts) if code is not None else []
@@ -250,7 +240,7 @@ class _NodeTopics:
         started = (program.syntax for program in programs if program.name == node.executable)
         syntax = next(filter(None, started), None)
         own_node = workspace.code.own_node(node)
-        mistake = stopping.get(own_node.location.path) if own_node is not None else None
+        mistake = self._stopping.get(own_node.location.path) if own_node is not None else None
         runs = own_node is not None
         if syntax is not None:
             message = f"Python cannot read the file: {syntax.message}"

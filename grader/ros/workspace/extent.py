@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from grader.base.text import counted
 from grader.ros.known.releases import StatedReleases
+from grader.ros.package.package import Package
 from grader.ros.workspace.model.workspace import Workspace
 
 _CPP = (".cpp", ".cc", ".cxx")
@@ -53,18 +54,9 @@ def _counted_ones(*counts: tuple[int, str]) -> list[str]:
 def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) -> Extent:
     """Return what of a workspace was read; `unread_robots` are not even opened."""
     nodes = [node for found in workspace.code.by_package.values() for node in found.nodes]
-    unread = set()
-    for node in [node for _, launch in workspace.launches.roots for node in launch.nodes]:
-        owner = workspace.package_of(node)
-        if owner is None or workspace.code.own_node(node) is not None:
-            continue
-        if owner.has_program(node.package, node.executable) is not False:
-            unread.add((node.package, node.executable))
     cpp_files = expressions = 0
     for package in workspace.packages:
-        names = [path for path in package.tree.files if not path.startswith("test/")]
-        read = workspace.code.by_package[package.name].cpp_files
-        cpp_files += sum(name.endswith(_CPP) and name not in read for name in names)
+        cpp_files += _unread_cpp_files(workspace, package)
         if package.installation is not None:
             expressions += len(package.installation.unknown)
     for _, _, launch in workspace.launches.files:
@@ -75,10 +67,32 @@ def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) 
         robots=len(workspace.urdfs),
         launch_files=len(workspace.launches.files),
         nodes=len(nodes),
-        all_nodes=len(nodes) + len(unread),
+        all_nodes=len(nodes) + len(_unread_programs(workspace)),
         unread_robots=unread_robots,
         cpp_files=cpp_files,
         computed_names=sum(endpoint.is_computed for endpoint in endpoints),
         expressions=expressions,
         stated=stated,
     )
+
+
+def _unread_programs(workspace: Workspace) -> set[tuple[str, str]]:
+    """Return the programs of the workspace that are started and whose nodes are not known."""
+    unread = set()
+    for _, launch in workspace.launches.roots:
+        for node in launch.nodes:
+            owner = workspace.package_of(node)
+            if owner is None or workspace.code.own_node(node) is not None:
+                continue
+            if owner.has_program(node.package, node.executable) is not False:
+                unread.add((node.package, node.executable))
+    return unread
+
+
+def _unread_cpp_files(workspace: Workspace, package: Package) -> int:
+    """Return how many files in C++ of a package, besides tests, are not read."""
+    read = workspace.code.by_package[package.name].cpp_files
+    unread = 0
+    for path in package.tree.files:
+        unread += path.endswith(_CPP) and not path.startswith("test/") and path not in read
+    return unread

@@ -105,24 +105,40 @@ def _newer_gz_type(written: str) -> str:
     return _OLDER_FORM.sub("gz.msgs", written)
 
 
+class _RowSide(NamedTuple):
+    """The topic of a row in ROS or in Gazebo, with its type."""
+
+    topic: str
+    type: str
+    location: Location
+    type_location: Location
+
+
 def _row_in_yaml(row: YamlNode, *, is_used: bool) -> BridgeRow | None:
-    both = row.get("topic_name")
-    ros, gz = row.get("ros_topic_name") or both, row.get("gz_topic_name") or both
-    ros_type, gz_type = row.get("ros_type_name"), row.get("gz_type_name")
-    if ros is None or gz is None or not ros.text or not gz.text:
-        return None
-    if ros_type is None or gz_type is None:
+    """Return a row of a file; None where it has no topics or types, with which it is left out."""
+    ros, gz = _side_of_row(row, "ros"), _side_of_row(row, "gz")
+    if ros is None or gz is None:
         return None
     direction = row.get("direction")
+    written = direction.text if direction is not None else None
     return BridgeRow(
-        ros=ros.text.strip("/"),
-        gz=gz.text.strip("/"),
-        ros_type=_newer_ros_type(ros_type.text or ""),
-        gz_type=_newer_gz_type(gz_type.text or ""),
-        direction=(direction.text if direction is not None else None) or _BOTH,
+        ros=ros.topic,
+        gz=gz.topic,
+        ros_type=_newer_ros_type(ros.type),
+        gz_type=_newer_gz_type(gz.type),
+        direction=written or _BOTH,
         location=gz.location,
-        ros_type_location=ros_type.location,
-        gz_type_location=gz_type.location,
-        direction_location=(direction or gz).location,
+        ros_type_location=ros.type_location,
+        gz_type_location=gz.type_location,
+        direction_location=direction.location if direction is not None else gz.location,
         is_used=is_used,
     )
+
+
+def _side_of_row(row: YamlNode, side: str) -> _RowSide | None:
+    """Return the topic and the type of a side; None where one of them is missing."""
+    topic = row.get(f"{side}_topic_name") or row.get("topic_name")
+    kind = row.get(f"{side}_type_name")
+    if topic is None or not topic.text or kind is None:
+        return None
+    return _RowSide(topic.text.strip("/"), kind.text or "", topic.location, kind.location)

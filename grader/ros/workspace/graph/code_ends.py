@@ -67,16 +67,30 @@ def opened_by(workspace: Workspace, node: StartedNode, launch: int = -1) -> Iter
         return
     workspace.charge(len(own_node.endpoints) * (1 + len(node.remaps or ())))
     values: Mapping[str, Value] = {}
-    if any(part.kind in ("parameter", "item") for it in own_node.endpoints for part in it.parts):
+    if any(map(_has_parameter, own_node.endpoints)):
         values = _values_given(workspace, node, own_node)
     named = node._replace(node_name=workspace.code.name_of(node))
     for endpoint in own_node.endpoints:
         for name in _names(endpoint, named, values):
-            full = named.topic(name) if name is not None else None
-            is_open = name is not None and _ANY in name and node.remaps != ()
-            if full is None or is_open or "~" in full or "//" in full:
-                full = _ANY
+            full = _full_name(named, name)
             yield End(full, endpoint, launch, node, "code", node.executable)
+
+
+def _has_parameter(endpoint: Endpoint) -> bool:
+    """Return whether a parameter is a part of a name."""
+    return any(part.kind in ("parameter", "item") for part in endpoint.parts)
+
+
+def _full_name(node: StartedNode, name: str | None) -> str:
+    """Return the full name of an end of a node; _ANY for one that is not known. A remapping may
+    replace a name of which a part is not known.
+    """
+    if name is None or (_ANY in name and node.remaps != ()):
+        return _ANY
+    full = node.topic(name)
+    if full is None or "~" in full or "//" in full:
+        return _ANY
+    return full
 
 
 def frames_of(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str | None, NodeFrame]]:
@@ -105,8 +119,7 @@ def _values_given(
         if declared.name is not None and declared.is_declared
     }
     package = workspace.package_of(node)
-    if package is None:
-        return {}
+    assert package is not None  # that has the code of the node
     given = workspace.parameters.read_given(
         package, node, workspace.code.name_of(node) or own_node.name or ""
     )

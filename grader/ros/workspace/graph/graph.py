@@ -1,5 +1,5 @@
-"""What runs after launch files are launched: the ends and the transforms of its nodes. What
-`ros2 topic info --verbose` and `view_frames` would show.
+"""What runs after launch files are launched: nodes, their parameters, ends and transforms. What
+`ros2 node list`, `param dump`, `topic info --verbose` and `view_frames` would show.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
@@ -7,9 +7,13 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TypeVar
 
+from grader.ros.launch.launch_model import LoadedComponent, ParameterValue, StartedNode
 from grader.ros.nodes.node_facts import EndpointKind
+from grader.ros.package.package import Package
+from grader.ros.workspace.graph.bridge_rows import BridgeRow, bridge_rows
 from grader.ros.workspace.graph.code_ends import End, EndSource
 from grader.ros.workspace.graph.node_ends import ends_of
+from grader.ros.workspace.graph.running_nodes import RunningNode, nodes_in
 from grader.ros.workspace.graph.transform_edges import Edge, edges_in
 from grader.ros.workspace.model.workspace import Workspace
 
@@ -29,6 +33,14 @@ class Graph:
     """
 
     workspace: Workspace
+
+    @cached_property
+    def nodes(self) -> Sequence[RunningNode]:
+        """The nodes that are or may be started, with controllers and components."""
+        nodes: list[RunningNode] = []
+        for launch in range(len(self.workspace.launches.roots)):
+            nodes += nodes_in(self.workspace, launch)
+        return nodes
 
     @cached_property
     def ends(self) -> Sequence[End]:
@@ -67,6 +79,38 @@ class Graph:
             self.workspace.charge(1 + len(others))
             for other in others:
                 yield end, other
+
+    def alike(self, end: End, others: Sequence[End]) -> Sequence[End]:
+        """Return those of other ends that have the type of one, and are of its launch file."""
+        self.workspace.charge(1 + len(others))
+        key = end.launch, end.type
+        return [other for other in others if (other.launch, other.type) == key]
+
+    def bridged(self, ends: Iterable[End]) -> Iterator[tuple[End, BridgeRow]]:
+        """Yield each row of a bridge, also of one that nothing starts, with the ends from which it
+        takes messages, and those to which it brings some.
+        """
+        by_name = grouped(ends, lambda end: end.name)
+        for row in bridge_rows(self.workspace):
+            others = by_name.get(f"/{row.ros}", ())
+            self.workspace.charge(len(others))
+            for end in others:
+                if row.is_published if end.kind == "subscription" else row.is_read:
+                    yield end, row
+
+    def components(self) -> Iterator[tuple[Package, LoadedComponent]]:
+        """Yield the components that launch files load, each with the package of its launch file."""
+        for package, launch in self.workspace.launches.roots:
+            self.workspace.charge(1 + len(launch.components))
+            for component in launch.components:
+                yield package, component
+
+    def given(self, parameter: str) -> Iterator[tuple[StartedNode, ParameterValue]]:
+        """Yield the nodes that are given a parameter of a name, each with its value."""
+        for package, node in self.workspace.launches.nodes:
+            value = self.workspace.parameters.given_to(package, node).values.get(parameter)
+            if value is not None:
+                yield node, value
 
 
 @lru_cache(maxsize=2)

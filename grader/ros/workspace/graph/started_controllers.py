@@ -13,7 +13,7 @@ from grader.ros.known.package_rows import controller_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.nodes.node_facts import Endpoint, EndpointKind
-from grader.ros.workspace.model.launches import MANAGER, SPAWNERS
+from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
 from grader.ros.workspace.model.workspace import Workspace
 
 _JOINT_STATE = "sensor_msgs.msg.JointState"
@@ -79,7 +79,7 @@ def controller_endpoints(
     """Yield the topics of the controllers in the process of a node, those that its launch file
     spawns, each with the name of its controller.
     """
-    if node.executable != "ros2_control_node" or node.namespace is None or node.remaps is None:
+    if node.executable != CONTROL_NODE or node.namespace is None or node.remaps is None:
         return
     remaps = spawned_controllers(workspace, launch)
     # With this parameter, the type of a topic depends on its value.

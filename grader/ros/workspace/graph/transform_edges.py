@@ -25,6 +25,7 @@ from grader.ros.workspace.graph.code_ends import frames_of
 from grader.ros.workspace.graph.gazebo_topics import roots, system_of
 from grader.ros.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.xml.parsing import Element
 
 _EdgeSource = Literal["robot", "static", "code", "program", "controller", "Gazebo"]
 _TF = "/tf"
@@ -183,16 +184,24 @@ def _broadcast_by_gazebo(workspace: Workspace, launch: int, bridge: StartedNode)
         plugins = [*root.iter("plugin")]
         workspace.charge(_OF_ROBOT + len(plugins))
         for plugin in plugins:
-            frames = gazebo().system.get(system_of(plugin), NO_SYSTEM).transform
             topic = (plugin.findtext("tf_topic") or "").strip().strip("/")
-            if frames is None or topic not in topics:
-                continue
-            parent = (plugin.findtext(frames.parent) or "").strip()
-            child = (plugin.findtext(frames.child) or "").strip()
-            if parent and child:
+            frames = _frames_of_system(plugin) if topic in topics else None
+            if frames is not None:
                 is_certain = bridge.when is True
                 by = f"the system {system_of(plugin)} of Gazebo"
-                yield Edge(parent, child, launch, "Gazebo", is_certain, by, place(plugin))
+                yield Edge(*frames, launch, "Gazebo", is_certain, by, place(plugin))
+
+
+def _frames_of_system(plugin: Element) -> tuple[str, str] | None:
+    """Return parent and child of the transform that a system of Gazebo publishes; None if it does
+    not name both.
+    """
+    frames = gazebo().system.get(system_of(plugin), NO_SYSTEM).transform
+    if frames is None:
+        return None
+    parent = (plugin.findtext(frames.parent) or "").strip()
+    child = (plugin.findtext(frames.child) or "").strip()
+    return (parent, child) if parent and child else None
 
 
 def _broadcast(kind: str, given: NodeParameters) -> Iterator[tuple[str, str]]:

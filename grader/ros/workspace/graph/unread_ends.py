@@ -80,11 +80,8 @@ def _may_open(workspace: Workspace, node: StartedNode, sought: Sought) -> bool:
         return True
     if sought.kind != "publisher" and _is_renamed_to(node, sought.name.rpartition("/")[2]):
         return True
-    for opened in opened_by(workspace, node):
-        is_open = opened.kind == sought.kind and not opened.is_known
-        if is_open and fnmatchcase(sought.name, opened.name):
-            return True
-    return False
+    computed = [end for end in opened_by(workspace, node) if not end.is_known]
+    return any(end.kind == sought.kind and fnmatchcase(sought.name, end.name) for end in computed)
 
 
 def _may_be_of_other_package(workspace: Workspace, node: StartedNode, sought: Sought) -> bool:

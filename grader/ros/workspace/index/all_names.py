@@ -128,15 +128,21 @@ def _owned(workspace: Workspace, names: Sequence[WrittenName]) -> Iterator[Writt
     all that define them.
     """
     owners: dict[tuple[str, str], dict[str, None]] = defaultdict(dict)
-    for it in names:
-        if it.role == "definition" and it.owner:
-            owners[_key(it)][it.owner] = None
-    for it in names:
-        known_owners = owners.get(_key(it))
-        if it.owner or _key(it)[0] not in _OF_ROBOTS or not known_owners:
-            yield it
+    for name in names:
+        if name.role == "definition" and name.owner:
+            owners[_key(name)][name.owner] = None
+    for name in names:
+        known_owners = list(owners.get(_key(name), ()))
+        if name.owner or _key(name)[0] not in _OF_ROBOTS or not known_owners:
+            yield name
             continue
-        package = next((one for one in workspace.packages if one.holds(it.location.path)), None)
-        own = [owner for owner in known_owners if package is not None and package.holds(owner)]
-        for owner in own or known_owners:
-            yield it._replace(owner=owner)
+        for owner in _owners_beside(workspace, name, known_owners) or known_owners:
+            yield name._replace(owner=owner)
+
+
+def _owners_beside(workspace: Workspace, name: WrittenName, owners: Sequence[str]) -> list[str]:
+    """Return those robots that are in the package of a name."""
+    for package in workspace.packages:
+        if package.holds(name.location.path):
+            return [owner for owner in owners if package.holds(owner)]
+    return []

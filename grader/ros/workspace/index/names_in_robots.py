@@ -1,6 +1,6 @@
 """The names in the elements of robots: links, joints and materials, defined and used."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
 from grader.base import markup
@@ -48,19 +48,30 @@ def names_in_robots(urdfs: Sequence[Read]) -> Iterator[WrittenName]:
 def _names_in_robot(urdf: Read, root: Element) -> Iterator[WrittenName]:
     joints = {joint.get("name") for joint in root.iterchildren("joint")}
     for tag, element in enumerate(root.iter("*")):
-        parent = element.getparent()
-        if element.tag not in _TAGS or parent is None:
+        if element.tag not in _TAGS or element.getparent() is None:
             continue
         for attribute in _ATTRIBUTES:
-            named = _NAMED.get((str(parent.tag), str(element.tag), attribute))
             name = element.get(attribute)
+            named = _named_by(element, attribute, joints) if name else None
             if named is None or not name:
                 continue
-            if attribute == "reference" and name in joints:
-                named = _Named("joint", "use")
-            elif element.tag == "material" and len(element):
-                named = _Named("material", "definition")  # also in a visual: ROS 2 adds its color
             source, start = urdf.reading.source.element(tag)
             written = markup.attribute(source.text, start, attribute)
             if written is not None:
                 yield written_name(source, written.value, named.kind, name, named.role, urdf.path)
+
+
+def _named_by(element: Element, attribute: str, joints: Collection[str | None]) -> _Named | None:
+    """Return what an attribute names: also a joint, in a reference of Gazebo, and a material that
+    is defined in a visual, to which ROS 2 adds its color.
+    """
+    parent = element.getparent()
+    assert parent is not None
+    named = _NAMED.get((str(parent.tag), str(element.tag), attribute))
+    if named is None:
+        return None
+    if attribute == "reference" and element.get(attribute) in joints:
+        return _Named("joint", "use")
+    if element.tag == "material" and len(element):
+        return _Named("material", "definition")
+    return named

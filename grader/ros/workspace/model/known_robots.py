@@ -11,7 +11,7 @@ from grader.ros.installation.places import SHARE, share_parts
 from grader.ros.launch.launch_model import GivenParameters
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.model import Robot
-from grader.ros.workspace.model.launches import Launches
+from grader.ros.workspace.model.launches import CONTROL_NODE, Launches
 from grader.ros.workspace.model.text_files import TextFiles
 from grader.ros.workspace.model.workspace_folder import WorkspaceFolder
 from grader.ros.xml.elements import readable
@@ -86,7 +86,7 @@ class Robots:
         """Return whether a launch file starts a controller manager, or the robot has one in
         Gazebo.
         """
-        is_started = any(node.executable == "ros2_control_node" for _, node in self.launches.nodes)
+        is_started = any(node.executable == CONTROL_NODE for _, node in self.launches.nodes)
         return is_started or self.has_controllers_in_gazebo
 
     @cached_property

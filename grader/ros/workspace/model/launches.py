@@ -12,6 +12,7 @@ from grader.ros.workspace.model.text_files import MAX_YAML, read_paths
 from grader.ros.workspace.model.workspace_folder import WorkspaceFolder
 
 MANAGER, SPAWNERS = "controller_manager", ("spawner", "spawner.py")
+CONTROL_NODE = "ros2_control_node"  # the program of the manager
 
 
 @dataclass(frozen=True, eq=False)

@@ -58,14 +58,15 @@ def stated_releases(tree: Tree) -> StatedReleases:
     """Return the releases that files of a workspace state: its containers, workflows and README,
     else other texts, else images of Ubuntu.
     """
-    settings = [file for file in tree.files.values() if _is_container(file.name.lower())]
+    every = [*tree.files.values()]
+    settings = [file for file in every if _is_container(file.name.lower())]
     settings += tree.settings()
-    readmes = [file for file in tree.files.values() if file.name.lower().startswith("readme")]
+    readmes = [file for file in every if file.name.lower().startswith("readme")]
     # An archive of a repository has all files in one folder.
     depth = len({path.partition("/")[0] for path in tree.files}) == 1
     highest = [file for file in readmes if file.path.count("/") <= depth]
-    texts = [file for file in tree.files.values() if file.suffix in (".md", ".sh", ".bash")]
-    levels: list[list[tuple[Sequence[File], Callable[[str], set[str]]]]] = [
+    texts = [file for file in every if file.suffix in (".md", ".sh", ".bash")]
+    levels: list[list[_Reader]] = [
         [(settings, _in_setting_of_every_branch), (highest, _in_prose)],
         [(settings, _in_setting)],
         [(readmes, _in_prose)],
@@ -73,18 +74,27 @@ def stated_releases(tree: Tree) -> StatedReleases:
         [(settings, _by_ubuntu)],
     ]
     for level in levels:
-        stated: set[str] = set()
-        places: list[str] = []
-        for files, find in level:
-            for path, text in _read(files):
-                found = find(text)
-                if found:
-                    stated |= found
-                    places.append(path)
-        if stated:
-            releases = tuple(release for release in RELEASES if release in stated)
-            return StatedReleases(releases, tuple(sorted(places)))
+        stated = _stated_by(level)
+        if stated.releases:
+            return stated
     return StatedReleases()
+
+
+_Reader = tuple[Sequence[File], Callable[[str], set[str]]]  # files, and what finds releases in them
+
+
+def _stated_by(readers: Sequence[_Reader]) -> StatedReleases:
+    """Return the releases that some files state, and which of them do."""
+    stated: set[str] = set()
+    places: list[str] = []
+    for files, find in readers:
+        for path, text in _read(files):
+            names = find(text)
+            if names:
+                stated |= names
+                places.append(path)
+    releases = tuple(release for release in RELEASES if release in stated)
+    return StatedReleases(releases, tuple(sorted(places)))
 
 
 def _is_container(name: str) -> bool:

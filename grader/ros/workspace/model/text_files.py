@@ -118,18 +118,22 @@ class TextFiles:
         """
         if not target.endswith(_TEXTS) or self.folder.tree.ignored or owner.tree.links:
             return False
-        for folder in parents(target.removeprefix(owner.share)):
-            self.folder.charge(len(owner.tree.files) // FILES_A_PART)
-            is_empty = not any(path.startswith(f"{folder}/") for path in owner.tree.files)
-            is_submodule = is_empty and posixpath.basename(folder) not in _OWN_FOLDERS
-            if folder in owner.tree.folders and is_submodule:
-                return False
+        folders = parents(target.removeprefix(owner.share))
+        if any(self._may_be_submodule(owner, folder) for folder in folders):
+            return False
         name = posixpath.basename(target)
         for package in self.folder.packages:
             for source in self.sources_of(package, _PROGRAMS):
                 if name in source.text and not is_launch_file(source.path):
                     return False
         return True
+
+    def _may_be_submodule(self, owner: Package, folder: str) -> bool:
+        """Return whether a folder of a package is one that git has not fetched."""
+        self.folder.charge(len(owner.tree.files) // FILES_A_PART)
+        if folder not in owner.tree.folders or posixpath.basename(folder) in _OWN_FOLDERS:
+            return False
+        return not any(path.startswith(f"{folder}/") for path in owner.tree.files)
 
 
 def _paths_ending(package: Package, endings: tuple[str, ...]) -> Sequence[str]:

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Iterator
 
-from grader.base.source import Location
+from grader.base.source import Location, Source
 from grader.ros.installation.places import PREFIX
 from grader.ros.known.package_rows import launch_arguments
 from grader.ros.launch.launch_model import Launch
@@ -28,18 +28,17 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
     """
     for package, path, launch in workspace.launches.files:
         start = Location(package.path(path), 1, 1)
+        text = (package.tree.read(path, _MAX_LAUNCH) or b"").decode("utf-8", "replace")
+        names = [*launch.declared]
+        names += {match[1] or match[2] for match in _CONFIGURATION.finditer(text)}
         for owner in workspace.launches.targets_of(package, path):
-            for name in launch.declared:
-                yield Definition("launch argument", name, start, owner)
-            text = (package.tree.read(path, _MAX_LAUNCH) or b"").decode("utf-8", "replace")
-            used = {match[1] or match[2] for match in _CONFIGURATION.finditer(text)}
-            for name in used:
+            for name in names:
                 yield Definition("launch argument", name, start, owner)
             yield from _included_arguments(workspace, launch, owner)
             if launch.more:
                 yield Open("launch argument", owner)
-    for owner, names in launch_arguments().items():
-        for name in names:
+    for owner, declared in launch_arguments().items():
+        for name in declared:
             yield Definition("launch argument", name, Location(owner, 1, 1), owner)
     yield from _passed_arguments(workspace)
     yield from _xacro_arguments(workspace)
@@ -77,18 +76,22 @@ def _xacro_arguments(workspace: Workspace) -> Iterator[Fact]:
             yield Definition("xacro argument", match[number], source.at(match.start(number)))
             if "$" in match[number]:
                 yield Open("xacro argument")
-        if any(workspace.packages[0].find(name) is None for name in _FIND.findall(source.text)):
-            yield Open("xacro argument")  # of files that are included from other packages
-        elif _OTHER_INCLUDE.search(source.text):
-            yield Open("xacro argument")  # of files that are not read here
+        if _includes_others(workspace, source):
+            yield Open("xacro argument")
     for _, _, launch in workspace.launches.files:
         for file in launch.named("urdf", "read"):
             path = (file.path or "").removeprefix(f"{PREFIX}/")
             if file.by == "xacro" and workspace.installed.has_file(path):
-                said = "Command of xacro"
                 # What includes the file declare is known where all of it was expanded.
-                is_expanded = (
-                    workspace.installed.source_of(file.path or "") in workspace.robots.files
-                )
+                source_path = workspace.installed.source_of(file.path or "")
+                is_expanded = source_path in workspace.robots.files
                 for name, _ in file.arguments:
-                    yield Use("xacro argument", name, file.location, said, optional=not is_expanded)
+                    at, said = file.location, "Command of xacro"
+                    yield Use("xacro argument", name, at, said, optional=not is_expanded)
+
+
+def _includes_others(workspace: Workspace, source: Source) -> bool:
+    """Return whether a file includes one of another package, or one that is not read here."""
+    if any(workspace.packages[0].find(name) is None for name in _FIND.findall(source.text)):
+        return True
+    return _OTHER_INCLUDE.search(source.text) is not None

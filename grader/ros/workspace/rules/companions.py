@@ -16,11 +16,14 @@ from grader.ros.known.package_rows import (
 )
 from grader.ros.known.ros_machine import ros_machine
 from grader.ros.known.shared_names import shared_names
-from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.urdf.model import Joint
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
+from grader.ros.workspace.graph.graph import graph_of
+from grader.ros.workspace.graph.running_nodes import RunningNode
 from grader.ros.workspace.graph.started_controllers import defined_controllers, spawned_controllers
 from grader.ros.workspace.graph.unread_ends import may_publish_type
-from grader.ros.workspace.model.launches import MANAGER
+from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
@@ -32,7 +35,7 @@ from grader.ros.workspace.rules.rule_table import (
     SIMULATION_TIME,
 )
 
-_ROBOT_PUBLISHER, _CONTROL_NODE = "robot_state_publisher", "ros2_control_node"
+_ROBOT_PUBLISHER = "robot_state_publisher"
 _JOINT_STATE, _CLOCK = "sensor_msgs.msg.JointState", "rosgraph_msgs.msg.Clock"
 _JOINT_STATE_WORDS = ("joint_state", "JointState")
 _TIME = "use_sim_time"
@@ -61,16 +64,16 @@ def companion_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def _same_names(workspace: Workspace) -> Iterator[Mismatch]:
     """Yield the nodes that a launch file gives a name which it gives another one."""
-    first: dict[tuple[int, str], StartedNode] = {}
-    for launch, node in workspace.launches.launched:
-        if node.when is not True or not node.node_name or node.namespace is None:
+    first: dict[tuple[int, str], RunningNode] = {}
+    for node in graph_of(workspace).nodes:
+        process = node.process if node.kind == "program" else None
+        if process is None or not process.node_name or node.when is not True or not node.name:
             continue
-        name = node.full_name(node.node_name)
-        before = first.setdefault((launch, name), node)
-        if before is not node:
+        before = first.setdefault((node.launch, node.name), node)
+        if before.process is not process:
             message = (
-                f"two nodes are named {name}: their parameters and services cannot be told apart; "
-                f"the other one is at {before.location.file_and_line}"
+                f"two nodes are named {node.name}: their parameters and services cannot be told "
+                f"apart; the other one is at {before.location.file_and_line}"
             )
             yield warning(NODE_NAME, message, node.location, before.location)
 
@@ -102,36 +105,58 @@ def _two_joint_state_publishers(workspace: Workspace) -> Iterator[Mismatch]:
 
 
 def _no_joint_states(workspace: Workspace) -> Iterator[Mismatch]:
-    """Yield a robot with moving joints whose positions nothing publishes."""
-    publishers = [
-        it for _, it in workspace.launches.nodes if it.executable == _ROBOT_PUBLISHER and it.when
-    ]
-    moving = []
-    for robot in workspace.robots.known:
-        moving += [it for it in robot.robot.joints if it.has_position and it.mimic is None]
+    """Yield a robot with moving joints whose positions nothing publishes.
+
+    Joints that follow others have no positions of their own. Nothing is said where there may be
+    other robots, or where a node, a bridge, a controller or a plugin of Gazebo may publish them, or
+    a page says what does.
+    """
+    publishers = []
+    for _, node in workspace.launches.nodes:
+        if node.executable == _ROBOT_PUBLISHER and node.when:
+            publishers.append(node)
+    moving = _moving_joints(workspace)
     if not publishers or not moving or workspace.robots.may_be_others:
         return
-    for _, node in workspace.launches.nodes:
-        if program_row(node.package, node.executable).publishes_joint_states:
-            return
-        if may_publish_type(workspace, node, _JOINT_STATE):
-            return
-    if any(row.is_published and row.ros_type == _JOINT_STATE for row in bridge_rows(workspace)):
+    if _may_publish_joint_states(workspace):
         return
-    if _broadcasters(workspace) or _is_mentioned(workspace, _JOINT_STATE_WORDS):
-        return
-    if any(
-        word in robot.source.text for robot in workspace.robots.known for word in _JOINT_STATE_WORDS
-    ):
-        return  # a plugin of Gazebo may publish them
-    joint = moving[0]
+    first = moving[0]
     message = (
         f"nothing publishes joint_states, so the links of {len(moving)} moving joints such as "
-        f"{quoted(joint.name)} have no transform: start joint_state_publisher or a "
+        f"{quoted(first.name)} have no transform: start joint_state_publisher or a "
         "joint_state_broadcaster"
     )
-    at = joint.location.resolve() if joint.location is not None else None
+    at = first.location.resolve() if first.location is not None else None
     yield warning(JOINT_STATES, message, publishers[0].location, at)
+
+
+def _moving_joints(workspace: Workspace) -> list[Joint]:
+    """Return the joints of the robots that have positions of their own."""
+    moving: list[Joint] = []
+    for robot in workspace.robots.known:
+        for joint in robot.robot.joints:
+            if joint.has_position and joint.mimic is None:
+                moving.append(joint)
+    return moving
+
+
+def _may_publish_joint_states(workspace: Workspace) -> bool:
+    """Return whether something may publish the positions of the joints."""
+    for _, node in workspace.launches.nodes:
+        if program_row(node.package, node.executable).publishes_joint_states:
+            return True
+        if may_publish_type(workspace, node, _JOINT_STATE):
+            return True
+    if _is_bridged(workspace, _JOINT_STATE) or _broadcasters(workspace):
+        return True
+    texts = [robot.source.text for robot in workspace.robots.known]  # of plugins of Gazebo
+    is_in_robot = any(word in text for text in texts for word in _JOINT_STATE_WORDS)
+    return is_in_robot or _is_mentioned(workspace, _JOINT_STATE_WORDS)
+
+
+def _is_bridged(workspace: Workspace, message: str) -> bool:
+    """Return whether a bridge publishes messages of a type."""
+    return any(row.is_published and row.ros_type == message for row in bridge_rows(workspace))
 
 
 def _is_mentioned(workspace: Workspace, words: Sequence[str]) -> bool:
@@ -148,7 +173,7 @@ def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
     for _, node in workspace.launches.nodes:
         if node.executable == _ROBOT_PUBLISHER:
             return
-        if node.package == MANAGER and node.executable == _CONTROL_NODE:
+        if node.package == MANAGER and node.executable == CONTROL_NODE:
             if node.has_description:
                 return
             managers.append(node)
@@ -164,11 +189,9 @@ def _no_robot(workspace: Workspace) -> Iterator[Mismatch]:
 
 def _sim_time(workspace: Workspace) -> Iterator[Location]:
     """Yield where nodes that are started are told to use the time of a simulation."""
-    for package, node in workspace.launches.nodes:
-        if node.when is True:
-            value = workspace.parameters.given_to(package, node).values.get(_TIME)
-            if value is not None and value.value is True:
-                yield value.location
+    for node, value in graph_of(workspace).given(_TIME):
+        if node.when is True and value.value is True:
+            yield value.location
 
 
 def _no_clock(workspace: Workspace) -> Iterator[Mismatch]:
@@ -184,26 +207,37 @@ def _may_have_clock(workspace: Workspace) -> bool:
     """Return whether something may publish /clock: a node, a launch file or a command that is not
     read, or what a page tells people to start.
     """
-    if any(row.is_published and row.ros_type == _CLOCK for row in bridge_rows(workspace)):
+    if _is_bridged(workspace, _CLOCK):
         return True
     for _, launch in workspace.launches.roots:
-        ending = (*ros_machine().ending_commands, *commands_that_end())
-        if not all(command.startswith(ending) for command in launch.commands):
+        if _may_start_clock(workspace, launch):
             return True
-        for passed in launch.passed:
-            package = share_parts(f"{PREFIX}/{passed.path}")[0]
-            is_own = workspace.installed.source_of(passed.path) is not None
-            if not is_own and not package_row(package).launches_no_clock:
-                return True
     for _, node in workspace.launches.nodes:
-        if workspace.package_of(node) is None:
-            is_open = _says_clock(f"{node.package} {node.executable}")
-            is_open = is_open and "frames" not in package_row(node.package).without
-        else:
-            is_open = may_publish_type(workspace, node, _CLOCK)
-        if is_open or (node.package == BRIDGE and None in (node.arguments or (None,))):
+        is_open_bridge = node.package == BRIDGE and None in (node.arguments or (None,))
+        if is_open_bridge or _may_be_clock(workspace, node):
             return True
     return _is_told(workspace)
+
+
+def _may_start_clock(workspace: Workspace, launch: Launch) -> bool:
+    """Return whether a command or an included launch file may start a simulation."""
+    ending = (*ros_machine().ending_commands, *commands_that_end())
+    if not all(command.startswith(ending) for command in launch.commands):
+        return True
+    for passed in launch.passed:
+        package = share_parts(f"{PREFIX}/{passed.path}")[0]
+        is_own = workspace.installed.source_of(passed.path) is not None
+        if not is_own and not package_row(package).launches_no_clock:
+            return True
+    return False
+
+
+def _may_be_clock(workspace: Workspace, node: StartedNode) -> bool:
+    """Return whether a node may publish /clock: own code, or a program whose name says so."""
+    if workspace.package_of(node) is not None:
+        return may_publish_type(workspace, node, _CLOCK)
+    is_open = "frames" not in package_row(node.package).without
+    return is_open and _says_clock(f"{node.package} {node.executable}")
 
 
 def _says_clock(text: str) -> bool:

@@ -2,7 +2,7 @@
 joints.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from grader.base.names import closest, near
 from grader.base.source import Location
@@ -21,7 +21,7 @@ from grader.ros.workspace.graph.started_controllers import (
     named_sections,
     parameters_of_controllers,
 )
-from grader.ros.workspace.model.launches import MANAGER
+from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER
 from grader.ros.workspace.model.under_arguments import may_be_offered
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import (
@@ -41,7 +41,7 @@ from grader.ros.workspace.rules.rule_table import (
     CONTROLLER_TYPE,
 )
 
-_LIKENESS_IN_PACKAGE, _LIKENESS = 0.7, 0.85  # of a type to one of its package, and of another one
+_LIKENESS = 0.85  # of a type to one of another package
 _MAX_KEYS = 2  # of joints; steering controllers have those of an older release as well
 
 
@@ -52,86 +52,111 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
     controllers = list(defined_controllers(workspace))
     if not controllers:
         return
-    yield from (Definition("controller", it.name, it.location) for it in controllers)
+    for controller in controllers:
+        yield Definition("controller", controller.name, controller.location)
     # In other parameters, a section replaces the type before it: that it is there is a mistake of
     # parameters.
-    nested = ((keys[-1], node) for keys, node in named_sections(workspace) if MANAGER in keys[:-1])
-    yield from (Definition("controller", name, node.location) for name, node in nested)
+    for keys, node in named_sections(workspace):
+        if MANAGER in keys[:-1]:
+            yield Definition("controller", keys[-1], node.location)
     sections = parameters_of_controllers(workspace)
     for controller in controllers:
-        yield from _type_facts(workspace, controller)
-        yield from _section_facts(workspace, controller, sections)
+        yield from _other_type(workspace, controller)
+        section = sections.get(controller.name)
+        if section is None:
+            yield from _no_parameters(workspace, controller, sections)
+        else:
+            yield from _no_list(controller, section)
+            yield from _no_interface(workspace, controller, section)
+            yield from _claimed_twice(controller, section)
     yield from _action_facts(workspace)
-    managers = [
-        node for _, node in workspace.launches.nodes if node.executable == "ros2_control_node"
-    ]
-    if (
-        managers
-        and workspace.robots.command_interfaces is None
-        and workspace.robots.has_all_interfaces
-    ):
-        message = "the controller manager is started, but the robot has no <ros2_control>"
-        yield Mismatch(CONTROLLER_HARDWARE, message, managers[0].location)
+    yield from _no_hardware(workspace)
 
 
-def _type_facts(workspace: Workspace, controller: Controller) -> Iterator[Fact]:
-    """Yield that no package has a class of the controller's type, where all classes of its package
-    are known.
+def _no_hardware(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that a controller manager is started, while no robot has <ros2_control>. Nothing is
+    said where a robot may have more than is read.
     """
-    written = controller.type.text or ""
+    robots = workspace.robots
+    if robots.command_interfaces is not None or not robots.has_all_interfaces:
+        return
+    for _, node in workspace.launches.nodes:
+        if node.executable == CONTROL_NODE:
+            message = "the controller manager is started, but the robot has no <ros2_control>"
+            yield Mismatch(CONTROLLER_HARDWARE, message, node.location)
+            return
+
+
+def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismatch]:
+    """Yield that no package has a class of the controller's type.
+
+    It is certain where all classes of the package are known, or the same class is in a package with
+    a similar name. Nothing is said of types that a release, a plugin in the workspace or a package
+    of it may have, and of other packages only if there is a similar type.
+    """
+    written, types = controller.type.text or "", controller_types()
     package, _, class_name = written.partition("/")
-    if (
-        is_known_controller(written)
-        or releases_with("controller", written)
-        or workspace.texts.has_plugin(written)
-    ):
-        return
-    if any(own.name == package for own in workspace.packages):
-        return
-    types = controller_types()
     is_known = any(kind.startswith(f"{package}/") for kind in types)
-    is_declared = any(own.depends_on(package) for own in workspace.packages)
-    if (
-        is_declared
-        and not is_known
-        and near(package, [kind.partition("/")[0] for kind in types]) is None
-    ):
+    if _may_have_type(workspace, written, is_known=is_known):
         return
     same_class = [kind for kind in types if kind.partition("/")[2] == class_name]
-    similar = closest(written, same_class)
-    if similar is None and len(same_class) == 1:
-        similar = same_class[0]
-    elif similar is None:
-        similar = (
-            closest(written, types) if is_known else closest(written, types, likeness=_LIKENESS)
-        )
-    if is_known or similar is not None:
-        guess = f"; did you mean {similar!r}?" if similar is not None else ""
-        message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
-        is_certain = is_known or near(written, same_class) is not None
-        at = controller.location
-        either = corrections(written, at, similar)
-        yield Mismatch(CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
-
-
-def _section_facts(
-    workspace: Workspace, controller: Controller, sections: Mapping[str, YamlNode]
-) -> Iterator[Fact]:
-    """Yield that the parameters of a controller are missing, and the interfaces that its joints
-    need.
-    """
-    needed = controller_row(controller.type.text).joints
-    section = sections.get(controller.name)
-    if section is None:
-        if needed and "**" not in sections and not controller.has_file:
-            message = (
-                f"the controller {controller.name!r} has no parameters: there is no key "
-                f"{controller.name} with ros__parameters"
-            )
-            either = _section_corrections(workspace, controller, sections)
-            yield Mismatch(CONTROLLER_PARAMETERS, message, controller.location, corrections=either)
+    meant = _meant_type(written, same_class, is_known=is_known)
+    if meant is None and not is_known:
         return
-    for key in needed:
+    guess = f"; did you mean {meant!r}?" if meant is not None else ""
+    message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
+    is_certain = is_known or near(written, same_class) is not None
+    at = controller.location
+    either = corrections(written, at, meant)
+    yield Mismatch(CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
+
+
+def _meant_type(written: str, same_class: Sequence[str], *, is_known: bool) -> str | None:
+    """Return the type that is meant: of the same class in another package, or a similar one."""
+    similar = closest(written, same_class)
+    if similar is not None:
+        return similar
+    if len(same_class) == 1:
+        return same_class[0]
+    if is_known:
+        return closest(written, controller_types())
+    return closest(written, controller_types(), likeness=_LIKENESS)
+
+
+def _may_have_type(workspace: Workspace, written: str, *, is_known: bool) -> bool:
+    """Return whether something has, or may have, a controller of a type; `is_known` says whether
+    all types of its package are.
+    """
+    if is_known_controller(written) or releases_with("controller", written):
+        return True
+    package = written.partition("/")[0]
+    is_of_workspace = any(each.name == package for each in workspace.packages)
+    if is_of_workspace or workspace.texts.has_plugin(written):
+        return True
+    if is_known or not any(each.depends_on(package) for each in workspace.packages):
+        return False
+    return near(package, [kind.partition("/")[0] for kind in controller_types()]) is None
+
+
+def _no_parameters(
+    workspace: Workspace, controller: Controller, sections: Mapping[str, YamlNode]
+) -> Iterator[Mismatch]:
+    """Yield that a controller that needs joints has no parameters: neither a section of its name,
+    nor one of all nodes, nor a file of its own.
+    """
+    needs_joints = bool(controller_row(controller.type.text).joints)
+    if needs_joints and "**" not in sections and not controller.has_file:
+        message = (
+            f"the controller {controller.name!r} has no parameters: there is no key "
+            f"{controller.name} with ros__parameters"
+        )
+        either = _section_corrections(workspace, controller, sections)
+        yield Mismatch(CONTROLLER_PARAMETERS, message, controller.location, corrections=either)
+
+
+def _no_list(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
+    """Yield the parameters of a controller that are lists of joints, and are given a string."""
+    for key in controller_row(controller.type.text).joints:
         given = section.get(key) if key.endswith("s") else None
         if given is not None and given.text:
             message = (
@@ -139,11 +164,17 @@ def _section_facts(
                 f"list: [{given.text}]"
             )
             yield Mismatch(CONTROLLER_LIST, message, given.location)
+
+
+def _claimed_twice(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
+    """Yield the command interfaces that a controller claims twice. Steering controllers, which
+    have the parameters of an older release as well, claim those of one release.
+    """
+    needed = controller_row(controller.type.text).joints
+    if len(needed) > _MAX_KEYS:
+        return
     claimed: dict[str, Location] = {}
     for joint, interfaces in _needed_in(section, needed):
-        yield from _interface_facts(workspace, controller, joint, interfaces)
-        if len(needed) > _MAX_KEYS:
-            continue
         for interface in interfaces:
             name = f"{joint.text}/{interface}"
             before = claimed.setdefault(name, joint.location)
@@ -181,13 +212,19 @@ def _needed_in(
     needs.
     """
     for key, wanted in needed.items():
-        joints = section.get(key)
-        given = section.get(wanted.removeprefix("=")) if wanted.startswith("=") else None
-        names = [wanted] if not wanted.startswith("=") else []
-        if given is not None:
-            names = [it.text or "" for it in (given.items or [given])]
-        for joint in (joints.items or [joints]) if joints is not None else ():
+        names = [wanted]
+        if wanted.startswith("="):
+            names = [given.text or "" for given in _entries(section, wanted.removeprefix("="))]
+        for joint in _entries(section, key):
             yield joint, names
+
+
+def _entries(section: YamlNode, key: str) -> Sequence[YamlNode]:
+    """Return the entries of a list of parameters, or the one that stands in its place."""
+    given = section.get(key)
+    if given is None:
+        return ()
+    return given.items or [given]
 
 
 def needed_interfaces(workspace: Workspace) -> frozenset[str]:
@@ -203,30 +240,46 @@ def needed_interfaces(workspace: Workspace) -> frozenset[str]:
     return frozenset(needed)
 
 
-def _interface_facts(
-    workspace: Workspace, controller: Controller, joint: YamlNode, needed: Sequence[str]
+def _no_interface(
+    workspace: Workspace, controller: Controller, section: YamlNode
 ) -> Iterator[Mismatch]:
     """Yield the command interfaces that a controller needs of a joint, and <ros2_control> does not
     have.
+
+    Names that are no joints of a robot are mistakes of frames. A joint without <ros2_control> is
+    said only where the robot has no more than is read.
     """
-    interfaces, name = workspace.robots.command_interfaces or {}, joint.text or ""
-    message = f"{controller.name} needs the command interface {name}"
-    if name in interfaces:
-        offered, at = interfaces[name]
-        there = f"<ros2_control> has {', '.join(sorted(offered)) or 'none'} ({at.file_and_line})"
-        for missing in needed:
-            if missing not in offered and not may_be_offered(workspace, missing):
-                either = corrections(missing, joint.location, near(missing, offered), at)
-                text = f"{message}/{missing}; {there}"
-                yield Mismatch(CONTROLLER_INTERFACE, text, joint.location, at, corrections=either)
-        return
-    if not interfaces or not workspace.robots.has_all_interfaces:
-        return
-    # Names that are no joints of a robot are mistakes of frames.
-    joints = {each.name for found in workspace.robots.known for each in found.robot.joints}
-    if needed and joints.issuperset([name, *interfaces]):
-        text = f"{message}/{needed[0]}; <ros2_control> has no joint {name!r}"
-        yield Mismatch(CONTROLLER_INTERFACE, text, joint.location)
+    interfaces = workspace.robots.command_interfaces or {}
+    are_comparable = _are_all_joints(workspace, interfaces)
+    for joint, needed in _needed_in(section, controller_row(controller.type.text).joints):
+        name = joint.text or ""
+        message = f"{controller.name} needs the command interface {name}"
+        if name in interfaces:
+            yield from _missing_interfaces(workspace, joint, needed, message)
+        elif are_comparable and needed and _are_all_joints(workspace, [name]):
+            text = f"{message}/{needed[0]}; <ros2_control> has no joint {name!r}"
+            yield Mismatch(CONTROLLER_INTERFACE, text, joint.location)
+
+
+def _are_all_joints(workspace: Workspace, names: Collection[str]) -> bool:
+    """Return whether all of some names, if any, are joints of robots that are read whole."""
+    joints: set[str] = set()
+    for known_robot in workspace.robots.known:
+        joints |= {joint.name for joint in known_robot.robot.joints}
+    return bool(names) and joints.issuperset(names) and workspace.robots.has_all_interfaces
+
+
+def _missing_interfaces(
+    workspace: Workspace, joint: YamlNode, needed: Sequence[str], message: str
+) -> Iterator[Mismatch]:
+    """Yield the command interfaces that <ros2_control> does not have of a joint that it has."""
+    offered, at = (workspace.robots.command_interfaces or {})[joint.text or ""]
+    there = f"<ros2_control> has {', '.join(sorted(offered)) or 'none'} ({at.file_and_line})"
+    for missing in needed:
+        if missing not in offered and not may_be_offered(workspace, missing):
+            either = corrections(missing, joint.location, near(missing, offered), at)
+            text = f"{message}/{missing}; {there}"
+            yield Mismatch(CONTROLLER_INTERFACE, text, joint.location, at, corrections=either)
 
 
 def _action_facts(workspace: Workspace) -> Iterator[Fact]:

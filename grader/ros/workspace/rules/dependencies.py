@@ -3,12 +3,13 @@ them.
 """
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 
 from grader.base.names import near
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
+from grader.ros.installation.manifest import Manifest
 from grader.ros.known.package_rows import controller_row, is_known_controller, package_row
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
@@ -29,36 +30,45 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
     for package in workspace.packages:
         if package.manifest is None or package.manifest.refusals:
             continue
-        declared = _declared(package)
         used: dict[str, Location] = {}
         for name, at in _used(workspace, package):
             # What a launch file of another package starts, that package has to declare.
             if name not in used and package.holds(at.path):
                 used[name] = at
                 yield Compared("dependencies")
-        brought: set[str] = set()  # by the packages of the workspace that are declared
-        for name in declared:
-            dependency = package.find(name)
-            if dependency is not None and dependency.manifest:
-                brought |= {*dependency.manifest.dependencies}
-        start = package.manifest.name_location
-        for name, at in used.items():
-            if name in declared:
-                continue
-            workspace.charge(cost_of_guess(len(declared)))
-            meant = near(name, declared)
-            guess = f"; did you mean {meant!r}?" if meant is not None else ""
-            misplaced = package.manifest.misplaced.get(name)
-            if misplaced is not None:
-                guess = f": <export> has it (line {misplaced.line}), where it has no effect"
-            message = (
-                f"package.xml of {package.name!r} does not declare {name!r}, which is used "
-                f"here{guess}"
-            )
-            # rosdep installs what packages need that are declared.
-            is_certain = name not in brought
-            either = corrections(name, at, meant, start if meant not in used else None)
-            yield Mismatch(DEPENDENCY_DECLARED, message, at, start, is_certain, either)
+        yield from _undeclared(workspace, package, package.manifest, used)
+
+
+def _undeclared(
+    workspace: Workspace, package: Package, manifest: Manifest, used: Mapping[str, Location]
+) -> Iterator[Mismatch]:
+    """Yield the packages that are used and that package.xml does not declare. Those that packages
+    of the workspace bring, which are declared, rosdep installs.
+    """
+    declared = _declared(package)
+    brought: set[str] = set()
+    for name in declared:
+        dependency = package.find(name)
+        if dependency is not None and dependency.manifest:
+            brought |= {*dependency.manifest.dependencies}
+    start = manifest.name_location
+    for name, at in used.items():
+        if name in declared:
+            continue
+        workspace.charge(cost_of_guess(len(declared)))
+        meant = near(name, declared)
+        misplaced = manifest.misplaced.get(name)
+        guess = ""
+        if misplaced is not None:
+            guess = f": <export> has it (line {misplaced.line}), where it has no effect"
+        elif meant is not None:
+            guess = f"; did you mean {meant!r}?"
+        message = (
+            f"package.xml of {package.name!r} does not declare {name!r}, which is used here{guess}"
+        )
+        either = corrections(name, at, meant, start if meant not in used else None)
+        is_certain = name not in brought
+        yield Mismatch(DEPENDENCY_DECLARED, message, at, start, is_certain, either)
 
 
 def _declared(package: Package) -> set[str]:
@@ -79,18 +89,24 @@ def _used(workspace: Workspace, package: Package) -> Iterator[tuple[str, Locatio
     if generated_at is not None:
         yield _RUNTIME, generated_at
     names = {other.name for other in workspace.packages}
-    for source in workspace.texts.sources_of(package, (".xacro", ".urdf")):
-        for match in _FIND.finditer(source.text):
-            name = match[1] or match[2]
-            workspace.charge(cost_of_guess(len(names)))
-            # A misspelt own package is a mistake of files.
-            if name in names or package.depends_on(name) or near(name, names) is None:
-                yield name, source.at(match.start())
+    yield from _found_by_xacro(workspace, package, names)
     yield from _imported(workspace, package, names)
     for path, tree in workspace.installed.trees:
         if package.holds(path):
             for _, section in sections_in(tree):
                 yield from _controller_packages(section)
+
+
+def _found_by_xacro(
+    workspace: Workspace, package: Package, names: Collection[str]
+) -> Iterator[tuple[str, Location]]:
+    """Yield the packages of paths in URDF and xacro. A misspelt own one is a mistake of files."""
+    for source in workspace.texts.sources_of(package, (".xacro", ".urdf")):
+        for match in _FIND.finditer(source.text):
+            name = match[1] or match[2]
+            workspace.charge(cost_of_guess(len(names)))
+            if name in names or package.depends_on(name) or near(name, names) is None:
+                yield name, source.at(match.start())
 
 
 def _launched(launch: Launch) -> Iterator[tuple[str, Location]]:

@@ -30,16 +30,7 @@ _COUNTED = (kinds.SETUP_UNKNOWN, kinds.LAUNCH_UNKNOWN)  # and not listed
 def _file_problems(workspace: Workspace) -> Iterator[Problem]:
     """Yield what is wrong in package.xml, setup.py, CMakeLists.txt, launch and RViz files."""
     yield from _build_problems(workspace)
-    roots = {id(launch) for _, launch in workspace.launches.roots}
-    mismatches = read_agreement(workspace).mismatches
-    wrong_programs = {it.location for it in mismatches if it.family == "programs"}
-    for _, path, launch in workspace.launches.files:
-        if launch.syntax is not None:
-            yield launch_syntax(launch, launch.syntax)
-        found = launch_problems(_started(workspace, path, launch)) if id(launch) in roots else []
-        for problem in found:
-            if problem.location not in wrong_programs:  # which is also a name that does not agree
-                yield problem
+    yield from _launch_problems(workspace)
     yield from _uninstalled_launch_files(workspace)
     for package, paths in workspace.launches.of_ros1:
         files = counted(len(paths), "launch file")
@@ -48,6 +39,22 @@ def _file_problems(workspace: Workspace) -> Iterator[Problem]:
     for package in workspace.packages:
         for path in package.rviz_files:
             yield from _rviz_problems(package, path)
+
+
+def _launch_problems(workspace: Workspace) -> Iterator[Problem]:
+    """Yield what is wrong in launch files, but for programs that do not exist, which is also a name
+    that does not agree.
+    """
+    roots = {id(launch) for _, launch in workspace.launches.roots}
+    mismatches = read_agreement(workspace).mismatches
+    wrong_programs = {each.location for each in mismatches if each.family == "programs"}
+    for _, path, launch in workspace.launches.files:
+        if launch.syntax is not None:
+            yield launch_syntax(launch, launch.syntax)
+        is_root = id(launch) in roots
+        for problem in launch_problems(_started(workspace, path, launch)) if is_root else ():
+            if problem.location not in wrong_programs:
+                yield problem
 
 
 def _uninstalled_launch_files(workspace: Workspace) -> Iterator[Problem]:

@@ -12,7 +12,7 @@ from grader.base.source import Location, Source
 from grader.ros.installation.installation import Installation
 from grader.ros.installation.places import PREFIX, SHARE, share_parts
 from grader.ros.known.package_rows import names_of_read_files, package_row, written_files
-from grader.ros.launch.launch_model import Launch
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.installed_files import (
     are_installs_known,
     is_surely_absent,
@@ -97,21 +97,7 @@ class _NamedPath(NamedTuple):
 def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
     """Yield the paths that are named."""
     for package, own, launch in workspace.launches.files:
-        beside = None
-        # From the folder of the sources, a launch file finds what is beside it.
-        if own not in package.installed.values():
-            beside = f"{PREFIX}/{package.share}{posixpath.dirname(own)}/"
-        for text in _texts_of(workspace, launch):
-            paths = _PATH.findall(text.text or "")
-            uri = _URI.fullmatch(text.text or "")
-            if uri is not None:
-                paths.append(f"{SHARE}/{uri[1]}/{uri[2]}")
-            for path in paths:
-                is_beside = beside is not None and path.startswith(beside)
-                is_read = text.is_read and not is_beside
-                yield _NamedPath(
-                    package, path, text.location, is_read, text.is_output, text.is_needed
-                )
+        yield from _paths_in_launch_file(workspace, package, own, launch)
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, (".xacro", ".urdf", ".yaml")):
             is_read = (
@@ -123,6 +109,25 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
                 path = f"{SHARE}/{match[1]}/{match[2]}"
                 is_used = is_read and not _is_unused_property(workspace, source, match.start())
                 yield _NamedPath(package, path, source.at(match.start()), is_used)
+
+
+def _paths_in_launch_file(
+    workspace: Workspace, package: Package, own: str, launch: Launch
+) -> Iterator[_NamedPath]:
+    """Yield the paths that a launch file of a package names."""
+    beside = None
+    # From the folder of the sources, a launch file finds what is beside it.
+    if own not in package.installed.values():
+        beside = f"{PREFIX}/{package.share}{posixpath.dirname(own)}/"
+    for text in _texts_of(workspace, launch):
+        paths = _PATH.findall(text.text or "")
+        uri = _URI.fullmatch(text.text or "")
+        if uri is not None:
+            paths.append(f"{SHARE}/{uri[1]}/{uri[2]}")
+        for path in paths:
+            is_beside = beside is not None and path.startswith(beside)
+            is_read = text.is_read and not is_beside
+            yield _NamedPath(package, path, text.location, is_read, text.is_output, text.is_needed)
 
 
 def _paths_in_cpp(workspace: Workspace, package: Package) -> Iterator[_NamedPath]:
@@ -158,19 +163,24 @@ def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
             is_needed = bool(passed.when) and not is_own and name in names_of_read_files()
             yield _Text(value, passed.location, is_needed=is_needed)
     for node in launch.nodes:
-        # The launch file that includes it may never start it, whatever the arguments.
-        is_read = node.when is not False or not node.included_by
-        is_own = workspace.package_of(node) is not None
-        for word in node.arguments or ():
-            yield _Text(word, node.location, is_read, is_own)
-        for given in node.parameters or ():
-            yield _Text(given.path, given.location, is_read, is_needed=is_read)
-            for name, parameter in given.values.items():
-                if isinstance(parameter.value, str):
-                    is_needed = is_read and not is_own and name in names_of_read_files()
-                    yield _Text(parameter.value, parameter.location, is_read, is_own, is_needed)
+        yield from _texts_given(node, is_own=workspace.package_of(node) is not None)
     for reference in launch.references:
         yield _Text(reference.path, reference.location, is_needed=True)
+
+
+def _texts_given(node: StartedNode, *, is_own: bool) -> Iterator[_Text]:
+    """Yield the texts that a node is given. The launch file that includes it may never start it,
+    whatever the arguments.
+    """
+    is_read = node.when is not False or not node.included_by
+    for word in node.arguments or ():
+        yield _Text(word, node.location, is_read, is_own)
+    for given in node.parameters or ():
+        yield _Text(given.path, given.location, is_read, is_needed=is_read)
+        for name, parameter in given.values.items():
+            if isinstance(parameter.value, str):
+                is_needed = is_read and not is_own and name in names_of_read_files()
+                yield _Text(parameter.value, parameter.location, is_read, is_own, is_needed)
 
 
 def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
@@ -179,13 +189,7 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
     name, rest = share_parts(named.path)
     owner = package.find(name)
     if owner is None:
-        workspace.charge(cost_of_guess(len(workspace.packages)))
-        meant = near(name, [other.name for other in workspace.packages])
-        if meant is not None and not package.depends_on(name):
-            message = f"there is no package {name!r}; did you mean {meant!r}?"
-            yield Mismatch(FILE_PACKAGE, message, at, corrections=corrections(name, at, meant))
-        elif rest.startswith(_LAUNCH_FOLDER):
-            yield from _misspelt_launch_file(name, rest.removeprefix(_LAUNCH_FOLDER), at)
+        yield from _no_package(workspace, named)
         return
     target = f"share/{name}/{rest}"
     if not rest or target in owner.installed or rest in written_files():
@@ -206,6 +210,21 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
     else:
         is_absent = named.is_needed and workspace.texts.is_nowhere(owner, target)
         yield _not_there(owner, target, at, is_output=named.is_output, is_absent=is_absent)
+
+
+def _no_package(workspace: Workspace, named: _NamedPath) -> Iterator[Mismatch]:
+    """Yield that the package of a path is a misspelt one of the workspace. Others may be installed;
+    of a well-known one it is compared which launch files it has.
+    """
+    package, at = named.package, named.location
+    name, rest = share_parts(named.path)
+    workspace.charge(cost_of_guess(len(workspace.packages)))
+    meant = near(name, [other.name for other in workspace.packages])
+    if meant is not None and not package.depends_on(name):
+        message = f"there is no package {name!r}; did you mean {meant!r}?"
+        yield Mismatch(FILE_PACKAGE, message, at, corrections=corrections(name, at, meant))
+    elif rest.startswith(_LAUNCH_FOLDER):
+        yield from _misspelt_launch_file(name, rest.removeprefix(_LAUNCH_FOLDER), at)
 
 
 def _misspelt_launch_file(package: str, file: str, at: Location) -> Iterator[Mismatch]:

@@ -20,7 +20,7 @@ from grader.ros.urdf.shapes import PlacedShape
 from grader.ros.workspace.model.known_robots import KnownRobot
 from grader.ros.workspace.model.under_arguments import may_vary
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Compared, Fact, warning
+from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
     FOOTPRINT_SIZE,
 )
@@ -56,49 +56,57 @@ class _Room(NamedTuple):
 
 
 def footprint_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the costmaps for which the robot is smaller than it is."""
+    """Yield the costmaps for which the robot is smaller than it is. Where there are several robots,
+    it may be the footprint of one that it has room for.
+    """
     rooms = [*_rooms(workspace)]
     robots = workspace.robots.known
     if not rooms or not robots or workspace.robots.may_be_others or may_vary(workspace, *_PLACING):
         return
-    if any(len(it.robot.links) > _MAX_LINKS for it in robots):
+    links = [len(known.robot.links) for known in robots]
+    if max(links) > _MAX_LINKS:
         return
     for room in rooms:
-        workspace.charge(sum(_OF_LINK * len(it.robot.links) for it in robots))
+        workspace.charge(_OF_LINK * sum(links))
         yield Compared("values")
-        beyond = [_beyond(room, robot) for robot in robots]
-        first = beyond[0]
-        if first is None or None in beyond:
-            continue  # it may be the footprint of a robot that it has room for
-        message = (
-            f"{room.said} ends {room.reach(first.direction):.3g} m from {quoted(room.base)}, where "
-            f"the link {quoted(first.link)} of the robot reaches {first.distance:.3g} m"
-        )
-        location = robots[0].robot.link(first.link).location
-        at = location.resolve() if location is not None else None
-        yield warning(FOOTPRINT_SIZE, message, room.location, at)
+        reaches = [_beyond(room, robot) for robot in robots]
+        beyond = [reach for reach in reaches if reach is not None]
+        if len(beyond) == len(robots):
+            yield _too_small(room, robots[0], beyond[0])
+
+
+def _too_small(room: _Room, robot: KnownRobot, beyond: _Reach) -> Mismatch:
+    """Return that a link of a robot reaches beyond an area."""
+    message = (
+        f"{room.said} ends {room.reach(beyond.direction):.3g} m from {quoted(room.base)}, where "
+        f"the link {quoted(beyond.link)} of the robot reaches {beyond.distance:.3g} m"
+    )
+    location = robot.robot.link(beyond.link).location
+    at = location.resolve() if location is not None else None
+    return warning(FOOTPRINT_SIZE, message, room.location, at)
 
 
 def _rooms(workspace: Workspace) -> Iterator[_Room]:
-    """Yield the radii and footprints of the costmaps in parameter files; of two in one costmap, the
-    footprint counts.
-    """
+    """Yield the radii and footprints of the costmaps in parameter files."""
     for _, tree in workspace.installed.trees:
         for keys, section in sections_in(tree):
-            base = section.get(_BASE)
-            name = keys[-1] if keys else ""
-            if base is None or not base.text:
-                continue
-            footprint, radius = section.get(_FOOTPRINT), section.get(_RADIUS)
-            corners = _corners(footprint)
-            if footprint is not None and corners:
-                said = f"{name}.{_FOOTPRINT}"
-                yield _Room(said, base.text, corners, 0.0, footprint.location)
-                continue
-            value = finite_number(radius.text) if radius is not None else None
-            if radius is not None and value is not None and value > 0.0:
-                said = f"{name}.{_RADIUS}"
-                yield _Room(said, base.text, [(0.0, 0.0)], value, radius.location)
+            room = _room_in(keys[-1] if keys else "", section)
+            if room is not None:
+                yield room
+
+
+def _room_in(name: str, section: YamlNode) -> _Room | None:
+    """Return the area of a costmap; of a radius and a footprint, the latter counts."""
+    base, footprint, radius = section.get(_BASE), section.get(_FOOTPRINT), section.get(_RADIUS)
+    if base is None or not base.text:
+        return None
+    corners = _corners(footprint)
+    if footprint is not None and corners:
+        return _Room(f"{name}.{_FOOTPRINT}", base.text, corners, 0.0, footprint.location)
+    value = finite_number(radius.text) if radius is not None else None
+    if radius is None or value is None or value <= 0.0:
+        return None
+    return _Room(f"{name}.{_RADIUS}", base.text, [(0.0, 0.0)], value, radius.location)
 
 
 def _corners(node: YamlNode | None) -> list[tuple[float, float]]:

@@ -4,7 +4,7 @@ them.
 
 import re
 from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import NamedTuple
 
 from grader.base.names import near
@@ -14,7 +14,7 @@ from grader.ros.known.gazebo_rows import gazebo
 from grader.ros.known.package_rows import frame_parameters, package_row
 from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.nodes.node_facts import NodeFrame
+from grader.ros.nodes.node_facts import NodeFacts, NodeFrame, NodeProgram
 from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
@@ -59,15 +59,12 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
     if not robots:
         return
     for robot in robots:
-        for link in robot.links:
-            yield Definition("frame", link.name, _place(link.location))
-            yield Definition("link", link.name, _place(link.location))
-        for joint in robot.joints:
-            yield Definition("joint", joint.name, _place(joint.location))
+        yield from _defined_in(robot)
     start = _place(robots[0].links[0].location)
     yield from (Definition("frame", name, start) for name in shared_names().frames)
     yield from openings(workspace)
     yield from _static_transforms(workspace, robots)
+    yield from _second_parents(workspace, robots)
     yield from _frames_in_code(workspace, robots)
     controllers = workspace.installed.typed_sections
     for _, tree in workspace.installed.trees:
@@ -78,6 +75,15 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _in_robot(found)
     yield from _odometry_frames(workspace, robots)
     yield from _sensor_frames(workspace, robots)
+
+
+def _defined_in(robot: Robot) -> Iterator[Definition]:
+    """Yield the frames, links and joints of a robot."""
+    for link in robot.links:
+        yield Definition("frame", link.name, _place(link.location))
+        yield Definition("link", link.name, _place(link.location))
+    for joint in robot.joints:
+        yield Definition("joint", joint.name, _place(joint.location))
 
 
 def _place(location: LazyLocation | None) -> Location:
@@ -101,94 +107,117 @@ def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
             yield Open("frame", reason=launch.more)
         if any("bag" in command for command in launch.commands):
             yield Open("frame")  # a recording has frames of its own
-    packages = {package.name for package in workspace.packages}
-    for _, node in workspace.launches.nodes:
-        if "frames" not in package_row(node.package).without and node.package not in packages:
-            yield Open("frame")
     if _may_be_published(workspace):
         yield Open("frame")
 
 
 def _may_be_published(workspace: Workspace) -> bool:
-    """Return whether code or a system of Gazebo may publish frames that are not known."""
+    """Return whether a program, code or a system of Gazebo may publish frames that are not
+    known.
+    """
+    packages = {package.name for package in workspace.packages}
+    for _, node in workspace.launches.nodes:
+        if "frames" not in package_row(node.package).without and node.package not in packages:
+            return True
     if any(_may_publish(workspace, package) for package in workspace.packages):
         return True
-    if any(word in text for text in workspace.texts.python_texts for word in _BROADCASTING):
-        return True
-    systems = (system_of(it) for root, _ in roots(workspace) for it in root.iter("plugin"))
+    for text in workspace.texts.python_texts:
+        if any(word in text for word in _BROADCASTING):
+            return True
+    systems: set[str] = set()
+    for root, _ in roots(workspace):
+        systems |= {system_of(plugin) for plugin in root.iter("plugin")}
     return _POSES in systems
 
 
 def _may_publish(workspace: Workspace, package: Package) -> bool:
-    """Return whether the programs that CMake makes may publish frames that are not known."""
+    """Return whether the programs that CMake makes may publish frames that are not known: the
+    frames of programs that are started are.
+    """
     setup = package.installation
     if not package.is_cmake or setup is None or not setup.programs:
         return False
-    found = workspace.code.by_package[package.name]
-    read = {program.name for program in found.programs if program.nodes}
+    nodes = workspace.code.by_package[package.name]
+    read = {program.name for program in nodes.programs if program.nodes}
     programs = {path.rpartition("/")[2] for path in setup.programs}
-    if found.doubts or found.loose_frames or not programs <= read:
+    if nodes.doubts or nodes.loose_frames or not programs <= read:
         return True
-    if any(node.doubts for node in found.nodes):
+    if any(map(_may_open_transforms, nodes.nodes)):
         return True
-    if any(end.type == _TRANSFORMS for node in found.nodes for end in node.endpoints):
-        return True
-    started = {
-        node.executable for _, node in workspace.launches.nodes if node.package == package.name
-    }
-    for program in found.programs:
-        frames = [frame for node in program.nodes for frame in node.frames]
-        if program.name not in started and any(it.use == "publishes" for it in frames):
-            return True
-    return False
+    started = {(node.package, node.executable) for _, node in workspace.launches.nodes}
+    others = [each for each in nodes.programs if (package.name, each.name) not in started]
+    return any(map(_publishes_frame, others))
+
+
+def _publishes_frame(program: NodeProgram) -> bool:
+    """Return whether a node of a program publishes a frame."""
+    uses = set()
+    for facts in program.nodes:
+        uses |= {frame.use for frame in facts.frames}
+    return "publishes" in uses
+
+
+def _may_open_transforms(facts: NodeFacts) -> bool:
+    """Return whether a node may open a topic of transforms itself."""
+    return bool(facts.doubts) or any(end.type == _TRANSFORMS for end in facts.endpoints)
 
 
 def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
     """Yield the frames that own nodes publish, look up and name in messages."""
     named: list[_NamedFrame] = []
+    above = set()  # the frames that static transforms have as their parent: the root of a map
     for _, node in workspace.launches.nodes:
+        if _is_static(node):
+            above.add(frames_named(node)[0])
         for name, frame in frames_of(workspace, node) if node.when is not False else ():
             if name is not None and name.strip("/"):
                 named.append(_NamedFrame(name.removeprefix("/"), frame, node))
             elif name is None and frame.use == "publishes":
                 yield Open("frame", reason=f"the frames of {node.executable} are computed")
     if named:
+        yield from _prefixed_frames(workspace)
         yield from _frames_of_others(workspace)
-    # Those that static transforms have as their parent, such as the root of a map.
-    above = {frames_named(node)[0] for _, node in workspace.launches.nodes if _is_static(node)}
     for each in named:
-        at = each.frame.location
-        if each.frame.use in ("publishes", "is above"):
-            yield Definition("frame", each.name, at)
-        elif each.frame.use == "looks up" and each.name not in above:
-            is_python = at.path.endswith(".py")
-            said = "lookup_transform" if is_python else "lookupTransform"
-            yield Use("frame", each.name, at, said, optional=is_python)
-        elif each.frame.use == "names":
-            yield Use("frame", each.name, at, "frame_id")
+        if each.frame.use != "looks up" or each.name not in above:
+            yield _definition_or_use(each)
     yield from _misspelt_roots(named, robots)
     yield from _frames_in_fields(workspace)
 
 
-def _frames_of_others(workspace: Workspace) -> Iterator[Definition | Open]:
-    """Yield the frames that nodes of other packages publish under names from launch files, and the
-    links of robots under the prefix that robot_state_publisher gives them.
-    """
-    for package, node in workspace.launches.nodes:
+def _definition_or_use(named: "_NamedFrame") -> Definition | Use:
+    """Return what a node does with a frame that it names."""
+    at = named.frame.location
+    if named.frame.use in ("publishes", "is above"):
+        return Definition("frame", named.name, at)
+    if named.frame.use == "names":
+        return Use("frame", named.name, at, "frame_id")
+    is_python = at.path.endswith(".py")
+    said = "lookup_transform" if is_python else "lookupTransform"
+    return Use("frame", named.name, at, said, optional=is_python)
+
+
+def _prefixed_frames(workspace: Workspace) -> Iterator[Definition | Open]:
+    """Yield the links of robots under the prefix that robot_state_publisher gives them."""
+    for _, node in workspace.launches.nodes:
         if node.frame_prefix is None:
             yield Open("frame")
-        elif node.frame_prefix:
-            for robot in workspace.robots.known:
-                for link in robot.robot.links:
-                    name = f"{node.frame_prefix}{link.name}".removeprefix("/")
-                    yield Definition("frame", name, node.location)
-        if package_row(node.package).publishes_transforms:
-            given = workspace.parameters.given_to(package, node)
-            if given.unknown:
-                yield Open("frame")
-            for name, value in given.values.items():
-                if name in frame_parameters() and isinstance(value.value, str):
-                    yield Definition("frame", value.value.removeprefix("/"), value.location)
+        for robot in workspace.robots.known if node.frame_prefix else ():
+            for link in robot.robot.links:
+                name = f"{node.frame_prefix}{link.name}".removeprefix("/")
+                yield Definition("frame", name, node.location)
+
+
+def _frames_of_others(workspace: Workspace) -> Iterator[Definition | Open]:
+    """Yield the frames that nodes of other packages publish under names from launch files."""
+    for package, node in workspace.launches.nodes:
+        if not package_row(node.package).publishes_transforms:
+            continue
+        given = workspace.parameters.given_to(package, node)
+        if given.unknown:
+            yield Open("frame")
+        for name, value in given.values.items():
+            if name in frame_parameters() and isinstance(value.value, str):
+                yield Definition("frame", value.value.removeprefix("/"), value.location)
 
 
 def _frames_in_fields(workspace: Workspace) -> Iterator[Use]:
@@ -215,17 +244,18 @@ class _NamedFrame(NamedTuple):
 
 def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> Iterator[Mismatch]:
     """Yield frames that are published, and that are like the root of a robot that nothing puts
-    anywhere.
+    anywhere. It is certain for a node that is started, with one robot.
     """
-    children = {joint.child for robot in robots for joint in robot.joints}
-    published = {each.name for each in named if each.frame.use == "publishes"}
+    publishing = [each for each in named if each.frame.use == "publishes"]
+    placed = {each.name for each in publishing}
     roots: dict[str, Location] = {}
     for robot in robots:
-        for link in robot.links:
-            if link.name not in children and link.name not in published:
-                roots[link.name] = _place(link.location)
-    for each in named:
-        meant = near(each.name, roots) if each.frame.use == "publishes" else None
+        placed |= {joint.child for joint in robot.joints}
+        roots |= {link.name: _place(link.location) for link in robot.links}
+    for name in placed.intersection(roots):
+        roots.pop(name)
+    for each in publishing:
+        meant = near(each.name, roots)
         if meant is None:
             continue
         at = each.frame.location
@@ -243,26 +273,50 @@ def _is_static(node: StartedNode) -> bool:
 
 
 def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
-    children = {joint.child: joint for robot in robots for joint in robot.joints}
+    """Yield the frames of static transforms, those that they publish and those that they need."""
+    children = {joint.child for robot in robots for joint in robot.joints}
     links = {link.name for robot in robots for link in robot.links}
     for _, node in workspace.launches.nodes:
         if not _is_static(node):
             continue
-        parent, child = frames_named(node)
-        if not parent or not child or None in (node.arguments or (None,)):
-            yield Open(
-                "frame", reason="the frames of a static_transform_publisher are not evaluated"
-            )
+        frames = _frames_of_static(node)
+        if frames is None:
+            reason = "the frames of a static_transform_publisher are not evaluated"
+            yield Open("frame", reason=reason)
             continue
+        parent, child = frames
         yield Definition("frame", child, node.location)
         # Above a robot, or a frame that others publish, it may be the root.
         is_root = child not in children and (child in links or child in shared_names().frames)
         yield Use("frame", parent, node.location, STATIC_PUBLISHER[1], optional=is_root)
-        own = children[child].parent if child in children else parent
-        if own != parent:
-            at = _place(children[child].location)
-            message = f"the frame {child!r} has two parents: {own!r} in the robot, {parent!r} here"
+
+
+def _frames_of_static(node: StartedNode) -> tuple[str, str] | None:
+    """Return parent and child of a static transform; None where they are not evaluated."""
+    parent, child = frames_named(node)
+    if not parent or not child or None in (node.arguments or (None,)):
+        return None
+    return parent, child
+
+
+def _second_parents(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Mismatch]:
+    """Yield static transforms that give a link of the robot a second parent. It is certain for a
+    node that is started, with one robot.
+    """
+    joints = {joint.child: joint for robot in robots for joint in robot.joints}
+    for _, node in workspace.launches.nodes:
+        frames = _frames_of_static(node) if _is_static(node) else None
+        if frames is None or frames[1] not in joints:
+            continue
+        parent, child = frames
+        joint = joints[child]
+        if joint.parent != parent:
+            message = (
+                f"the frame {child!r} has two parents: {joint.parent!r} in the robot, "
+                f"{parent!r} here"
+            )
             is_certain = node.when is True and len(robots) == 1
+            at = _place(joint.location)
             yield Mismatch(FRAME_PARENT, message, node.location, at, is_certain=is_certain)
 
 
@@ -271,24 +325,29 @@ def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
     may be others.
     """
     key = value.keys[-1] if value.keys else ""
+    names = {node.location: text for text, node in value.texts() if "$" not in text}
     if _JOINTS.search(key):
-        for text, node in value.texts():
-            if text and "/" not in text and "$" not in text:
-                yield Use("joint", text, node.location, value.said, optional=not is_of_controller)
+        for at, name in names.items():
+            if name and "/" not in name:
+                yield Use("joint", name, at, value.said, optional=not is_of_controller)
     elif _FRAMES.search(key):
-        is_used = _OWN_FRAMES.search(key) is None
-        for text, node in value.texts():
-            name, at = text.removeprefix("/"), node.location
-            if name and "$" not in name and is_used:
-                yield Use("frame", name, at, value.said)
-            elif name and "$" not in name and key in frame_parameters():
-                yield Definition("frame", name, at)
+        for at, text in names.items():
+            yield from _frame_in_yaml(text.removeprefix("/"), at, value)
+
+
+def _frame_in_yaml(name: str, at: Location, value: YamlValue) -> Iterator[Definition | Use]:
+    """Yield a frame that a parameter names, or that its program makes."""
+    key = value.keys[-1]
+    if name and _OWN_FRAMES.search(key) is None:
+        yield Use("frame", name, at, value.said)
+    elif name and key in frame_parameters():
+        yield Definition("frame", name, at)
 
 
 def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
     """Yield what the elements for Gazebo and ros2_control name."""
     joints = {joint.name for joint in robot.robot.joints}
-    joint_elements = gazebo().joint_elements
+    named = (*gazebo().frame_elements, *gazebo().joint_elements)
     for element in robot.root.iterchildren("gazebo"):
         at = robot.place(element)
         for joint in element.iter("joint"):  # of Gazebo alone, for what URDF does not have
@@ -296,41 +355,54 @@ def _in_robot(robot: KnownRobot) -> Iterator[Fact]:
         reference = element.get("reference")
         if reference and reference not in joints:
             yield Use("link", reference, at, "<gazebo reference>")
-        for inner in element.iter(*gazebo().frame_elements, *joint_elements):
-            text, parent = (inner.text or "").strip(), inner.getparent()
-            if text and inner.tag in joint_elements:
-                yield Use("joint", text, robot.place(inner), f"<{inner.tag}>")
-            elif text and inner.tag == "frame_id" and parent is not None and parent.tag == "plugin":
-                yield Definition("frame", text, robot.place(inner))  # that the plugin publishes
-            elif text:
-                yield Use("frame", text, robot.place(inner), f"<{inner.tag}>")
+        for inner in element.iter(*named):
+            yield from _in_element(robot, inner)
     for system in robot.systems:
         yield from _in_system(robot, system)
+
+
+def _in_element(robot: KnownRobot, element: Element) -> Iterator[Fact]:
+    """Yield the joint or frame that an element for Gazebo names, or makes."""
+    text, at, said = (element.text or "").strip(), robot.place(element), f"<{element.tag}>"
+    parent = element.getparent()
+    is_made = element.tag == "frame_id" and parent is not None and parent.tag == "plugin"
+    if text and element.tag in gazebo().joint_elements:
+        yield Use("joint", text, at, said)
+    elif text and is_made:
+        yield Definition("frame", text, at)  # that the plugin publishes
+    elif text:
+        yield Use("frame", text, at, said)
 
 
 def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
     """Yield the frames that systems of Gazebo publish: those that they name, and by default those
     below the model's.
     """
-    created = set()  # the names of the models that launch files create
-    for _, node in workspace.launches.nodes:
-        if node.executable == "create":
-            options = pairwise(node.arguments or ())
-            created |= {name for option, name in options if option == "-name" and name}
+    created = _created_models(workspace)
     defaults = [*gazebo().odometry_frames]
-    defaults += [link.name for robot in robots for link in robot.links]
-    systems = gazebo().odometry_systems
+    for robot in robots:
+        defaults += [link.name for link in robot.links]
     for root, place in roots(workspace):
         for plugin in root.iter("plugin"):
-            if system_of(plugin) not in systems:
+            if system_of(plugin) not in gazebo().odometry_systems:
                 continue
             at = place(plugin)
             for element in plugin.iterchildren(*gazebo().odometry_elements):
                 yield Definition("frame", (element.text or "").strip(), at)
             around = {model.get("name", "") for model in plugin.iterancestors("robot", "model")}
-            for model in sorted(around | created):
-                for frame in defaults:
-                    yield Definition("frame", f"{model}/{frame}", at)
+            for model, frame in product(sorted(around | created), defaults):
+                yield Definition("frame", f"{model}/{frame}", at)
+
+
+def _created_models(workspace: Workspace) -> set[str]:
+    """Return the names of the models that launch files create in the simulation."""
+    created = set()
+    for _, node in workspace.launches.nodes:
+        if node.executable == "create":
+            for option, name in pairwise(node.arguments or ()):
+                if option == "-name" and name:
+                    created.add(name)
+    return created
 
 
 def _sensor_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Use]:
@@ -340,12 +412,10 @@ def _sensor_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Us
     links = {link.name for robot in robots for link in robot.links}
     for file in workspace.texts.sdf_files:
         for model in file.root.iter("model"):
-            own = {element.get("name") for element in model.iter("link", "frame")}
-            if own.isdisjoint(links):
-                continue
-            for element in model.iter(*_SENSOR_FRAMES):
+            made = {element.get("name") for element in model.iter("link", "frame")}
+            for element in model.iter(*_SENSOR_FRAMES) if made & links else ():
                 name = (element.text or "").strip().removeprefix("/")
-                if name and name not in own:
+                if name and name not in made:
                     at = file.location(element)
                     yield Use("frame", name, at, f"<{element.tag}>", optional=True)
 

@@ -42,8 +42,10 @@ def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
                 yield from _missing_systems(workspace, file, world)
     for _, node in workspace.launches.nodes:
         if _is_creator(node):
-            yield from _created(workspace, node, worlds)
-            yield from _options_of_creator(node)
+            yield from _created_from_topic(workspace, node)
+            yield from _created_in_world(node, worlds)
+            yield from _unknown_options(node)
+            yield from _created_from_nothing(node)
     yield from _bridges(workspace)
 
 
@@ -55,27 +57,19 @@ def _is_creator(node: StartedNode) -> bool:
 def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Iterator[Mismatch]:
     """Yield the systems that a world of its own systems lacks for sensors in it and in the
     robot.
+
+    Gazebo loads its default systems in a world without any. Which one of several robots is created
+    in the world is not evaluated.
     """
     if next(world.iterchildren("plugin"), None) is None or not workspace.robots.known:
-        return  # Gazebo loads its default systems
+        return
     systems = set()
     for root, _ in roots(workspace):
         systems |= {system_of(plugin) for plugin in root.iter("plugin")}
-    seen = [file.root]
-    # Which one of several robots is created in it is not evaluated.
-    if len(workspace.robots.known) == 1 and any(
-        _is_creator(node) for _, node in workspace.launches.nodes
-    ):
-        seen.append(workspace.robots.known[0].root)
-    for root, place in roots(workspace):
-        if not any(root is it for it in seen):
-            continue
-        for sensor in root.iter("sensor"):
-            system = gazebo().sensor.get(sensor.get("type", ""), NO_SENSOR).system
-            if not system or system in systems:
-                continue
+    for sensor, at in _sensors_in_world(workspace, file):
+        system = gazebo().sensor.get(sensor.get("type", ""), NO_SENSOR).system
+        if system and system not in systems:
             systems.add(system)
-            at = place(sensor)
             message = (
                 f"the world has no plugin gz::sim::systems::{system}, so the sensor "
                 f"{quoted(sensor.get('name', ''))} ({at.file_and_line}) publishes nothing"
@@ -83,34 +77,51 @@ def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Ite
             yield Mismatch(SENSOR_SYSTEM, message, file.location(world), at)
 
 
-def _created(
-    workspace: Workspace, node: StartedNode, worlds: Mapping[str, XmlFile]
-) -> Iterator[Mismatch]:
-    """Yield that a robot is created from a topic that nothing publishes, or in a world of another
-    name.
-    """
+def _sensors_in_world(workspace: Workspace, file: XmlFile) -> Iterator[tuple[Element, Location]]:
+    """Yield the sensors of a file of a world, and of the only robot, if it is created."""
+    seen = [file.root]
+    is_created = any(_is_creator(node) for _, node in workspace.launches.nodes)
+    if is_created and len(workspace.robots.known) == 1:
+        seen.append(workspace.robots.known[0].root)
+    for root, place in roots(workspace):
+        if any(root is each for each in seen):
+            for sensor in root.iter("sensor"):
+                yield sensor, place(sensor)
+
+
+def _values_of_options(node: StartedNode) -> Mapping[str, str]:
+    """Return the words after the options of a program, where both are known."""
     options: dict[str, str] = {}
     for key, value in pairwise(node.arguments or ()):
         if key is not None and value is not None:
             options[key.lstrip("-")] = value
-    if "topic" in options:
-        yield from _created_from(workspace, node, options["topic"])
-    if "world" in options and len(worlds) == 1 and options["world"] not in worlds:
-        [(world, file)] = worlds.items()
-        message = (
-            f"the robot is created in the world {quoted(options['world'])}, but the world of "
-            f"{file.source.path} is {quoted(world)}"
-        )
-        at = file.location(next(file.root.iterchildren("world")))
-        either = corrections(options["world"], node.location, world)
-        yield Mismatch(CREATED_WORLD, message, node.location, at, corrections=either)
+    return options
 
 
-def _options_of_creator(node: StartedNode) -> Iterator[Mismatch]:
-    """Yield the options that the program does not have, and that it gets no model."""
+def _created_in_world(node: StartedNode, worlds: Mapping[str, XmlFile]) -> Iterator[Mismatch]:
+    """Yield that a robot is created in a world of another name than the only one that launch files
+    name.
+    """
+    wanted = _values_of_options(node).get("world")
+    if wanted is None or len(worlds) != 1 or wanted in worlds:
+        return
+    [(world, file)] = worlds.items()
+    message = (
+        f"the robot is created in the world {quoted(wanted)}, but the world of "
+        f"{file.source.path} is {quoted(world)}"
+    )
+    at = file.location(next(file.root.iterchildren("world")))
+    either = corrections(wanted, node.location, world)
+    yield Mismatch(CREATED_WORLD, message, node.location, at, corrections=either)
+
+
+def _options_given(node: StartedNode) -> list[str] | None:
+    """Return the options that the program that creates robots gets; None where not all are
+    known.
+    """
     words = node.arguments
     if words is None or None in words:
-        return
+        return None
     given: list[str] = []
     is_value = False
     for word in words:
@@ -122,7 +133,12 @@ def _options_of_creator(node: StartedNode) -> Iterator[Mismatch]:
         name, equals, _ = word.lstrip("-").replace("-", "_").partition("=")  # as gflags does
         given.append(name)
         is_value = not equals and name in create_table().options and name != _WITHOUT_VALUE
-    for name in given:
+    return given
+
+
+def _unknown_options(node: StartedNode) -> Iterator[Mismatch]:
+    """Yield the options that the program that creates robots does not have, and ignores."""
+    for name in _options_given(node) or ():
         if name in create_table().options:
             continue
         similar = closest(name, create_table().options, is_clear=True)
@@ -130,23 +146,32 @@ def _options_of_creator(node: StartedNode) -> Iterator[Mismatch]:
         guess = f"; did you mean -{meant}?" if meant else ""
         message = f"create has no option -{name}, and ignores it{guess}"
         yield warning(CREATE_OPTION, message, node.location)
-    if node.parameters == () and not set(given).intersection(create_table().sources):
-        sources = enumerated([f"-{name}" for name in create_table().sources], word="or")
-        message = f"create ends with an error: it needs {sources}"
-        yield Mismatch(CREATED_FROM, message, node.location, is_certain=node.when is True)
 
 
-def _created_from(workspace: Workspace, node: StartedNode, topic: str) -> Iterator[Mismatch]:
-    """Yield that no robot_state_publisher publishes the topic from which a robot is created."""
-    name = node.topic(topic)
-    if name is None or workspace.launches.unknown_nodes:
+def _created_from_nothing(node: StartedNode) -> Iterator[Mismatch]:
+    """Yield that the program that creates robots gets no source of one. Parameters may name it."""
+    given = _options_given(node)
+    if given is None or node.parameters != () or set(given).intersection(create_table().sources):
+        return
+    sources = enumerated([f"-{name}" for name in create_table().sources], word="or")
+    message = f"create ends with an error: it needs {sources}"
+    yield Mismatch(CREATED_FROM, message, node.location, is_certain=node.when is True)
+
+
+def _created_from_topic(workspace: Workspace, node: StartedNode) -> Iterator[Mismatch]:
+    """Yield that no robot_state_publisher publishes the topic from which a robot is created.
+    Nothing is said where more nodes may be started, or one of them may publish the topic.
+    """
+    topic = _values_of_options(node).get("topic")
+    name = node.topic(topic) if topic is not None else None
+    if topic is None or name is None or workspace.launches.unknown_nodes:
         return
     published: dict[str, Location] = {}
     for _, other in workspace.launches.nodes:
         if other.package == "robot_state_publisher":
             description = other.topic("robot_description")
             if description is None:
-                return  # it may publish the topic
+                return
             published.setdefault(description, other.location)
     if published and name not in published:
         meant, at = next(iter(published.items()))

@@ -2,7 +2,7 @@
 types and fields that nodes use.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 from grader.base.names import closest, near
 from grader.base.source import Location
@@ -56,7 +56,15 @@ def interface_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what is wrong with interfaces, and types and fields that are used and do not exist."""
     for package in workspace.packages:
         own = workspace.code.interfaces[package.name]
-        yield from _own_faults(workspace, package, own)
+        if own.location is None and not own.unlisted:
+            continue
+        yield Compared("interfaces")
+        if not own.is_complete:
+            reason = f"which interfaces {package.name!r} generates is not evaluated"
+            yield Undecided("interfaces", reason)
+        yield from _no_group(package, own)
+        yield from _unreadable_files(own)
+        yield from _types_of_fields(workspace, package, own)
     for package in workspace.packages:
         yield from _used_types(workspace, package)
         for use in workspace.code.by_package[package.name].field_uses:
@@ -67,52 +75,65 @@ def interface_facts(workspace: Workspace) -> Iterator[Fact]:
 # --- Files and CMakeLists.txt
 
 
-def _own_faults(workspace: Workspace, package: Package, own: PackageInterfaces) -> Iterator[Fact]:
-    if own.location is None and not own.unlisted:
-        return
-    yield Compared("interfaces")
-    if not own.is_complete:
-        reason = f"which interfaces {package.name!r} generates is not evaluated"
-        yield Undecided("interfaces", reason)
+def _no_group(package: Package, own: PackageInterfaces) -> Iterator[Mismatch]:
+    """Yield that package.xml does not say that a package has interfaces. Nothing is said of one
+    that is not read whole, or that ROS 2 refuses.
+    """
     manifest = package.manifest
-    is_read = manifest is not None and not manifest.unread and not manifest.refusals
-    if own.needs_group and manifest is not None and is_read and _GROUP not in manifest.groups:
+    if manifest is None or manifest.unread or manifest.refusals:
+        return
+    if own.needs_group and _GROUP not in manifest.groups:
         message = (
             f"package.xml needs <member_of_group>{_GROUP}</member_of_group>: without it, "
             "rosidl_generate_interfaces() stops the build"
         )
         yield Mismatch(INTERFACE_GROUP, message, manifest.name_location, own.location)
+
+
+def _unreadable_files(own: PackageInterfaces) -> Iterator[Mismatch]:
+    """Yield what rosidl cannot read in the files of interfaces."""
     for found in own.types.values():
         for fault in found.interface.faults:
             message = f"rosidl cannot read the file: {fault.message}"
             either = corrections(fault.written, fault.location, fault.meant)
             yield Mismatch(INTERFACE_FILE, message, fault.location, corrections=either)
-        for section in found.interface.sections:
-            for field in section.fields.values():
-                workspace.charge(1)
-                yield from _unknown_field_type(workspace, package, own, field)
 
 
-def _unknown_field_type(
-    workspace: Workspace, package: Package, own: PackageInterfaces, field: InterfaceField
-) -> Iterator[Fact]:
+def _types_of_fields(
+    workspace: Workspace, package: Package, own: PackageInterfaces
+) -> Iterator[Mismatch]:
     """Yield that nothing defines the type of a field, or that CMakeLists.txt does not name its
     package.
     """
-    kind, at, releases = field.type, field.location, {*workspace.releases}
-    if not kind.package or at is None:
+    for found in own.types.values():
+        for section in found.interface.sections:
+            for field in section.fields.values():
+                workspace.charge(1)
+                kind, at = field.type, field.location
+                if not kind.package or at is None:
+                    continue
+                absent = _no_type(workspace, f"{kind.package}.msg.{kind.name}", at)
+                if absent is not None:
+                    yield absent
+                elif kind.package != package.name:
+                    yield from _no_dependency(workspace, own, field, at)
+
+
+def _no_dependency(
+    workspace: Workspace, own: PackageInterfaces, field: InterfaceField, at: Location
+) -> Iterator[Mismatch]:
+    """Yield that CMakeLists.txt does not name the package of the type of a field. Nothing is said
+    where not all is known that it names, and for releases that have all headers in one folder.
+    """
+    if not own.is_complete or _OF_ONE_FOLDER.intersection(workspace.releases):
         return
-    absent = _absent(workspace, f"{kind.package}.msg.{kind.name}", at)
-    if absent is not None:
-        yield absent
-    elif kind.package != package.name and own.is_complete and not _OF_ONE_FOLDER & releases:
-        reached = _reached(workspace, own)
-        if reached is not None and kind.package not in reached:
-            message = (
-                f"the field {field.name} has a type of {kind.package}, which DEPENDENCIES of "
-                "rosidl_generate_interfaces() does not name: the build stops"
-            )
-            yield Mismatch(INTERFACE_DEPENDENCY, message, at, own.location)
+    reached = _reached(workspace, own)
+    if reached is not None and field.type.package not in reached:
+        message = (
+            f"the field {field.name} has a type of {field.type.package}, which DEPENDENCIES of "
+            "rosidl_generate_interfaces() does not name: the build stops"
+        )
+        yield Mismatch(INTERFACE_DEPENDENCY, message, at, own.location)
 
 
 def _reached(workspace: Workspace, own: PackageInterfaces) -> set[str] | None:
@@ -163,40 +184,45 @@ def is_absent(workspace: Workspace, name: str) -> bool:
     return True
 
 
-def _absent(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
+def _no_type(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
     """Return that nothing defines a type, if this is certain."""
     if not is_absent(workspace, name):
         return None
     package, _, own_name = name.partition(".")
     kind, _, short = own_name.partition(".")
+    shown = f"there is no type {package}/{kind}/{short}"
     own = workspace.code.interfaces.get(package)
-    unlisted: Mapping[str, str] = {}
-    names = [*(known_interfaces(package, workspace.releases) or {})]
-    if own is not None:
-        names, unlisted = [*own.types], own.unlisted
-    shown = f"{package}/{kind}/{short}"
-    if own_name in unlisted:
-        related = own.location if own is not None else None
+    if own is not None and own_name in own.unlisted:
         reason = f"rosidl_generate_interfaces() of {package} does not name its file"
-        if related is None:
+        if own.location is None:
             reason = f"{package} does not call rosidl_generate_interfaces()"
-        return Mismatch(INTERFACE_TYPE, f"there is no type {shown}: {reason}", at, related)
+        return Mismatch(INTERFACE_TYPE, f"{shown}: {reason}", at, own.location)
+    if own is not None:
+        names = [*own.types]
+    else:
+        names = [*(known_interfaces(package, workspace.releases) or {})]
     workspace.charge(len(names))
-    of_kind = [it.partition(".")[2] for it in names if it.startswith(f"{kind}.")]
-    meant = near(short, of_kind) or closest(short, of_kind)
-    other = [it for it in names if it.partition(".")[2] == short]
     change = find_change(package, own_name, workspace.releases) if own is None else ""
-    hint = ""
     if change:
-        hint, meant = f" {change}", None
-    elif other:
-        hint = f"; there is {package}/{other[0].replace('.', '/')}"
-    elif meant is not None:
+        return Mismatch(INTERFACE_TYPE, f"{shown} {change}", at)
+    for other in names:
+        if other.partition(".")[2] == short:
+            hint = f"there is {package}/{other.replace('.', '/')}"
+            return Mismatch(INTERFACE_TYPE, f"{shown}; {hint}", at)
+    of_kind = [each.partition(".")[2] for each in names if each.startswith(f"{kind}.")]
+    return _no_type_of_kind(shown, short, of_kind, at)
+
+
+def _no_type_of_kind(shown: str, name: str, names: Sequence[str], at: Location) -> Mismatch:
+    """Return that there is no type of a name, among those of its kind, and which one is meant."""
+    meant = near(name, names) or closest(name, names)
+    hint = ""
+    if meant is not None:
         hint = f"; did you mean {meant}?"
-    elif of_kind and len(of_kind) <= MAX_NAMED:
-        hint = f"; there is {enumerated(of_kind)}"
-    either = corrections(short, at, meant) if not other else ()
-    return Mismatch(INTERFACE_TYPE, f"there is no type {shown}{hint}", at, corrections=either)
+    elif names and len(names) <= MAX_NAMED:
+        hint = f"; there is {enumerated(names)}"
+    either = corrections(name, at, meant)
+    return Mismatch(INTERFACE_TYPE, f"{shown}{hint}", at, corrections=either)
 
 
 def _used_types(workspace: Workspace, package: Package) -> Iterator[Fact]:
@@ -213,12 +239,12 @@ def _used_types(workspace: Workspace, package: Package) -> Iterator[Fact]:
         is_own = name.partition(".")[0] in workspace.code.interfaces
         if is_own or known_interfaces(name.partition(".")[0]) is not None:
             yield Compared("interfaces")
-        absent = _absent(workspace, name, at)
+        absent = _no_type(workspace, name, at)
         if absent is not None:
             yield absent
 
 
-def _interface(workspace: Workspace, package: str, name: str) -> Interface | None:
+def _find_interface(workspace: Workspace, package: str, name: str) -> Interface | None:
     own = workspace.code.interfaces.get(package)
     if own is not None:
         found = own.types.get(name)
@@ -239,7 +265,7 @@ def _used_field(workspace: Workspace, use: FieldUse) -> Iterator[Fact]:
         if path[0] != "request" or len(path) == 1:
             return
         section_name, path = "Goal", path[1:]
-    interface = _interface(workspace, package, f"{kind}.{name}")
+    interface = _find_interface(workspace, package, f"{kind}.{name}")
     section = interface.section(section_name) if interface is not None else None
     if section is not None:
         owner = f"{name}.{section_name}" if section_name else name
@@ -252,22 +278,23 @@ def _used_at(
     """Yield what is wrong with the last name of a path of fields that begins in a section."""
     attribute, *rest = path
     field = section.fields.get(attribute)
-    if field is None:
-        if not rest and attribute != ITEM and not _is_of_python(section, attribute):
-            yield _without_field(workspace, shown, section, attribute, use.location)
-        return
-    if not rest:
-        yield from _wrong_value(workspace, field, shown, use)
-        return
-    if field.type.is_list:
-        is_item, rest = rest[0] == ITEM, rest[1:]
-        if not is_item or not rest:
-            return
-    inner = _interface(workspace, field.type.package, f"msg.{field.type.name}")
-    inner_section = inner.section("") if inner is not None else None
-    if inner_section is not None:
-        shown = f"{field.type.package}/msg/{field.type.name}"
-        yield from _used_at(workspace, shown, inner_section, rest, use)
+    if field is None and not rest:
+        yield from _no_field(workspace, shown, section, attribute, use.location)
+    elif field is not None and not rest:
+        yield from _other_value(workspace, field, shown, use)
+    elif field is not None:
+        if field.type.is_list:
+            rest = rest[1:] if rest[0] == ITEM else []
+        inner_section = _section_of_type(workspace, field.type)
+        if rest and inner_section is not None:
+            shown = f"{field.type.package}/msg/{field.type.name}"
+            yield from _used_at(workspace, shown, inner_section, rest, use)
+
+
+def _section_of_type(workspace: Workspace, kind: FieldType) -> InterfaceSection | None:
+    """Return the fields of the message that a field has, or that its items are."""
+    interface = _find_interface(workspace, kind.package, f"msg.{kind.name}")
+    return interface.section("") if interface is not None else None
 
 
 def _is_of_python(section: InterfaceSection, attribute: str) -> bool:
@@ -277,19 +304,19 @@ def _is_of_python(section: InterfaceSection, attribute: str) -> bool:
     return is_known or attribute.startswith("_") or attribute.endswith("__DEFAULT")
 
 
-def _without_field(
+def _no_field(
     workspace: Workspace, shown: str, section: InterfaceSection, attribute: str, at: Location
-) -> Mismatch:
-    names, noun, inside = [*section.fields], "field", []
+) -> Iterator[Mismatch]:
+    """Yield that a type does not have a field or a constant that code uses. Items of lists, and
+    what the classes of Python have besides, are no fields.
+    """
+    if attribute == ITEM or _is_of_python(section, attribute):
+        return
+    names, noun = [*section.fields], "field"
     if attribute.isupper():
         names, noun = sorted(section.constants), "constant"
-    for field in section.fields.values():
-        if field.type.package and not field.type.is_list:
-            inner = _interface(workspace, field.type.package, f"msg.{field.type.name}")
-            part = inner.section("") if inner is not None else None
-            if part is not None and attribute in part.fields:
-                inside.append(f"{field.name}.{attribute}")
     workspace.charge(len(names))
+    inside = _fields_with(workspace, section, attribute)
     meant = inside[0] if len(inside) == 1 else near(attribute, names) or closest(attribute, names)
     if meant is not None:
         hint = f"did you mean {meant}?"
@@ -298,11 +325,21 @@ def _without_field(
         if len(names) > MAX_NAMED:
             hint = f"{hint} and others"
     message = f"{shown} has no {noun} {quoted(attribute)}; {hint}"
-    either = corrections(attribute, at, meant)
-    return Mismatch(INTERFACE_FIELD, message, at, corrections=either)
+    yield Mismatch(INTERFACE_FIELD, message, at, corrections=corrections(attribute, at, meant))
 
 
-def _wrong_value(
+def _fields_with(workspace: Workspace, section: InterfaceSection, attribute: str) -> list[str]:
+    """Return the fields of the fields of a section that have a name."""
+    inside = []
+    for field in section.fields.values():
+        if field.type.package and not field.type.is_list:
+            part = _section_of_type(workspace, field.type)
+            if part is not None and attribute in part.fields:
+                inside.append(f"{field.name}.{attribute}")
+    return inside
+
+
+def _other_value(
     workspace: Workspace, field: InterfaceField, shown: str, use: FieldUse
 ) -> Iterator[Mismatch]:
     """Yield that a field is set to a value that its type certainly does not take."""
@@ -335,15 +372,20 @@ def _fits(kind: FieldType, value: Value, releases: tuple[Release, ...]) -> bool:
     if kind.is_list:
         return isinstance(value, str)  # text is a list of bytes for some
     is_checked = bool(releases) and all(release in _CHECKING for release in releases)
-    if isinstance(value, int) and not isinstance(value, bool) and value == 0 and not is_checked:
+    is_zero = type(value) is int and value == 0
+    if is_zero and not is_checked:
         return kind.name not in TEXTS
-    wanted: tuple[type, ...] = (object,)
+    return isinstance(value, _type_of(kind))
+
+
+def _type_of(kind: FieldType) -> type:
+    """Return the type of Python that a plain field has; object for one of several."""
     if kind.name in BOOLEANS:
-        wanted = (bool,)
-    elif kind.name in FLOATS:
-        wanted = (float,)
-    elif kind.name in INTEGERS - {"char"}:
-        wanted = (int,)
-    elif kind.name in TEXTS:
-        wanted = (str,)
-    return isinstance(value, wanted)
+        return bool
+    if kind.name in FLOATS:
+        return float
+    if kind.name in INTEGERS - {"char"}:
+        return int
+    if kind.name in TEXTS:
+        return str
+    return object

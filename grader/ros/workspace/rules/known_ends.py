@@ -31,9 +31,9 @@ _CLASSIC = "libgazebo_ros_"  # how the names of plugins of Gazebo Classic begin,
 
 
 class _Input(NamedTuple):
-    """A topic that a parameter of a program names, with the type that the program reads there."""
+    """A topic that a program reads, and its type."""
 
-    parameter: str
+    reader: str  # the parameter that names it, or the program
     topic: str
     type: str
     location: Location
@@ -52,9 +52,11 @@ def known_end_facts(workspace: Workspace) -> Iterator[Fact]:
     by_launch = grouped(published, lambda end: end.launch)
     for program in programs_in(workspace):
         by_topic = grouped(by_launch.get(program.launch, ()), lambda end: end.name)
-        yield from _other_types(program, by_topic)
-        yield from _other_inputs(workspace, program, by_topic)
-        yield from _remappings(program.node, program.row)
+        inputs = _inputs(workspace, program)
+        yield from (Compared("wiring") for _ in inputs)
+        yield from _other_types(program, inputs, by_topic)
+        yield from _not_published(workspace, program.node, inputs, by_topic)
+        yield from _other_remappings(program.node, program.row)
     yield from _displays(workspace, grouped(published, lambda end: end.name))
 
 
@@ -65,21 +67,27 @@ def _other_type(published: Sequence[End], wanted: str) -> End | None:
     return next(iter(published), None)
 
 
-def _other_types(program: KnownProgram, published: _ByTopic) -> Iterator[Fact]:
-    """Yield the topics that a program reads, and that are published with another type."""
+def _other_types(
+    program: KnownProgram, inputs: Sequence[_Input], published: _ByTopic
+) -> Iterator[Fact]:
+    """Yield the topics that a program reads, by itself or as its parameters say, and that are
+    published with another type only.
+    """
     node = program.node
+    read = []
     for name, wanted in program.row.subscriptions.items():
-        topic = node.topic(name)
-        publishers = published.get(topic or "", ())
-        if publishers:
+        topic = node.topic(name) or ""
+        if topic in published:
             yield Compared("wiring")
-        other = _other_type(publishers, wanted)
+        read.append(_Input(node.executable, topic, wanted, node.location))
+    for each in (*read, *inputs):
+        other = _other_type(published.get(each.topic, ()), each.type)
         if other is not None:
             message = (
-                f"{node.executable} reads {topic} with {wanted}, but it is published with "
+                f"{each.reader} reads {each.topic} with {each.type}, but it is published with "
                 f"{other.type} ({other.location.file_and_line})"
             )
-            yield warning(INPUT_TYPE, message, node.location, other.location)
+            yield warning(INPUT_TYPE, message, each.location, other.location)
 
 
 def _inputs(workspace: Workspace, program: KnownProgram) -> list[_Input]:
@@ -99,31 +107,23 @@ def _inputs(workspace: Workspace, program: KnownProgram) -> list[_Input]:
     return inputs
 
 
-def _other_inputs(
-    workspace: Workspace, program: KnownProgram, published: _ByTopic
-) -> Iterator[Compared | Mismatch]:
-    """Yield the inputs that are published with another type, or not at all while another topic of
-    their type is.
+def _not_published(
+    workspace: Workspace, node: StartedNode, inputs: Sequence[_Input], published: _ByTopic
+) -> Iterator[Mismatch]:
+    """Yield the inputs that nothing publishes, while others publish one other topic of their type
+    that the node does not read.
     """
-    inputs = _inputs(workspace, program)
     topics = {each.topic for each in inputs}
     for each in inputs:
-        yield Compared("wiring")
-        other = _other_type(published.get(each.topic, ()), each.type)
-        if other is not None:
+        if each.topic in published or _may_be_published(workspace, each.topic):
+            continue
+        meant = _only_unread(workspace, node, each.type, published, topics)
+        if meant is not None:
             message = (
-                f"{each.parameter} reads {each.topic} with {each.type}, but it is published with "
-                f"{other.type} ({other.location.file_and_line})"
+                f"{each.reader} reads {each.topic}, which nothing publishes; did you mean "
+                f"{meant.name} ({meant.location.file_and_line})?"
             )
-            yield warning(INPUT_TYPE, message, each.location, other.location)
-        elif each.topic not in published and not _may_be_published(workspace, each.topic):
-            meant = _only_unread(workspace, program.node, each.type, published, topics)
-            if meant is not None:
-                message = (
-                    f"{each.parameter} reads {each.topic}, which nothing publishes; did you mean "
-                    f"{meant.name} ({meant.location.file_and_line})?"
-                )
-                yield warning(INPUT_PUBLISHED, message, each.location, meant.location)
+            yield warning(INPUT_PUBLISHED, message, each.location, meant.location)
 
 
 def _only_unread(
@@ -151,17 +151,18 @@ def _may_be_published(workspace: Workspace, topic: str) -> bool:
     return may_be_opened(workspace, Sought("publisher", topic, None))
 
 
-def _remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:
-    """Yield the remappings of names that surely stand for one that a program has."""
+def _other_remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:
+    """Yield the remappings of names that surely stand for one that a program has. What has a colon,
+    or begins with __, is no topic.
+    """
     names = [*row.subscriptions, *row.publishers, *row.names]
     replaced = [rule[0].removeprefix("~/").strip("/") for rule in node.remaps or ()]
     left = [name for name in names if name not in replaced]
     plain = {name.replace("_", ""): name for name in left}
     for written in replaced:
-        if written in names or ":" in written or written.startswith("__"):
-            continue
         meant = plain.get(written.replace("_", "")) or near(written, left)
-        if meant is not None:
+        is_topic = ":" not in written and not written.startswith("__")
+        if meant is not None and is_topic and written not in names:
             message = (
                 f"{node.executable} has no topic {quoted(written)}, so its remapping does nothing; "
                 f"did you mean {meant}?"

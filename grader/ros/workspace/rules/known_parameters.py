@@ -83,17 +83,17 @@ def _given_nodes(workspace: Workspace) -> Iterator[GivenNode]:
     """Yield what nodes get: of launch files, then of controllers, then in files of which no launch
     file of the workspace says who gets them.
     """
-    limits = [*_limits_of_moveit(workspace)]
-    yield from limits
-    in_files = {name for given in limits for name in given.values}
+    in_files: set[str] = set()  # the parameters of move_group that are said of their files
+    for given in _limits_of_moveit(workspace):
+        in_files.update(given.values)
+        yield given
     read: set[Location] = set()
     for given in [*_started(workspace), *_controllers(workspace)]:
         read |= {value.location for value in given.values.values()}
+        kept = given.values
         if given.node == _MOVE_GROUP:
-            rest = {name: value for name, value in given.values.items() if name not in in_files}
-            yield given._replace(values=rest)
-        else:
-            yield given
+            kept = {name: value for name, value in kept.items() if name not in in_files}
+        yield given._replace(values=kept)
     for given in _sections_by_name(workspace):
         if not any(value.location in read for value in given.values.values()):
             yield given
@@ -113,11 +113,11 @@ def _started(workspace: Workspace) -> Iterator[GivenNode]:
         said = repr(workspace.code.name_of(node) or node.executable)
         given.append(GivenNode(program, said, values_by_name, at))
         shared.update({value.location for value in values_by_name.values()})
-    several = frozenset(place for place, count in shared.items() if count > 1)
-    files = _places_for_every_node(workspace)
-    for it in given:
-        if is_as_released(workspace, it.node):
-            yield it._replace(shared=several | files)
+    several = {place for place, count in shared.items() if count > 1}
+    several |= _places_for_every_node(workspace)
+    for each in given:
+        if is_as_released(workspace, each.node):
+            yield each._replace(shared=frozenset(several))
 
 
 def _values_of(
@@ -225,13 +225,8 @@ def _sections_by_name(workspace: Workspace) -> Iterator[GivenNode]:
     """Yield the sections of parameter files that have the name of a controller of the same file, or
     the usual one of a well-known node.
     """
-    usual = dict(usual_names()) if workspace.installed.yaml else {}
-    for _, node in workspace.launches.nodes:
-        if workspace.package_of(node) is not None:
-            usual.pop(workspace.code.name_of(node) or "", None)
+    usual = _usual_names(workspace) if workspace.installed.yaml else {}
     types = {(it.location.path, it.name): it.type.text for it in defined_controllers(workspace)}
-    for controller in defined_controllers(workspace):
-        usual.pop(controller.name, None)
     for path, tree in workspace.installed.trees:
         for keys, section in sections_in(tree):
             name = keys[-1].rpartition("/")[2] if keys else ""
@@ -239,6 +234,17 @@ def _sections_by_name(workspace: Workspace) -> Iterator[GivenNode]:
             if known_node and is_as_released(workspace, known_node):
                 values = _without_wrong_lists(known_node, _section_values(section))
                 yield GivenNode(known_node, repr(name), values, None)
+
+
+def _usual_names(workspace: Workspace) -> Mapping[str, str]:
+    """Return the well-known nodes by their usual names, which no own node and no controller has."""
+    usual = dict(usual_names())
+    for _, node in workspace.launches.nodes:
+        if workspace.package_of(node) is not None:
+            usual.pop(workspace.code.name_of(node) or "", None)
+    for controller in defined_controllers(workspace):
+        usual.pop(controller.name, None)
+    return usual
 
 
 def _section_values(section: YamlNode, prefix: str = "") -> dict[str, ParameterValue]:

@@ -2,13 +2,13 @@
 service.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 from grader.ros.nodes.node_facts import EndpointKind
-from grader.ros.workspace.graph.bridge_rows import BRIDGE, bridge_rows
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, BridgeRow
 from grader.ros.workspace.graph.code_ends import End, EndSource
-from grader.ros.workspace.graph.graph import Graph, distinct, graph_of, grouped
+from grader.ros.workspace.graph.graph import Graph, distinct, graph_of
 from grader.ros.workspace.graph.node_ends import deciding_parameter
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.interfaces import is_absent
@@ -157,25 +157,21 @@ def _other_type_of_bridge(graph: Graph) -> Iterator[Mismatch]:
 
     A row of a file that no launch file names counts too, as far as all bridges keep their names.
     """
-    workspace = graph.workspace
-    bridges = [node for _, node in workspace.launches.nodes if node.package == BRIDGE]
+    bridges = [node for _, node in graph.workspace.launches.nodes if node.package == BRIDGE]
     is_plain = all(node.remaps == () and node.namespace in ("", "/") for node in bridges)
     if not bridges or not is_plain:
         return
     ends = distinct(graph.of_kind("subscription", "publisher", sources=("code",)))
-    by_topic = grouped(ends, lambda end: end.name)
-    for row in bridge_rows(workspace):
-        of_topic: Sequence[End] = by_topic.get(f"/{row.ros}", ())
-        workspace.charge(len(of_topic))
-        for end in of_topic:
-            meets = row.is_published if end.kind == "subscription" else row.is_read
-            if not meets or end.type is None or end.type == row.ros_type:
-                continue
-            verb = "published" if row.is_published else "subscribed to"
-            message = (
-                f"the topic {end.name} has {end.type} here, but is {verb} by the bridge with "
-                f"{row.ros_type} ({row.location.file_and_line})"
-            )
-            is_certain = row.is_used and end.is_certain
-            place, related = end.location, row.location
-            yield Mismatch(TOPIC_TYPE, message, place, related, is_certain)
+    for end, row in graph.bridged(ends):
+        if end.type not in (None, row.ros_type):
+            yield _other_type_in_row(end, row)
+
+
+def _other_type_in_row(end: End, row: BridgeRow) -> Mismatch:
+    verb = "published" if row.is_published else "subscribed to"
+    message = (
+        f"the topic {end.name} has {end.type} here, but is {verb} by the bridge with "
+        f"{row.ros_type} ({row.location.file_and_line})"
+    )
+    is_certain = row.is_used and end.is_certain
+    return Mismatch(TOPIC_TYPE, message, end.location, row.location, is_certain)

@@ -50,12 +50,13 @@ def mesh_size_problems(workspace: Workspace) -> list[Problem]:
 
 
 def _problems_of(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Problem]:
+    """Yield the meshes whose lengths are about 1000 times as large or small as those of what is
+    beside them. A sample of each mesh is read first, and whole only one that may be.
+    """
     origins = [joint.origin for joint in robot.joints if joint.origin is not None]
     reach = max((hypot(*origin.xyz) for origin in origins), default=0.0)
     for link in robot.links:
-        shapes = [it.geometry for it in link.visuals]
-        shapes += [it.geometry for it in link.collisions]
-        of_link = dict.fromkeys(it for it in shapes if isinstance(it, Mesh))
+        of_link = _meshes_of(link)
         for mesh in of_link:
             about = meshes.length(urdf, mesh, is_exact=False)
             if about is None or mesh.location is None:
@@ -67,13 +68,32 @@ def _problems_of(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Proble
                 continue
             length = meshes.length(urdf, mesh, is_exact=True)
             if length is not None and _is_off(length, reference.length, _LEAST, _MOST):
-                at = LazyLocation(mesh.location.source, mesh.location.tag, "scale")
-                message = mesh_file(mesh.filename, is_expanded=urdf.is_expanded).problem_text(
-                    link.name,
-                    f"is {length:.3g} m long, but {reference.what} is {reference.length:.3g} m: "
-                    "is it in millimetres or in metres? See its scale",
-                )
-                yield MESH_UNIT.problem(message, at.resolve(), is_certain=False)
+                yield _other_unit(urdf, link, mesh, mesh.location, length, reference)
+
+
+def _meshes_of(link: Link) -> list[Mesh]:
+    """Return the meshes of a link, each once."""
+    shapes = [visual.geometry for visual in link.visuals]
+    shapes += [collision.geometry for collision in link.collisions]
+    return list(dict.fromkeys(shape for shape in shapes if isinstance(shape, Mesh)))
+
+
+def _other_unit(
+    urdf: Read,
+    link: Link,
+    mesh: Mesh,
+    location: LazyLocation,
+    length: float,
+    reference: _Reference,
+) -> Problem:
+    """Return that a mesh is not in the unit of what is beside it."""
+    at = LazyLocation(location.source, location.tag, "scale")
+    message = mesh_file(mesh.filename, is_expanded=urdf.is_expanded).problem_text(
+        link.name,
+        f"is {length:.3g} m long, but {reference.what} is {reference.length:.3g} m: is it in "
+        "millimetres or in metres? See its scale",
+    )
+    return MESH_UNIT.problem(message, at.resolve(), is_certain=False)
 
 
 def _is_off(length: float, right: float, least: float, most: float) -> bool:

@@ -1,6 +1,6 @@
 """Topics, services and actions without another end, where a similar or fitting one is free."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import NamedTuple
 
 from grader.base.names import closest
@@ -25,7 +25,12 @@ from grader.ros.workspace.rules.names import (
     Use,
     corrections,
 )
-from grader.ros.workspace.rules.rule_table import SERVICE_SERVED, TOPIC_PUBLISHED, TOPIC_SUBSCRIBED
+from grader.ros.workspace.rules.rule_table import (
+    SERVICE_SERVED,
+    TOPIC_PUBLISHED,
+    TOPIC_SUBSCRIBED,
+    Rule,
+)
 
 
 class _Offer(NamedTuple):
@@ -42,7 +47,7 @@ def missing_end_facts(workspace: Workspace) -> Iterator[Fact]:
     graph = graph_of(workspace)
     subscriptions, publishers = TOPICS.ends(graph)
     yield from _without_publisher(graph, subscriptions, publishers)
-    yield from _without_subscription(workspace, subscriptions, publishers)
+    yield from _without_subscription(graph, subscriptions, publishers)
     for meeting in SERVICES:
         yield from _without_server(graph, meeting)
 
@@ -93,7 +98,9 @@ def _similar_topic(workspace: Workspace, end: End, alike: Sequence[_Offer]) -> I
         yield Use("topic", end.name, end.location, "create_subscription")
     elif not any(end.node.topic(rule[1]) == meant for rule in end.node.remaps or ()):
         # Else it is a remapping of another name, which is said of it.
-        yield _without_other(f"nothing publishes {end.name}", end, meant, places[meant])
+        yield _no_other_end(
+            TOPIC_PUBLISHED, f"nothing publishes {end.name}", end, meant, places[meant]
+        )
 
 
 def _may_be_published(workspace: Workspace, end: End) -> bool:
@@ -106,53 +113,65 @@ def _may_be_published(workspace: Workspace, end: End) -> bool:
     if last in shared_names().topics or name.partition("/")[0] in workspace.installed.controllers:
         return True
     # A parameter, or a remapping of a plugin, may name what something publishes.
-    if any(name in tree.source.text for _, tree in workspace.installed.trees):
-        return True
+    texts = [tree.source.text for _, tree in workspace.installed.trees]
     for robot in workspace.robots.known:
-        if any(name in (tag.text or "") for tag in robot.root.iter("remapping", "ros_topic")):
-            return True
-    return False
+        texts += [tag.text or "" for tag in robot.root.iter("remapping", "ros_topic")]
+    return any(name in text for text in texts)
 
 
-def _without_other(what: str, end: End, meant: str, at: Location) -> Mismatch:
+def _no_other_end(rule: Rule, what: str, end: End, meant: str, at: Location) -> Mismatch:
     """Return that an end has no other one, and the name that it surely means."""
     message = f"{what}; did you mean {meant} ({at.file_and_line})?"
     either = corrections(end.name, end.location, meant, at)
-    rule = TOPIC_PUBLISHED if end.kind == "subscription" else SERVICE_SERVED
     return Mismatch(rule, message, end.location, at, corrections=either)
 
 
 def _without_subscription(
-    workspace: Workspace, subscriptions: Sequence[End], publishers: Sequence[End]
+    graph: Graph, subscriptions: Sequence[End], publishers: Sequence[End]
 ) -> Iterator[Mismatch]:
     """Yield publishers that nothing subscribes to, where a controller waits for such messages on
     another topic.
+
+    It is certain where one launch file starts both, and all of its topics are read. A publisher of
+    the same name may be meant for a controller of Gazebo in another namespace.
     """
     of_code = [end for end in publishers if end.source == "code"]
     subscribed = {end.name for end in subscriptions}
     published = {end.name for end in of_code}
     unheard = [end for end in of_code if end.name not in subscribed]
+    of_controllers = [end for end in subscriptions if end.source == "controller"]
     named: set[Location] = set()
-    for waiting in subscriptions:
-        if waiting.source != "controller" or waiting.name in published:
+    for waiting in of_controllers:
+        if waiting.name in published:
             continue
-        workspace.charge(len(unheard))
-        fitting = [
-            end for end in unheard if (end.launch, end.type) == (waiting.launch, waiting.type)
-        ]
+        fitting = graph.alike(waiting, unheard)
         for publisher in fitting:
-            at, place = publisher.location, waiting.location
-            if at in named or _may_be_of_gazebo(workspace, publisher, waiting):
+            if publisher.location in named:
                 continue
-            is_certain = publisher.surely_meets(waiting) and is_all_read(workspace, waiting.launch)
-            is_same = _last_names(publisher, 1) == _last_names(waiting, 1)
-            if is_same or (is_certain and len(fitting) == 1):
-                named.add(at)
-                message = (
-                    f"nothing subscribes to {publisher.name}; did you mean {waiting.name} "
-                    f"({place.file_and_line})?"
-                )
-                yield Mismatch(TOPIC_SUBSCRIBED, message, at, place, is_certain)
+            mismatch = _unheard(graph.workspace, publisher, waiting, is_only=len(fitting) == 1)
+            if mismatch is not None:
+                named.add(publisher.location)
+                yield mismatch
+
+
+def _unheard(
+    workspace: Workspace, publisher: End, waiting: End, *, is_only: bool
+) -> Mismatch | None:
+    """Return that a publisher means the topic on which a controller waits; None where that is not
+    known.
+    """
+    if _may_be_of_gazebo(workspace, publisher, waiting):
+        return None
+    at, place = publisher.location, waiting.location
+    is_certain = publisher.surely_meets(waiting) and is_all_read(workspace, waiting.launch)
+    is_same = _last_names(publisher, 1) == _last_names(waiting, 1)
+    if not is_same and not (is_certain and is_only):
+        return None
+    message = (
+        f"nothing subscribes to {publisher.name}; did you mean {waiting.name} "
+        f"({place.file_and_line})?"
+    )
+    return Mismatch(TOPIC_SUBSCRIBED, message, at, place, is_certain)
 
 
 def _last_names(end: End, count: int) -> list[str]:
@@ -168,26 +187,29 @@ def _may_be_of_gazebo(workspace: Workspace, publisher: End, waiting: End) -> boo
 
 def _without_server(graph: Graph, meeting: Meeting) -> Iterator[Mismatch]:
     """Yield that nothing serves what a client calls, where a server of its type waits under one
-    other name.
+    other name. It is certain where the nodes of both certainly are started.
     """
     workspace = graph.workspace
     clients, servers = meeting.ends(graph)
     called = {end.name for end in clients}
     served = {end.name for end in servers}
     uncalled = [end for end in servers if end.name not in called]
-    for client in clients:
-        if client.name in served or client.type is None:
+    unserved = [end for end in clients if end.name not in served and end.type is not None]
+    for client in unserved:
+        alike = {end.name: end for end in reversed(graph.alike(client, uncalled))}
+        if len(alike) != 1 or _may_be_served(workspace, meeting, client, alike):
             continue
-        workspace.charge(1 + len(uncalled))
-        alike = [end for end in uncalled if (end.launch, end.type) == (client.launch, client.type)]
-        names = {end.name for end in alike}
-        if len(names) != 1:
-            continue
-        [meant] = names
-        is_meant = is_own_type(workspace, client.type) or closest(client.name, names) is not None
-        sought = Sought(meeting.offering, client.name, client.type)
-        if is_meant and not may_be_opened(workspace, sought):
-            what = f"nothing serves the {meeting.noun} {client.name}"
-            mismatch = _without_other(what, client, meant, alike[0].location)
-            is_certain = client.is_certain and alike[0].is_certain
-            yield mismatch._replace(is_certain=is_certain)
+        [(meant, server)] = alike.items()
+        what = f"nothing serves the {meeting.noun} {client.name}"
+        mismatch = _no_other_end(SERVICE_SERVED, what, client, meant, server.location)
+        yield mismatch._replace(is_certain=client.is_certain and server.is_certain)
+
+
+def _may_be_served(
+    workspace: Workspace, meeting: Meeting, client: End, names: Collection[str]
+) -> bool:
+    """Return whether a client may mean another server than those of some names."""
+    is_meant = is_own_type(workspace, client.type) or closest(client.name, names) is not None
+    if not is_meant:
+        return True
+    return may_be_opened(workspace, Sought(meeting.offering, client.name, client.type))

@@ -2,8 +2,10 @@
 name.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
+from typing import NamedTuple
 
+from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
@@ -26,49 +28,72 @@ def moveit_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what the YAML files of a configuration for MoveIt name, if a robot is known."""
     if not workspace.robots.known:
         return
-    for _, tree in workspace.installed.trees:
-        for key in _TABLES_OF_JOINTS:
-            table = tree.get(key)
-            if table is not None and isinstance(table.value, dict):
-                for name, node in table.value.items():
-                    yield Use("joint", name, node.location, key)
-        if isinstance(tree.value, dict):
-            for name, node in tree.value.items():
-                if node.get("kinematics_solver") is not None:
-                    yield Use("group", name, node.location, "kinematics_solver")
-        manager = tree.get(_MANAGER)
-        if manager is not None:
-            yield from _controllers(workspace, manager)
-
-
-def _controllers(workspace: Workspace, manager: YamlNode) -> Iterator[Fact]:
-    """Yield the controllers of ros2_control that MoveIt sends goals to, their joints and their
-    actions.
-    """
-    names = manager.get("controller_names")
-    # Without definitions, the robot's driver has the controllers.
-    defined = {controller.name for controller in defined_controllers(workspace)}
-    are_defined = bool(defined)
     left_out = _not_spawned(workspace)
+    for _, tree in workspace.installed.trees:
+        yield from _joints_and_groups(tree)
+        manager = tree.get(_MANAGER)
+        for controller in _controllers(manager) if manager is not None else ():
+            yield from _names_of(workspace, controller)
+            yield from _not_started(controller, left_out)
+            yield from _other_joints(workspace, controller)
+            yield from _other_action(controller)
+
+
+def _joints_and_groups(tree: YamlNode) -> Iterator[Use]:
+    """Yield the joints and groups in the tables of a file."""
+    for key in _TABLES_OF_JOINTS:
+        table = tree.get(key)
+        if table is not None and isinstance(table.value, dict):
+            for name, node in table.value.items():
+                yield Use("joint", name, node.location, key)
+    if isinstance(tree.value, dict):
+        for name, node in tree.value.items():
+            if node.get("kinematics_solver") is not None:
+                yield Use("group", name, node.location, "kinematics_solver")
+
+
+class _MoveItController(NamedTuple):
+    """A controller of ros2_control to which MoveIt sends goals."""
+
+    name: str
+    location: Location
+    section: YamlNode
+
+    @property
+    def joints(self) -> YamlNode | None:
+        """The joints for which it gets goals."""
+        return self.section.get("joints")
+
+
+def _controllers(manager: YamlNode) -> Iterator[_MoveItController]:
+    """Yield the controllers of a list of plugins that have a section."""
+    names = manager.get("controller_names")
     for node in names.items if names is not None else ():
-        name = node.text or ""
-        section = manager.get(name)
-        if section is None:
-            continue  # a list of plugins without its section
-        if are_defined:
-            # Another robot may have a driver with its controllers.
-            is_optional = workspace.robots.may_be_others
-            yield Use("controller", name, node.location, "controller_names", optional=is_optional)
-        if name in left_out:
-            message = (
-                f"controller_names: no spawner starts {quoted(name)}: MoveIt waits for its action"
-            )
-            yield Mismatch(MOVEIT_CONTROLLER, message, node.location)
-        joints = section.get("joints")
-        for joint in joints.items if joints is not None else ():
-            yield Use("joint", joint.text or "", joint.location, f"{name}.joints")
-        yield from _other_joints(workspace, name, joints)
-        yield from _other_action(name, section)
+        section = manager.get(node.text or "")
+        if section is not None:
+            yield _MoveItController(node.text or "", node.location, section)
+
+
+def _names_of(workspace: Workspace, controller: _MoveItController) -> Iterator[Use]:
+    """Yield the controller and the joints that a section names. Without definitions, the robot's
+    driver has the controllers; another robot may have one too.
+    """
+    name, at = controller.name, controller.location
+    if defined_controllers(workspace):
+        is_optional = workspace.robots.may_be_others
+        yield Use("controller", name, at, "controller_names", optional=is_optional)
+    for joint in controller.joints.items if controller.joints is not None else ():
+        yield Use("joint", joint.text or "", joint.location, f"{name}.joints")
+
+
+def _not_started(controller: _MoveItController, left_out: Collection[str]) -> Iterator[Mismatch]:
+    """Yield that no spawner starts a controller, while one starts others that move joints."""
+    if controller.name in left_out:
+        message = (
+            f"controller_names: no spawner starts {quoted(controller.name)}: MoveIt waits for its "
+            "action"
+        )
+        yield Mismatch(MOVEIT_CONTROLLER, message, controller.location)
 
 
 def _not_spawned(workspace: Workspace) -> frozenset[str]:
@@ -80,45 +105,55 @@ def _not_spawned(workspace: Workspace) -> frozenset[str]:
     return frozenset(movers - started)
 
 
-def _other_action(name: str, section: YamlNode) -> Iterator[Mismatch]:
+def _other_action(controller: _MoveItController) -> Iterator[Mismatch]:
     """Yield that MoveIt sends the goals of a controller to an action that it does not have."""
-    kind, action = section.get("type"), section.get("action_ns")
+    kind, action = controller.section.get("type"), controller.section.get("action_ns")
     if kind is None or action is None:
         return
     wanted = moveit_actions().get(kind.text or "")
     if wanted is not None and action.text not in ("", wanted):
-        message = f"{name}.action_ns is {action.text!r}; the action of its controller is {wanted!r}"
+        message = (
+            f"{controller.name}.action_ns is {action.text!r}; the action of its controller is "
+            f"{wanted!r}"
+        )
         either = corrections(action.text or "", action.location, wanted)
         yield Mismatch(MOVEIT_ACTION, message, action.location, kind.location, corrections=either)
 
 
-def _other_joints(workspace: Workspace, name: str, joints: YamlNode | None) -> Iterator[Mismatch]:
+def _other_joints(workspace: Workspace, controller: _MoveItController) -> Iterator[Mismatch]:
     """Yield that MoveIt gives a controller other joints than it has, all of which are in the
-    robot.
+    robot. MoveIt sends no goals for joints that follow others.
     """
+    joints, controlled = controller.joints, _controlled_joints(workspace, controller.name)
+    if joints is None or controlled is None:
+        return
+    names: set[str] = set()
+    following: set[str] = set()
+    for known_robot in workspace.robots.known:
+        for joint in known_robot.robot.joints:
+            names.add(joint.name)
+            if joint.mimic is not None:
+                following.add(joint.name)
+    by_moveit, by_controller = _joint_names(joints), _joint_names(controlled)
+    differing = sorted((by_moveit ^ by_controller) - following)
+    if by_moveit and by_controller and differing and names.issuperset(differing):
+        message = (
+            f"{controller.name}.joints: MoveIt and the controller "
+            f"({controlled.location.file_and_line}) have other joints: {', '.join(differing)}"
+        )
+        yield Mismatch(MOVEIT_JOINTS, message, joints.location, controlled.location)
+
+
+def _controlled_joints(workspace: Workspace, name: str) -> YamlNode | None:
+    """Return the joints in the parameters of a controller; None unless one file has some."""
     sections: list[YamlNode] = []
     for _, tree in workspace.installed.trees:
         sections += [section for keys, section in sections_in(tree) if keys[-1:] == (name,)]
-    if joints is None or len(sections) != 1:
-        return
+    if len(sections) != 1:
+        return None
     types = [each.type.text or "" for each in defined_controllers(workspace) if each.name == name]
     is_gripper = any(kind.endswith("/GripperActionController") for kind in types)
-    controlled = sections[0].get("joint" if is_gripper else "joints")
-    if controlled is None:
-        return
-    by_moveit, by_controller = _joint_names(joints), _joint_names(controlled)
-    # MoveIt sends no goals for joints that follow others.
-    every = [joint for found in workspace.robots.known for joint in found.robot.joints]
-    following = {joint.name for joint in every if joint.mimic is not None}
-    differing = sorted((by_moveit ^ by_controller) - following)
-    if not by_moveit or not by_controller or not differing:
-        return
-    if {joint.name for joint in every}.issuperset(differing):
-        message = (
-            f"{name}.joints: MoveIt and the controller ({controlled.location.file_and_line}) have "
-            f"other joints: {', '.join(differing)}"
-        )
-        yield Mismatch(MOVEIT_JOINTS, message, joints.location, controlled.location)
+    return sections[0].get("joint" if is_gripper else "joints")
 
 
 def _joint_names(node: YamlNode) -> set[str]:

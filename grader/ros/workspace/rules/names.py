@@ -4,6 +4,7 @@ somewhere.
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from fnmatch import fnmatchcase
+from itertools import chain
 from typing import NamedTuple
 
 from grader.base.names import are_of_one_side, closest, near
@@ -157,52 +158,87 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
     work of comparing names is charged.
     """
     every = [*facts]
-    known: dict[tuple[DefinedKind, str], dict[str, Location]] = {}
-    for fact in every:
-        if isinstance(fact, Definition):
-            known.setdefault((fact.kind, fact.owner), {}).setdefault(fact.name, fact.location)
-    opened: dict[tuple[DefinedKind, str], str] = {}
-    for fact in every:
-        if isinstance(fact, Open):
-            opened[fact.kind, fact.owner] = opened.get((fact.kind, fact.owner)) or fact.reason
-    patterns = [fact for fact in every if isinstance(fact, Pattern)]
-    found = [fact for fact in every if isinstance(fact, Mismatch)]
+    names = _DefinedNames(every)
+    mismatches = [fact for fact in every if isinstance(fact, Mismatch)]
     counts = {fact.family: fact for fact in every if isinstance(fact, Counted)}
     undecided = _undecided(every, counts.values())
-    compared: set[AnyFamily] = set()
+    compared, files = _compared(every)
     for use in [fact for fact in every if isinstance(fact, Use)]:
-        key = use.kind, use.owner
-        is_defined = use.name in known.get(key, {})
-        if is_defined or not (use.optional or key in opened):
-            compared.add(DEFINED[use.kind].family)
-        charge(1 + len(patterns))
-        if is_defined or _may_be_defined(use, patterns):
+        family = DEFINED[use.kind].family
+        if names.holds(use) or not (use.optional or names.are_open(use)):
+            compared.add(family)
+        charge(1 + len(names.patterns))
+        if names.holds(use) or names.may_hold(use):
             continue
-        charge(cost_of_guess(len(known.get(key, ()))))
-        mismatch = _mismatch(use, known.get(key, {}), is_open=key in opened)
+        known = names.like(use)
+        charge(cost_of_guess(len(known)))
+        mismatch = _mismatch(use, known, is_open=names.are_open(use))
         if mismatch is not None:
-            found.append(mismatch)
-        if opened.get(key):
-            undecided.setdefault(DEFINED[use.kind].family, opened[key])
-    compared |= {fact.family for fact in every if isinstance(fact, Compared | Mismatch)}
-    files = frozenset(fact.name for fact in every if isinstance(fact, Compared) and fact.name)
-    return Agreement(_in_order(found), undecided, frozenset(compared), files, counts)
+            mismatches.append(mismatch)
+        if names.why_open(use):
+            undecided.setdefault(family, names.why_open(use))
+    return Agreement(_in_order(mismatches), undecided, frozenset(compared), files, counts)
 
 
-def _in_order(found: Iterable[Mismatch]) -> tuple[Mismatch, ...]:
+def _compared(facts: Iterable[Fact]) -> tuple[set[AnyFamily], frozenset[str]]:
+    """Return of which families something is compared, and the files that are looked for."""
+    families: set[AnyFamily] = set()
+    files: set[str] = set()
+    for fact in facts:
+        if isinstance(fact, Compared | Mismatch):
+            families.add(fact.family)
+        if isinstance(fact, Compared) and fact.name:
+            files.add(fact.name)
+    return families, frozenset(files)
+
+
+class _DefinedNames:
+    """The names that files define, and which others may be defined."""
+
+    def __init__(self, facts: Iterable[Fact]) -> None:
+        self.patterns: list[Pattern] = []
+        self._known: dict[tuple[DefinedKind, str], dict[str, Location]] = {}
+        self._reasons: dict[tuple[DefinedKind, str], str] = {}  # why names are open
+        for fact in facts:
+            match fact:
+                case Definition():
+                    names = self._known.setdefault((fact.kind, fact.owner), {})
+                    names.setdefault(fact.name, fact.location)
+                case Open():
+                    before = self._reasons.get((fact.kind, fact.owner))
+                    self._reasons[fact.kind, fact.owner] = before or fact.reason
+                case Pattern():
+                    self.patterns.append(fact)
+
+    def like(self, use: Use) -> Mapping[str, Location]:
+        """Return the names that are defined of the kind and the owner of a use."""
+        return self._known.get((use.kind, use.owner), {})
+
+    def holds(self, use: Use) -> bool:
+        """Return whether a name is defined."""
+        return use.name in self.like(use)
+
+    def may_hold(self, use: Use) -> bool:
+        """Return whether a name is computed, or one that may be defined."""
+        possible = (each.pattern for each in self.patterns if each.kind == use.kind)
+        return "$" in use.name or any(fnmatchcase(use.name, pattern) for pattern in possible)
+
+    def are_open(self, use: Use) -> bool:
+        """Return whether other names of its kind may be defined."""
+        return (use.kind, use.owner) in self._reasons
+
+    def why_open(self, use: Use) -> str:
+        """Return why names of its kind are not evaluated; empty where they are, or need not be."""
+        return self._reasons.get((use.kind, use.owner), "")
+
+
+def _in_order(mismatches: Iterable[Mismatch]) -> tuple[Mismatch, ...]:
     """Return mismatches, each once, in the order of their places."""
-    return tuple(
-        sorted(
-            dict.fromkeys(found),
-            key=lambda it: (it.location.path, it.location.line, it.location.column),
-        )
-    )
-
-
-def _may_be_defined(use: Use, patterns: Sequence[Pattern]) -> bool:
-    """Return whether a name is computed, or one that may be defined."""
-    possible = (it.pattern for it in patterns if it.kind == use.kind)
-    return "$" in use.name or any(fnmatchcase(use.name, pattern) for pattern in possible)
+    by_place: dict[tuple[str, int, int], list[Mismatch]] = {}
+    for mismatch in dict.fromkeys(mismatches):
+        at = mismatch.location
+        by_place.setdefault((at.path, at.line, at.column), []).append(mismatch)
+    return tuple(chain.from_iterable(by_place[place] for place in sorted(by_place)))
 
 
 def cost_of_guess(known: int) -> int:
@@ -226,20 +262,17 @@ def _undecided(facts: Sequence[Fact], counts: Iterable[Counted]) -> dict[AnyFami
 def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mismatch | None:
     """Return what is wrong with a name that is not defined, as far as it is known what is."""
     meant = near(use.name, known, "link" if use.kind == "frame" else use.kind)
-    if is_open and meant is None:
+    if meant is None and not is_open:
+        meant = closest(use.name, known, is_clear=True)
+    if meant is None and (is_open or use.optional):
         return None
-    meant = meant or closest(use.name, known, is_clear=True)
-    is_certain = not is_open and (meant is not None or not use.optional)
-    if use.optional and meant is None:
-        return None
+    message = f"{use.said}: there is no {use.kind} {quoted(use.name)}"
+    related = None
     if meant is not None:
-        guess = f"; did you mean {quoted(meant)} ({known[meant].file_and_line})?"
-    else:
-        guess = ""
-    message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{guess}"
-    related = known[meant] if meant is not None else None
+        related = known[meant]
+        message = f"{message}; did you mean {quoted(meant)} ({related.file_and_line})?"
     either = corrections(use.name, use.location, meant, related)
-    return Mismatch(DEFINED[use.kind], message, use.location, related, is_certain, either)
+    return Mismatch(DEFINED[use.kind], message, use.location, related, not is_open, either)
 
 
 def corrections(

@@ -33,19 +33,22 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
     launch_files = {package.path(path) for package, path, _ in workspace.launches.files}
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, _TEXTS):
-            if source.path in launch_files:
-                continue
-            yield Compared("machine")
-            found = [it for it in _HOME.finditer(source.text) if not _PLACEHOLDERS.match(it[1])]
-            if found:
-                path = quoted(cut(found[0][1], _MAX_SHOWN))
-                message = f"the path {path} is of one machine"
-                if len(found) > 1:
-                    message += f"; the file has {len(found)} such paths"
-                yield warning(HOME_PATH, message, source.at(found[0].start(1)))
+            if source.path not in launch_files:
+                yield Compared("machine")
+                yield from _home_paths(source)
     for package in workspace.packages:
         for source in workspace.texts.launch_sources(package):
             yield from _variables(source)
+
+
+def _home_paths(source: Source) -> Iterator[Mismatch]:
+    """Yield that a file names paths in somebody's home folder, at the first of them."""
+    paths = [path for path in _HOME.finditer(source.text) if not _PLACEHOLDERS.match(path[1])]
+    if paths:
+        message = f"the path {quoted(cut(paths[0][1], _MAX_SHOWN))} is of one machine"
+        if len(paths) > 1:
+            message += f"; the file has {len(paths)} such paths"
+        yield warning(HOME_PATH, message, source.at(paths[0].start(1)))
 
 
 def _variables(source: Source) -> Iterator[Mismatch]:

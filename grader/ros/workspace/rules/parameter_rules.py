@@ -2,6 +2,7 @@
 effect, of another type or release, missing, or not accepted.
 """
 
+import operator
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cache, lru_cache
@@ -123,17 +124,23 @@ def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismat
         return
     read = [release for release in COVERED if known.is_known_in(release)]
     readers = {release: _NodeReader(given, release) for release in read}
-    found: dict[tuple[Rule, str], Mismatch] | None = None
-    for release in [release for release in stated or read if known.is_in(release)]:
-        here = {(it.mismatch.rule, it.name): it.mismatch for it in readers[release].findings()}
-        before = here if found is None else found
-        found = {key: mismatch for key, mismatch in before.items() if key in here}
-    for (rule, name), mismatch in (found or {}).items():
-        if rule is PARAMETER_NAME:
-            having = [release for release in read if readers[release].has(name)]
-            yield _of_other_release(given, name, mismatch, having, stated)
+    releases = [release for release in stated or read if known.is_in(release)]
+    for finding in _findings_in_all([readers[release] for release in releases]):
+        if finding.mismatch.rule is PARAMETER_NAME:
+            having = [release for release in read if readers[release].has(finding.name)]
+            yield _of_other_release(given, finding.name, finding.mismatch, having, stated)
         else:
-            yield mismatch
+            yield finding.mismatch
+
+
+def _findings_in_all(readers: "Sequence[_NodeReader]") -> Iterator[_RowFinding]:
+    """Yield what is wrong as each of some releases reads the parameters, as the first says it."""
+    by_release: list[dict[tuple[Rule, str], _RowFinding]] = []
+    for reader in readers:
+        by_release.append({(each.mismatch.rule, each.name): each for each in reader.findings()})
+    for key, finding in by_release[0].items() if by_release else ():
+        if all(key in findings for findings in by_release):
+            yield finding
 
 
 def default_in(given: GivenNode, name: str, release: Release) -> Any:
@@ -189,12 +196,11 @@ class _NodeReader:
             may_have_more = self._unread or any(table.is_open for table in self._tables)
             return _NOT_KNOWN if may_have_more or not self._is_complete else None
         row = match.row
-        if row.only_with:
-            is_read = match.full_name(row.only_with) in self._values
-        else:
-            is_read = all(self._items(match.table, place) for place in row.places)
-        if row.is_required or (row.only_with and not is_read):
+        if row.is_required:
             return None
+        if row.only_with and match.full_name(row.only_with) not in self._values:
+            return None
+        is_read = bool(row.only_with) or all(self._items(match.table, it) for it in row.places)
         return row.default if is_read and row.default is not None else _NOT_KNOWN
 
     def findings(self) -> Iterator[_RowFinding]:
@@ -335,27 +341,43 @@ class _NodeReader:
                 return _OffSwitch(switch_name, f": {shown} is {_shown(value)}{place}")
         return None
 
+    def _other_type(
+        self, name: str, given: ParameterValue, match: _ParameterMatch
+    ) -> _RowFinding | None:
+        """Return that a value has another type than its node declares, for which a text may stand
+        that a launch file replaces.
+        """
+        actual, declared = type_in_words(given.value), _DECLARED.get(match.row.type, "")
+        if not declared or not actual or actual == declared:
+            return None
+        message = (
+            f"the parameter {self._given.shown(name)!r} is given {actual}; {self._given.said} "
+            f"declares {declared}, and stops"
+        )
+        return self._certain(PARAMETER_TYPE, name, message, given.location)
+
     def _value_findings(
         self, name: str, given: ParameterValue, match: _ParameterMatch
     ) -> Iterator[_RowFinding]:
         """Yield that a value has another type, or that its node does not accept it."""
-        row, shown = match.row, self._given.shown(name)
-        actual, declared = type_in_words(given.value), _DECLARED.get(row.type, "")
-        if declared and actual and actual != declared:
-            if not match.table.takes_any_type and not _is_placeholder(given.value):
-                message = (
-                    f"the parameter {shown!r} is given {actual}; {self._given.said} declares "
-                    f"{declared}, and stops"
-                )
-                yield self._certain(PARAMETER_TYPE, name, message, given.location)
-            return
-        wrong = _beyond(row, given.value)
+        other_type = self._other_type(name, given, match)
+        if other_type is None:
+            yield from self._not_accepted(name, given, match)
+        elif not match.table.takes_any_type and not _is_placeholder(given.value):
+            yield other_type
+
+    def _not_accepted(
+        self, name: str, given: ParameterValue, match: _ParameterMatch
+    ) -> Iterator[_RowFinding]:
+        """Yield the values that a node does not accept, and stops at."""
+        wrong = _beyond(match.row, given.value)
         if wrong:
             message = (
-                f"the parameter {shown!r} is {_shown(given.value)}; {self._given.said} {wrong}"
+                f"the parameter {self._given.shown(name)!r} is {_shown(given.value)}; "
+                f"{self._given.said} {wrong}"
             )
             yield self._certain(PARAMETER_VALUE, name, message, given.location)
-        wrong = self._wrong_library(name, row, given.value)
+        wrong = self._wrong_library(name, match.row, given.value)
         if wrong:
             message = f"{self._given.said} {wrong}"
             yield self._certain(PARAMETER_VALUE, name, message, given.location)
@@ -365,19 +387,20 @@ class _NodeReader:
         if not row.libraries or not isinstance(value, list):
             return ""
         listed = [str(item) for item in value]
-        if row.loads_libraries:
-            twice = [item for item in listed if item in row.libraries]
-            if twice:
-                return (
-                    f"loads {enumerated(twice, _MAX_LIBRARIES)} itself, and stops where {name} has "
-                    "the same: list only other libraries"
-                )
-        others: set[str] = set()
+        twice = [item for item in listed if item in row.libraries]
+        if twice and row.loads_libraries:
+            return (
+                f"loads {enumerated(twice, _MAX_LIBRARIES)} itself, and stops where {name} has "
+                "the same: list only other libraries"
+            )
+        others: set[str] = set()  # of other releases
         for other in rows_of(self._given.node):
             others.update(other.libraries if other.name == row.name else ())
         for item in listed:
+            if item in row.libraries:
+                continue
             meant = near(item, row.libraries)
-            if item not in row.libraries and (item in others or meant is not None):
+            if item in others or meant is not None:
                 guess = f"; did you mean {quoted(meant)}?" if meant is not None else ""
                 return f"stops: {self._release.title()} has no library {quoted(item)}{guess}"
         return ""
@@ -591,16 +614,16 @@ def _beyond(row: ParameterRow, value: Any) -> str:
         return f"needs {enumerated([*map(_shown, row.one_of)], word='or')}, and stops"
     if isinstance(value, bool) or not isinstance(value, int | float):
         return ""
-    needed = ""
-    if row.above is not None and value <= row.above:
-        needed = f"more than {row.above:g}"
-    elif row.below is not None and value >= row.below:
-        needed = f"less than {row.below:g}"
-    elif row.lower is not None and value < row.lower:
-        needed = f"at least {row.lower:g}"
-    elif row.upper is not None and value > row.upper:
-        needed = f"at most {row.upper:g}"
-    return f"needs {needed}, and stops" if needed else ""
+    bounds = (
+        (row.above, operator.le, "more than"),
+        (row.below, operator.ge, "less than"),
+        (row.lower, operator.lt, "at least"),
+        (row.upper, operator.gt, "at most"),
+    )
+    for bound, is_beyond, words in bounds:
+        if bound is not None and is_beyond(value, bound):
+            return f"needs {words} {bound:g}, and stops"
+    return ""
 
 
 def _beyond_list(row: ParameterRow, value: Sequence[Any]) -> str:

@@ -64,24 +64,21 @@ _NOT_LISTS = ("plugin_lib_names",)
 
 def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what parameter files have for nodes, what own nodes declare, and lists of plugins."""
-    files_of_bridges = bridge_files(workspace)
-    for path, tree in workspace.installed.yaml.items():
-        if isinstance(tree, YamlFault) and path not in files_of_bridges:
-            is_certain = path in workspace.parameters.files
-            is_of_opencv = not is_certain and workspace.folder.begins_with(path, _OF_OPENCV)
-            if is_of_opencv or workspace.folder.begins_with(path, LFS_POINTER):
-                continue
-            yield Mismatch(
-                PARAMETER_FILE, f"this is not YAML: {tree}", tree.location, is_certain=is_certain
-            )
-    for path, nodes in workspace.parameters.files.items():
+    yield from _unreadable_files(workspace)
+    for _ in workspace.parameters.files:
         yield Compared("parameters")
-        yield from _file_given(workspace, path, nodes)
-    yield from _controllers_given(workspace)
+    for path in _files_of_controllers(workspace):
+        if isinstance(workspace.installed.yaml.get(path), YamlNode):
+            yield Compared("parameters")
+    for tree in _parameter_trees(workspace):
+        yield from _misplaced_keys(tree)
+    for path, nodes in workspace.parameters.files.items():
+        yield from _sections_of_others(workspace, path, nodes)
     for package, node in workspace.launches.nodes:
         own_node = workspace.code.own_node(node)
         if own_node is not None:
-            yield from _declared(workspace, package, node, own_node)
+            yield from _declared(node, own_node)
+            yield from _given(workspace, package, node, own_node)
     yield from _without_time(workspace)
     for path in workspace.parameters.files:
         yield from _filters(workspace.installed.yaml.get(path))
@@ -89,6 +86,57 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
         yield from _robot_as_text(workspace, package, node)
         yield from _robot_as_argument(workspace, package, node)
     yield from _plugins(workspace)
+
+
+def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield installed YAML files that cannot be parsed, and aliases in parameter files, which rcl
+    refuses.
+
+    That a file is not YAML is certain to be a mistake where a node gets it. Files of OpenCV and
+    those that Git LFS has not fetched are no YAML of ROS 2, and those of bridges are compared by
+    the rules of bridges.
+    """
+    files_of_bridges = bridge_files(workspace)
+    for path, tree in workspace.installed.yaml.items():
+        if not isinstance(tree, YamlFault) or path in files_of_bridges:
+            continue
+        is_given = path in workspace.parameters.files
+        is_of_opencv = not is_given and workspace.folder.begins_with(path, _OF_OPENCV)
+        if not is_of_opencv and not workspace.folder.begins_with(path, LFS_POINTER):
+            message = f"this is not YAML: {tree}"
+            yield Mismatch(PARAMETER_FILE, message, tree.location, is_certain=is_given)
+    for parameters in _parameter_trees(workspace):
+        alias = first_alias(parameters.source)
+        if alias is not None:
+            name, at = alias
+            message = (
+                f"ROS 2 reads no aliases in parameter files: write the value in place of *{name}"
+            )
+            yield Mismatch(PARAMETER_FILE, message, at)
+
+
+def _parameter_trees(workspace: Workspace) -> Iterator[YamlNode]:
+    """Yield the parameter files that nodes or controllers get. What components get, to which a
+    container gives its own files, is not evaluated.
+    """
+    paths = []
+    for path, nodes in workspace.parameters.files.items():
+        if not _has_container(nodes):
+            paths.append(path)
+    for path in (*paths, *_files_of_controllers(workspace)):
+        tree = workspace.installed.yaml.get(path)
+        if isinstance(tree, YamlNode):
+            yield tree
+
+
+def _has_container(nodes: Sequence[StartedNode]) -> bool:
+    return any(package_row(node.package).holds_nodes for node in nodes)
+
+
+def _files_of_controllers(workspace: Workspace) -> list[str]:
+    """Return the files that only controllers are given."""
+    files = workspace.parameters.controller_files.difference(workspace.parameters.files)
+    return sorted(files)
 
 
 def _plugins(workspace: Workspace) -> Iterator[Fact]:
@@ -135,54 +183,70 @@ def _is_given_alone(workspace: Workspace, path: str) -> bool:
     return False
 
 
-def _file_given(workspace: Workspace, path: str, nodes: Sequence[StartedNode]) -> Iterator[Fact]:
+def _sections_of_others(
+    workspace: Workspace, path: str, nodes: Sequence[StartedNode]
+) -> Iterator[Mismatch]:
     """Yield that a parameter file has nothing for a node that is given it, but for a node that
     is not.
+
+    Nothing is said where a container gets the file, which it gives to its components, or where the
+    name of a node that gets it is not known. A section with the name that its program gives the
+    node is said of that name. Without a similar name, the section may be that of a node which is
+    not in the workspace.
     """
     tree = workspace.installed.yaml.get(path)
-    if not isinstance(tree, YamlNode):
+    names = [name for name in map(workspace.code.name_of, nodes) if name is not None]
+    if not isinstance(tree, YamlNode) or _has_container(nodes) or len(names) < len(nodes):
         return
-    # A container gives the file to the components that are loaded into it.
-    if any(package_row(node.package).holds_nodes for node in nodes):
-        return
-    yield from _misplaced(tree)
     sections = {keys[-1].rpartition("/")[2]: keys for keys, _ in sections_in(tree) if keys}
-    names = [workspace.code.name_of(node) for node in nodes]
-    known_names = [name for name in names if name is not None]
-    if len(known_names) < len(nodes):
-        return  # any section may be theirs
-    unread = _unread_sections(workspace, sections, known_names)
-    patterns = [key for key in sections if _WILDCARD.search(key)]
-    workspace.charge(len(known_names) * (1 + len(patterns)))
-    lacking = set()
-    for name in known_names:
-        if name not in sections and not any(fnmatchcase(name, key) for key in patterns):
-            lacking.add(name)
-    if not lacking or not unread:
-        return
-    is_passed = path in workspace.installed.passed_files
-    keys = keys_of_sections(tree)
-    for node, name in zip(nodes, known_names, strict=True):
-        workspace.charge(len(keys))
-        if key_of_program_name(workspace, node, keys) is not None:
-            continue  # that is said for the name of its program
+    unread = _unread_sections(workspace, sections, names)
+    lacking = _without_section(workspace, sections, names)
+    is_only_pair = len(unread) == len(lacking) == 1
+    for node, name in zip(nodes, names, strict=True) if unread else ():
+        if name not in lacking or _is_renamed(workspace, tree, node):
+            continue
         workspace.charge(cost_of_guess(len(unread)))
         meant = near(name, unread)
-        is_known = (
-            workspace.package_of(node) is not None or "frames" in package_row(node.package).without
-        )
-        # Without a similar name, the sections may be those of nodes that are not in the workspace.
-        if name not in lacking or (meant is None and (is_passed or not is_known)):
+        if meant is None and _may_read_another(workspace, path, node):
             continue
         key = meant or unread[0]
         at = tree.key_location(*sections[key])
         message = (
             f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
         )
-        is_only_pair = len(unread) == len(lacking) == 1
         renamed = name if meant is not None or is_only_pair else None
         either = corrections(key, at, renamed, node.location)
         yield Mismatch(PARAMETER_NODE, message, at, node.location, corrections=either)
+
+
+def _is_renamed(workspace: Workspace, tree: YamlNode, node: StartedNode) -> bool:
+    """Return whether a file has a section for a node under the name that its program gives it."""
+    keys = keys_of_sections(tree)
+    workspace.charge(len(keys))
+    return key_of_program_name(workspace, node, keys) is not None
+
+
+def _may_read_another(workspace: Workspace, path: str, node: StartedNode) -> bool:
+    """Return whether a section of a file may be that of a node which is not known: of the launch
+    file to which the file is passed, or one inside of a program of another package.
+    """
+    if path in workspace.installed.passed_files:
+        return True
+    is_own = workspace.package_of(node) is not None
+    return not is_own and "frames" not in package_row(node.package).without
+
+
+def _without_section(
+    workspace: Workspace, sections: Iterable[str], names: Sequence[str]
+) -> set[str]:
+    """Return the names of nodes for which a file has no section, and no pattern of their names."""
+    patterns = [key for key in sections if _WILDCARD.search(key)]
+    workspace.charge(len(names) * (1 + len(patterns)))
+    lacking = set()
+    for name in set(names).difference(sections):
+        if not any(fnmatchcase(name, key) for key in patterns):
+            lacking.add(name)
+    return lacking
 
 
 def _unread_sections(
@@ -203,78 +267,57 @@ def _unread_sections(
     return unread
 
 
-def _controllers_given(workspace: Workspace) -> Iterator[Fact]:
-    """Yield what is misplaced in files that only controllers are given."""
-    for path in sorted(
-        workspace.parameters.controller_files.difference(workspace.parameters.files)
-    ):
-        tree = workspace.installed.yaml.get(path)
-        if isinstance(tree, YamlNode):
-            yield Compared("parameters")
-            yield from _misplaced(tree)
-
-
-def _misplaced(tree: YamlNode) -> Iterator[Fact]:
-    """Yield aliases, values that are not below ros__parameters, and ros__parameters inside of
-    ros__parameters.
+def _misplaced_keys(tree: YamlNode) -> Iterator[Mismatch]:
+    """Yield values of a parameter file that are not below ros__parameters, such keys that are
+    misspelt, and those inside of other ros__parameters.
     """
-    alias = first_alias(tree.source)
-    if alias is not None:
-        name, at = alias
-        yield Mismatch(
-            PARAMETER_FILE,
-            f"ROS 2 reads no aliases in parameter files: write the value in place of *{name}",
-            at,
-        )
     waiting: list[tuple[str, YamlNode, bool]] = [("", tree, False)]
     visits = {True: Visits(), False: Visits()}  # by whether it is below a key ros__parameters
     while waiting:
         name, node, is_below = waiting.pop()
         if not visits[is_below].enters(node):
             continue
-        if isinstance(node.value, dict) and node.value:
-            for key, inner in node.value.items():
-                if key == PARAMETERS and is_below:
-                    message = f"{name}: ros__parameters is inside of other ros__parameters"
-                    yield Mismatch(PARAMETER_KEY, message, node.key_location(key))
-                elif not is_below and is_misspelt_key(key, inner):
-                    message = (
-                        f"{name}: rcl does not know the key {key!r}; did you mean {PARAMETERS!r}?"
-                    )
-                    at = node.key_location(key)
-                    yield Mismatch(
-                        PARAMETER_KEY, message, at, corrections=corrections(key, at, PARAMETERS)
-                    )
-                else:
-                    waiting.append((key, inner, is_below or key == PARAMETERS))
-        elif not is_below and name:
-            message = f"{name} is not below a key ros__parameters, so rcl cannot read the file"
-            yield Mismatch(PARAMETER_KEY, message, node.location)
+        if not isinstance(node.value, dict) or not node.value:
+            if name and not is_below:
+                message = f"{name} is not below a key ros__parameters, so rcl cannot read the file"
+                yield Mismatch(PARAMETER_KEY, message, node.location)
+            continue
+        for key, inner in node.value.items():
+            mismatch = _misplaced_key(name, node, key, is_below=is_below)
+            if mismatch is not None:
+                yield mismatch
+            else:
+                waiting.append((key, inner, is_below or key == PARAMETERS))
 
 
-def _declared(
-    workspace: Workspace, package: Package, node: StartedNode, own_node: NodeFacts
-) -> Iterator[Fact]:
-    """Yield the parameters that a node of the workspace declares, reads and is given."""
+def _misplaced_key(name: str, node: YamlNode, key: str, *, is_below: bool) -> Mismatch | None:
+    """Return what is wrong with a key of a mapping, which has a name."""
+    if key == PARAMETERS and is_below:
+        message = f"{name}: ros__parameters is inside of other ros__parameters"
+        return Mismatch(PARAMETER_KEY, message, node.key_location(key))
+    inner = node.get(key)
+    if not is_below and inner is not None and is_misspelt_key(key, inner):
+        message = f"{name}: rcl does not know the key {key!r}; did you mean {PARAMETERS!r}?"
+        at = node.key_location(key)
+        either = corrections(key, at, PARAMETERS)
+        return Mismatch(PARAMETER_KEY, message, at, corrections=either)
+    return None
+
+
+def _declared(node: StartedNode, own_node: NodeFacts) -> Iterator[Fact]:
+    """Yield the parameters that a node of the workspace declares and reads."""
     owner = f"{node.package}/{node.executable}"
     for parameter in own_node.parameters:
+        at = parameter.location
         if parameter.name is None:
             yield Open("parameter", owner)
         elif parameter.is_declared:
-            yield Definition("parameter", parameter.name, parameter.location, owner)
+            yield Definition("parameter", parameter.name, at, owner)
+        else:
+            is_optional = not parameter.is_needed
+            yield Use("parameter", parameter.name, at, "get_parameter", owner, is_optional)
     for name in _OF_EVERY_NODE:
         yield Definition("parameter", name, own_node.location, owner)
-    package_of_node = workspace.package_of(node)
-    if package_of_node is not None:
-        nodes = workspace.code.by_package[package_of_node.name]
-        if own_node.doubts or nodes.has_loose_declarations:
-            yield Open("parameter", owner)
-    for parameter in own_node.parameters:
-        if parameter.name is not None and not parameter.is_declared:
-            is_optional = not parameter.is_needed
-            at = parameter.location
-            yield Use("parameter", parameter.name, at, "get_parameter", owner, is_optional)
-    yield from _given(workspace, package, node, own_node)
 
 
 def _given(
@@ -282,21 +325,32 @@ def _given(
 ) -> Iterator[Fact]:
     """Yield the parameters that a node of the workspace is given."""
     owner = f"{node.package}/{node.executable}"
-    if workspace.code.name_of(node) is None and any(it.path for it in node.parameters or ()):
+    if _may_declare_more(workspace, node, own_node):
+        yield Open("parameter", owner)
+    name_of_node = workspace.code.name_of(node)
+    if name_of_node is None and any(given.path for given in node.parameters or ()):
         yield Undecided("parameters", f"the name of {node.executable} is computed")
         return
-    given = workspace.parameters.read_given(package, node, workspace.code.name_of(node) or "")
+    given = workspace.parameters.read_given(package, node, name_of_node or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
     # What a file gives to every node, or to another of the same name, need not be declared by this.
     shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
+    said = f"the node {name_of_node or node.executable!r}"
     for name, value in given.values.items():
         if value.location not in shared and not name.startswith("qos_overrides."):
-            said = f"the node {workspace.code.name_of(node) or node.executable!r}"
             yield Use("parameter", name, value.named_at or value.location, said, owner)
     yield from _types_given(own_node, given.values)
-    if not given.unknown and node.arguments == () and workspace.code.name_of(node) is not None:
-        yield from _not_given(workspace, node, own_node, given.values)
+    is_all = not given.unknown and node.arguments == () and name_of_node is not None
+    yield from _not_given(workspace, node, own_node, given.values if is_all else None)
+
+
+def _may_declare_more(workspace: Workspace, node: StartedNode, own_node: NodeFacts) -> bool:
+    """Return whether a node of the workspace may declare parameters that are not read."""
+    package = workspace.package_of(node)
+    assert package is not None  # that has the code of the node
+    nodes = workspace.code.by_package[package.name]
+    return bool(own_node.doubts) or nodes.has_loose_declarations
 
 
 def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Location]:
@@ -307,28 +361,35 @@ def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Locat
         if (given.node.package, given.node.executable) == (node.package, node.executable):
             continue
         workspace.charge(len(given.values))
-        other = workspace.code.own_node(given.node)
-        is_known = other is not None and not other.doubts
-        declared = {it.name for it in other.parameters} if other is not None else set()
+        declared = _declared_names(workspace, given.node)
         for name, value in given.values.items():
-            may_be_declared = not is_known or not declared.isdisjoint({name, None})
+            may_be_declared = None in declared or name in declared
             if may_be_declared and value.location.path in workspace.installed.yaml:
                 yield value.location
+
+
+def _declared_names(workspace: Workspace, node: StartedNode) -> set[str | None]:
+    """Return the parameters that a node declares; with None where not all are known."""
+    facts = workspace.code.own_node(node)
+    if facts is None or facts.doubts:
+        return {None}
+    return {parameter.name for parameter in facts.parameters}
 
 
 def _not_given(
     workspace: Workspace,
     node: StartedNode,
     own_node: NodeFacts,
-    values: Mapping[str, ParameterValue],
+    values: Mapping[str, ParameterValue] | None,
 ) -> Iterator[Mismatch]:
     """Yield the parameters that a node declares without a value and reads, and is not given: rclpy
-    and rclcpp raise ParameterUninitializedException.
+    and rclcpp raise ParameterUninitializedException. Nothing is said where `values` is None: the
+    node may get more than is known.
     """
     read = {it.name for it in own_node.parameters if not it.is_declared and it.is_needed}
-    for parameter in own_node.parameters:
+    for parameter in own_node.parameters if values is not None else ():
         name = parameter.name
-        if parameter.is_unset and name in read and name not in values:
+        if parameter.is_unset and name in read and name not in (values or ()):
             named = workspace.code.name_of(node) or node.executable
             message = (
                 f"the node {named!r} stops without a value of the parameter {name!r}, which it "
@@ -440,21 +501,24 @@ def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Ite
         above, node = waiting.pop()
         if not isinstance(node.value, dict) or not visits.enters(node):
             continue
-        sections: dict[str, Location] = {}
         for key, inner in node.value.items():
             waiting.append((f"{above}/{key.strip('/')}", inner))
-            if isinstance(inner.value, dict):
-                sections[key] = inner.location
-        for key, inner in node.value.items():
-            is_list = key in _LISTS or key.endswith("_plugins")
-            if not sections or not is_list or key in _NOT_LISTS:
-                continue
-            owner = f"{tree.source.path}:{inner.location.line}"
-            for name, at in sections.items():
-                yield Definition("plugin section", name, at, owner)
-            for name, at in _listed(key, inner):
-                if (above, name) not in elsewhere:
-                    yield Use("plugin section", name, at, key, owner)
+        for fact in _lists_of_plugins(tree.source.path, node.value):
+            if not isinstance(fact, Use) or (above, fact.name) not in elsewhere:
+                yield fact
+
+
+def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[Definition | Use]:
+    """Yield the sections of plugins in a mapping, and the entries of its lists of plugins."""
+    sections = {key: node for key, node in mapping.items() if isinstance(node.value, dict)}
+    for key, inner in mapping.items() if sections else ():
+        if key in _NOT_LISTS or not (key in _LISTS or key.endswith("_plugins")):
+            continue
+        owner = f"{path}:{inner.location.line}"
+        for name, node in sections.items():
+            yield Definition("plugin section", name, node.location, owner)
+        for name, at in _listed(key, inner):
+            yield Use("plugin section", name, at, key, owner)
 
 
 def _listed(key: str, node: YamlNode) -> Iterator[tuple[str, Location]]:
@@ -475,19 +539,25 @@ def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Iterator[Fac
     if not values:
         return
     names = {_SEPARATORS.sub("::", name): name for name in plugin_classes()}
-    first = 0  # of the releases that the file may be for: it has a name that none before has
-    for value in values:
-        having = releases_with("plugin", value.node.text or "")
-        if any(release in having for release in releases or having):
-            first = max(first, RELEASES.index(having[0]))
+    possible = _releases_of_plugins([value.node.text or "" for value in values], releases)
     for value in values:
         text = value.node.text or ""
         meant = names.get(_SEPARATORS.sub("::", text))
         if meant is None or meant == text:
             continue
-        if any(release in RELEASES[first:] for release in releases_with("plugin", text)):
+        if not set(possible).isdisjoint(releases_with("plugin", text)):
             yield Compared("parameters")  # of another release, at most
             continue
         message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
         at = value.node.location
         yield Mismatch(PLUGIN_NAME, message, at, corrections=corrections(text, at, meant))
+
+
+def _releases_of_plugins(names: Sequence[str], releases: Collection[Release]) -> Sequence[Release]:
+    """Return the releases that a file may be for: it has a plugin that none before has."""
+    first = 0
+    for name in names:
+        having = releases_with("plugin", name)
+        if any(release in having for release in releases or having):
+            first = max(first, RELEASES.index(having[0]))
+    return RELEASES[first:]

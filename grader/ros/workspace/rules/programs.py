@@ -136,17 +136,17 @@ def _why_no_program(package: Package, name: str) -> _MissingProgram:
     installed = []
     if setup is not None:
         installed = [*setup.programs, *(copy.target for copy in setup.copies)]
-    for path in installed:
-        if path.rpartition("/")[2] != name:
-            continue
-        if path == f"{home}/{name}":
-            return _MissingProgram(
-                f"a build installs {name!r} without the right to execute it: write "
-                "install(PROGRAMS ...)"
-            )
-        return _MissingProgram(f"a build installs {name!r} as {path}, but ros2 run looks in {home}")
-    programs = [path for path in installed if path.startswith(f"{home}/")]
-    names = {*entries, *(path.rpartition("/")[2] for path in programs)}
+    paths = {path.rpartition("/")[2]: path for path in reversed(installed)}
+    if name in paths and paths[name] == f"{home}/{name}":
+        return _MissingProgram(
+            f"a build installs {name!r} without the right to execute it: write "
+            "install(PROGRAMS ...)"
+        )
+    if name in paths:
+        where = f"as {paths[name]}, but ros2 run looks in {home}"
+        return _MissingProgram(f"a build installs {name!r} {where}")
+    programs = {path.rpartition("/")[2] for path in installed if path.startswith(f"{home}/")}
+    names = programs.union(entries)
     return _missing_program(package.name, name, sorted(names))
 
 

@@ -100,7 +100,7 @@ def _elsewhere(edge: Edge, joint: Edge) -> Iterator[Mismatch]:
 
 
 def _cycles(edges: Sequence[Edge]) -> Iterator[Mismatch]:
-    """Yield the cycles of frames, each once."""
+    """Yield the cycles of frames, each once, at a transform that the robot does not have."""
     above = {edge.child: edge for edge in edges}
     seen: set[str] = set()
     for start in above:
@@ -110,11 +110,9 @@ def _cycles(edges: Sequence[Edge]) -> Iterator[Mismatch]:
             seen.add(frame)
             path.append(frame)
             frame = above[frame].parent
-        if frame not in path:
-            continue
-        cycle = path[path.index(frame) :]
-        in_cycle = [above[name] for name in cycle]
-        published = [edge for edge in in_cycle if edge.source != "robot"] or in_cycle
-        names = " -> ".join(quoted(name) for name in [*reversed(cycle), cycle[-1]])
-        message = f"the frames {names} are a cycle: tf2 has no transform of them"
-        yield Mismatch(TRANSFORM_CYCLE, message, published[0].location)
+        if frame in path:
+            cycle = path[path.index(frame) :]
+            names = " -> ".join(map(quoted, [*reversed(cycle), cycle[-1]]))
+            message = f"the frames {names} are a cycle: tf2 has no transform of them"
+            at = min((above[name] for name in cycle), key=lambda edge: edge.source == "robot")
+            yield Mismatch(TRANSFORM_CYCLE, message, at.location)

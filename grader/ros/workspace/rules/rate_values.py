@@ -129,10 +129,14 @@ def _scan_sources(workspace: Workspace) -> Iterator[tuple[str, YamlNode]]:
     """Yield the sections of costmaps' observation sources that are scans."""
     for _, tree in workspace.installed.trees:
         for _, section in sections_in(tree):
-            for layer in [node for _, node in section.pairs]:
-                listed = layer.get(_SOURCES)
-                for name in (listed.text or "").split() if listed is not None else ():
-                    source = layer.get(name)
-                    kind = source.get("data_type") if source is not None else None
-                    if source is not None and kind is not None and kind.text == _SCAN:
-                        yield name, source
+            for _, layer in section.pairs:
+                yield from _scans_of(layer)
+
+
+def _scans_of(layer: YamlNode) -> Iterator[tuple[str, YamlNode]]:
+    """Yield the observation sources of a layer that are scans, with their names."""
+    listed = layer.get(_SOURCES)
+    for name in (listed.text or "").split() if listed is not None else ():
+        source, kind = layer.get(name), layer.get(name, "data_type")
+        if source is not None and kind is not None and kind.text == _SCAN:
+            yield name, source

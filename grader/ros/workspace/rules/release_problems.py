@@ -83,7 +83,7 @@ def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
             yield "controller", types[controller.name], controller.location, ""
     for _, tree in workspace.installed.trees:
         for value in values_in(tree):
-            if value.keys[-1:] and value.keys[-1] in _PLUGIN_KEYS:
+            if value.keys and value.keys[-1] in _PLUGIN_KEYS:
                 yield "plugin", value.node.text or "", value.node.location, ""
         for keys, section in sections_in(tree):
             name = keys[-1].rpartition("/")[2] if keys else ""
@@ -125,10 +125,9 @@ def _topics(workspace: Workspace) -> Iterator[tuple[str, Location]]:
                 yield topic, robot.place(element)
     for _, node in workspace.launches.nodes:
         for names in node.remaps or ():
-            for topic in names:
-                yield topic, node.location
-        own_node = workspace.code.own_node(node)
-        for endpoint in own_node.endpoints if own_node is not None else ():
+            yield from ((topic, node.location) for topic in names)
+        facts = workspace.code.own_node(node)
+        for endpoint in facts.endpoints if facts is not None else ():
             yield node.topic(endpoint.name or "") or "", endpoint.location
 
 

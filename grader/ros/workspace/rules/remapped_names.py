@@ -1,9 +1,10 @@
 """Remappings of names that no node has, and how many topics of own code are compared."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from grader.base.text import enumerated
 from grader.ros.launch.launch_model import StartedNode
+from grader.ros.nodes.node_facts import EndpointKind
 from grader.ros.workspace.graph.bridge_rows import bridge_rows
 from grader.ros.workspace.graph.code_ends import END_SOURCES, opened_by
 from grader.ros.workspace.graph.graph import Graph, graph_of
@@ -17,12 +18,7 @@ def remapping_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the names that nodes have, and those that remappings of one node alone replace; and how
     many topics are compared.
     """
-    owners: dict[tuple[str, ...], list[StartedNode]] = {}  # of each rule the first nodes with it
-    for _, node in workspace.launches.nodes:
-        for rule in node.remaps or ():
-            of_rule = owners.setdefault(rule, [])
-            if len(of_rule) < 2 and not any(node is owner for owner in of_rule):
-                of_rule.append(node)
+    owners = _owners_of_rules(workspace)
     read: set[object] = set()
     for _, node in workspace.launches.launched:
         key = (node.package, node.executable, node.location, node.remaps)
@@ -33,6 +29,17 @@ def remapping_facts(workspace: Workspace) -> Iterator[Fact]:
     yield _count(graph_of(workspace))
 
 
+def _owners_of_rules(workspace: Workspace) -> Mapping[tuple[str, ...], list[StartedNode]]:
+    """Return of each remapping the first two nodes that have it."""
+    owners: dict[tuple[str, ...], list[StartedNode]] = {}
+    for _, node in workspace.launches.nodes:
+        for rule in node.remaps or ():
+            of_rule = owners.setdefault(rule, [])
+            if len(of_rule) < 2 and not any(node is owner for owner in of_rule):
+                of_rule.append(node)
+    return owners
+
+
 def _remappings(
     workspace: Workspace, node: StartedNode, rules: Sequence[tuple[str, ...]]
 ) -> Iterator[Fact]:
@@ -41,17 +48,17 @@ def _remappings(
     if facts is None or node.remaps is None:
         return
     owner = f"{node.package}/{node.executable} {node.location.file_and_line}"
-    names = [(endpoint.name, endpoint.location) for endpoint in facts.endpoints]
+    for endpoint in facts.endpoints:
+        if endpoint.name is not None:
+            yield Definition("topic", _bare(endpoint.name), endpoint.location, owner)
     is_open = bool(facts.doubts)
     for opened in opened_by(workspace, node._replace(remaps=(), namespace="")):
-        is_open = is_open or not opened.is_known
         if opened.is_known:
-            names.append((opened.name, opened.location))
+            yield Definition("topic", _bare(opened.name), opened.location, owner)
+        else:
+            is_open = True
     if is_open:
         yield Open("topic", owner)
-    for name, at in names:
-        if name is not None:
-            yield Definition("topic", _bare(name), at, owner)
     for rule in rules:
         name = _bare(rule[0])
         if not name.startswith("__") and ":" not in name:
@@ -68,25 +75,33 @@ def _count(graph: Graph) -> Counted:
     """Return how many topics of own code have another end, which a node, a controller, a
     bridge or a well-known program opens; and why not all are known.
     """
-    published = {end.name for end in graph.of_kind("publisher", sources=END_SOURCES)}
-    subscribed = {end.name for end in graph.of_kind("subscription", sources=END_SOURCES)}
-    for row in bridge_rows(graph.workspace):
-        if row.is_published:
-            published.add(f"/{row.ros}")
-        if row.is_read:
-            subscribed.add(f"/{row.ros}")
-    others = {"publisher": subscribed, "subscription": published}
-    ends = [end for end in graph.ends if end.source == "code" and end.kind in others]
-    known = [end for end in ends if end.is_known]
-    compared = sum(end.name in others[end.kind] for end in known)
-    computed = len(ends) - len(known)
+    ends = {"publisher": _names_opened(graph, "subscription")}
+    ends["subscription"] = _names_opened(graph, "publisher")
+    total, known, compared = 0, 0, 0
+    for end in graph.ends:
+        if end.source == "code" and end.kind in ends:
+            total += 1
+            known += end.is_known
+            compared += end.is_known and end.name in ends[end.kind]
     reasons = []
+    computed = total - known
     if computed:
         reasons.append(f"{computed} {'is' if computed == 1 else 'are'} computed")
     unread = _unread_programs(graph.workspace)
     if unread:
         reasons.append(f"the source of {enumerated(unread, _MAX_NAMED)} is not read")
-    return Counted("topics", compared, len(ends), ", and ".join(reasons))
+    return Counted("topics", compared, total, ", and ".join(reasons))
+
+
+def _names_opened(graph: Graph, kind: EndpointKind) -> set[str]:
+    """Return the topics that something opens in one way, also in rows of bridges that nothing
+    starts.
+    """
+    names = {end.name for end in graph.of_kind(kind, sources=END_SOURCES)}
+    for row in bridge_rows(graph.workspace):
+        if row.is_published if kind == "publisher" else row.is_read:
+            names.add(f"/{row.ros}")
+    return names
 
 
 def _unread_programs(workspace: Workspace) -> list[str]:

@@ -4,6 +4,7 @@ launch file gives it another one.
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
+from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import keys_of_sections
@@ -23,28 +24,34 @@ _Keys = Mapping[str, tuple[str, ...]]  # of the sections of a file, by the full 
 def renamed_node_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the sections named after a node's name in its program, where the launch file renames
     the node: rcl compares the new name, so the node gets none of them.
+
+    What components get is not evaluated; a container gives them the files that it gets itself. The
+    nodes of a launch file to which a file is passed may read its sections.
     """
-    given: dict[tuple[str, int], list[StartedNode]] = {}
-    for launch, node in workspace.launches.launched:
-        for path in dict.fromkeys(workspace.parameters.files_given(node)):
-            given.setdefault((path, launch), []).append(node)
-    # What components get is not evaluated; a container gives them the files that it gets itself.
     with_components: set[int] = set()
     for launch, (_, root) in enumerate(workspace.launches.roots):
         if any(component.has_parameters for component in root.components):
             with_components.add(launch)
-    for (path, launch), nodes in given.items():
+    for (path, launch), nodes in _nodes_by_file(workspace).items():
         tree, others = workspace.installed.yaml.get(path), workspace.parameters.files[path]
         workspace.charge(len(others))
         has_container = any(package_row(node.package).holds_nodes for node in others)
-        if not isinstance(tree, YamlNode) or launch in with_components or has_container:
+        is_open = has_container or path in workspace.installed.passed_files
+        if not isinstance(tree, YamlNode) or launch in with_components or is_open:
             continue
-        if path in workspace.installed.passed_files:
-            continue  # whose nodes may read the section
         elsewhere = _names_read(workspace, others)
         if with_components:
             elsewhere.add(None)
         yield from _unread_sections(workspace, tree, nodes, elsewhere)
+
+
+def _nodes_by_file(workspace: Workspace) -> Mapping[tuple[str, int], list[StartedNode]]:
+    """Return the nodes that get each parameter file in each launch file."""
+    given: dict[tuple[str, int], list[StartedNode]] = {}
+    for launch, node in workspace.launches.launched:
+        for path in dict.fromkeys(workspace.parameters.files_given(node)):
+            given.setdefault((path, launch), []).append(node)
+    return given
 
 
 def _unread_sections(
@@ -69,16 +76,23 @@ def _unread_sections(
             unread.append((node, key))
     for node, key in unread:
         yield Compared("parameters")
-        old, name, at = key.rpartition("/")[2], node.node_name or "", tree.key_location(*keys[key])
-        is_read_elsewhere = old in elsewhere
-        advice = "add a section" if is_read_elsewhere else "rename the section to"
-        message = (
-            f"the launch file names this node {name!r}, so it ignores the section {quoted(old)}, "
-            f"its name in its program: {advice} {quoted(name)}"
-        )
-        is_only_one = len(unread) == 1 and not is_read_elsewhere
-        either = corrections(old, at, name if is_only_one else None)
-        yield Mismatch(NODE_SECTION, message, at, node.location, node.when is True, either)
+        at = tree.key_location(*keys[key])
+        is_read_elsewhere = key.rpartition("/")[2] in elsewhere
+        yield _unread_section(node, key, at, is_only=len(unread) == 1, is_read=is_read_elsewhere)
+
+
+def _unread_section(
+    node: StartedNode, key: str, at: Location, *, is_only: bool, is_read: bool
+) -> Mismatch:
+    """Return that a node ignores a section, which another node of another launch file may read."""
+    old, name = key.rpartition("/")[2], node.node_name or ""
+    advice = "add a section" if is_read else "rename the section to"
+    message = (
+        f"the launch file names this node {name!r}, so it ignores the section {quoted(old)}, "
+        f"its name in its program: {advice} {quoted(name)}"
+    )
+    either = corrections(old, at, name if is_only and not is_read else None)
+    return Mismatch(NODE_SECTION, message, at, node.location, node.when is True, either)
 
 
 def _names_read(workspace: Workspace, nodes: Sequence[StartedNode]) -> set[str | None]:

@@ -14,7 +14,7 @@ from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.package.package import Package
 from grader.ros.workspace.graph.started_controllers import Controller, defined_controllers
-from grader.ros.workspace.model.launches import MANAGER, SPAWNERS
+from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Fact, Mismatch, Open, Use, corrections
 from grader.ros.workspace.rules.rule_table import (
@@ -30,11 +30,11 @@ _MAX_CONTROLLERS = 3  # in a message
 
 def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the controllers that spawners load, and what keeps controllers from being loaded."""
-    controllers = list(defined_controllers(workspace))
     misspelt = list(_misspelt_managers(workspace))
     if misspelt:
         yield from misspelt
         return
+    controllers = list(defined_controllers(workspace))
     if not controllers:
         yield from _no_controllers(workspace)
         return
@@ -44,10 +44,8 @@ def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
     if not workspace.robots.has_controller_manager:
         yield Open("controller")
     for _, node in workspace.launches.nodes:
-        if not _is_spawner(node) or node.arguments is None:
-            continue
-        if _is_defined_by_files(workspace, node.arguments):
-            for name in _named(node.arguments):
+        if _is_spawner(node) and _is_defined_by_files(workspace, node.arguments or ()):
+            for name in _named(node.arguments or ()):
                 yield Use("controller", name, node.location, "spawner")
             yield from _managers_named(workspace, node)
     for package, launch in workspace.launches.roots:
@@ -106,7 +104,7 @@ def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact
 
 
 def _is_manager(node: StartedNode) -> bool:
-    return node.executable == "ros2_control_node"
+    return node.executable == CONTROL_NODE
 
 
 def _without_type(
@@ -146,16 +144,21 @@ def _controllers_without_type(
     if given.unknown:
         return None, set()
     lacks_type: dict[str | None, bool] = {}  # by the names of the controllers that are started
-    for spawner in launch.nodes:
-        # In later releases, spawners hand on their own parameters.
-        is_plain = spawner.parameters == () and not _is_typed(spawner.arguments or ())
-        if not _is_spawner(spawner) or not spawner.when or not is_plain:
-            continue
-        for controller in controllers_of(spawner) or ():
-            own = workspace.parameters.read(package, controller, "")
-            has_type = "type" in own.values or f"{controller.node_name}.type" in given.values
-            lacks_type[controller.node_name] = not own.unknown and not has_type
+    for controller in _spawned_without_parameters(launch):
+        own = workspace.parameters.read(package, controller, "")
+        has_type = "type" in own.values or f"{controller.node_name}.type" in given.values
+        lacks_type[controller.node_name] = not own.unknown and not has_type
     return manager, {name for name, lacks in lacks_type.items() if lacks}
+
+
+def _spawned_without_parameters(launch: Launch) -> Iterator[StartedNode]:
+    """Yield the controllers of the spawners of a launch file that get no parameters and no type
+    themselves. In later releases, spawners hand on their own parameters.
+    """
+    for spawner in launch.nodes:
+        is_plain = spawner.parameters == () and not _is_typed(spawner.arguments or ())
+        if _is_spawner(spawner) and spawner.when and is_plain:
+            yield from controllers_of(spawner) or ()
 
 
 def _misspelt_managers(workspace: Workspace) -> Iterator[Mismatch]:

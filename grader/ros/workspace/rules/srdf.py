@@ -2,11 +2,11 @@
 collisions.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 
 from grader.base.text import quoted
-from grader.ros.urdf.model import Robot
+from grader.ros.urdf.model import Joint, Limit, Robot
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Definition, Fact, Mismatch, Open, Use, warning
 from grader.ros.workspace.rules.rule_table import (
@@ -14,60 +14,80 @@ from grader.ros.workspace.rules.rule_table import (
     SRDF_GROUP,
     SRDF_ROBOT,
     STATE_LIMITS,
+    DefinedKind,
 )
 from grader.ros.xml.parsing import XmlFile
 
 _LINKS = ("link1", "link2", "parent_link", "child_link", "base_link", "tip_link")
+_KINDS: Mapping[str, DefinedKind] = {
+    "joint": "joint",
+    "passive_joint": "joint",
+    "link": "link",
+}
 _ROUNDING = 1e-6
 _COMPUTED = (".srdf.xacro", ".srdf.xml.xacro")
 
 
 def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what SRDF files define and name, if a robot is known."""
-    robots, files = [found.robot for found in workspace.robots.known], workspace.texts.srdf_files
-    if not robots:
+    files = workspace.texts.srdf_files
+    if not workspace.robots.known:
         return
-    names = {file.root.get("name") for file in files}
-    is_only = (
-        len(robots) == 1 and not workspace.robots.may_be_others and robots[0].name not in names
-    )
-    computed = [path for path in workspace.tree.files if path.endswith(_COMPUTED)]
-    if computed or any("<xacro:" in file.source.text for file in files):
+    if _are_groups_computed(workspace):
         yield Open("group")
     for file in files:
         for group in file.root.iterchildren("group"):
             yield Definition("group", group.get("name", ""), file.location(group))
-        described = [robot for robot in robots if robot.name == file.root.get("name")]
-        robot = next(iter(described or robots))
-        if not described and not is_only:
-            continue  # it describes another robot
-        yield from _names(file)
-        yield from _other_robot(robot, file)
-        yield from _empty_groups(file)
-        yield from _states(robot, file)
-        yield from _neighbours(robot, file)
+        robot = _described_robot(workspace, file)
+        if robot is not None:
+            yield from _names(file)
+            yield from _other_robot(robot, file)
+            yield from _empty_groups(file)
+            yield from _states(robot, file)
+            yield from _neighbours(robot, file)
 
 
-def _names(file: XmlFile) -> Iterator[Fact]:
+def _are_groups_computed(workspace: Workspace) -> bool:
+    """Return whether xacro makes an SRDF file."""
+    if any(path.endswith(_COMPUTED) for path in workspace.tree.files):
+        return True
+    return any("<xacro:" in file.source.text for file in workspace.texts.srdf_files)
+
+
+def _described_robot(workspace: Workspace, file: XmlFile) -> Robot | None:
+    """Return the robot that a file describes: the one of its name, or the only one if no file has
+    its name; None where it is of another robot.
+    """
+    robots = [each.robot for each in workspace.robots.known]
+    for robot in robots:
+        if robot.name == file.root.get("name"):
+            return robot
+    if len(robots) > 1 or workspace.robots.may_be_others:
+        return None
+    names = {each.root.get("name") for each in workspace.texts.srdf_files}
+    return robots[0] if robots[0].name not in names else None
+
+
+def _names(file: XmlFile) -> Iterator[Use]:
+    """Yield the links, joints and groups that a file names."""
     root = file.root
-    virtual = {it.get("name") for it in root.iterchildren("virtual_joint")}
+    virtual = {each.get("name") for each in root.iterchildren("virtual_joint")}
     for element in root.iter("*"):
         if not isinstance(element.tag, str):
             continue
-        at, name = file.location(element), element.get("name", "")
-        said = f"<{element.tag}>"
+        at, said = file.location(element), f"<{element.tag}>"
         # The parent of a virtual joint is a frame of the world.
-        for key in [key for key in _LINKS if element.get(key)]:
-            yield Use("link", element.get(key, ""), at, f"{said} {key}")
-        if element.tag in ("joint", "passive_joint") and name and name not in virtual:
-            yield Use("joint", name, at, said)
-        if element.tag == "link" and name:
-            yield Use("link", name, at, said)
+        for key in _LINKS:
+            if element.get(key):
+                yield Use("link", element.get(key, ""), at, f"{said} {key}")
         for key in ("group", "parent_group"):
             if element.get(key):
                 yield Use("group", element.get(key, ""), at, f"{said} {key}")
-        if element.tag == "group" and element.getparent() is not root and name:
-            yield Use("group", name, at, said)
+        name = element.get("name", "")
+        is_group = element.tag == "group" and element.getparent() is not root
+        kind: DefinedKind | None = "group" if is_group else _KINDS.get(element.tag)
+        if kind is not None and name and not (kind == "joint" and name in virtual):
+            yield Use(kind, name, at, said)
 
 
 def _other_robot(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
@@ -98,12 +118,11 @@ def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
     """Yield positions in states of groups that are beyond the limits of their joints."""
     limits = {it.name: it.limit for it in robot.joints if it.type in ("revolute", "prismatic")}
     for element in file.root.iterfind("group_state/joint"):
-        name, limit = element.get("name", ""), limits.get(element.get("name", ""))
+        name = element.get("name", "")
+        limit = limits.get(name)
         with suppress(ValueError):
             value = float(element.get("value", ""))
-            if limit is not None and (
-                value < limit.lower - _ROUNDING or value > limit.upper + _ROUNDING
-            ):
+            if limit is not None and _is_beyond(value, limit):
                 message = (
                     f"<group_state>: {quoted(name)} is at {value:g}; its limits are "
                     f"{limit.lower:g} and {limit.upper:g}"
@@ -111,23 +130,28 @@ def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
                 yield Mismatch(STATE_LIMITS, message, file.location(element, "value"))
 
 
+def _is_beyond(value: float, limit: Limit) -> bool:
+    return value < limit.lower - _ROUNDING or value > limit.upper + _ROUNDING
+
+
 def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
     """Yield links that a joint connects and whose collisions are compared, where most such pairs
-    are disabled.
+    are disabled. It is wrong only if their shapes touch in some position, which is not computed.
     """
     disabled = set()
     for element in file.root.iterchildren("disable_collisions"):
         disabled.add(frozenset((element.get("link1"), element.get("link2"))))
     solid = {link.name for link in robot.links if link.collisions}
-    pairs = [(joint.parent, joint.child) for joint in robot.joints]
-    pairs = [pair for pair in pairs if solid.issuperset(pair)]
-    compared = [pair for pair in pairs if frozenset(pair) not in disabled]
-    if 2 * len(compared) >= len(pairs):
-        return
-    for parent, child in compared:
+    compared: list[Joint] = []
+    count = 0
+    for joint in robot.joints:
+        pair = frozenset((joint.parent, joint.child))
+        if solid.issuperset(pair):
+            count += 1
+            compared += [joint] if pair not in disabled else []
+    for joint in compared if 2 * len(compared) < count else ():
         message = (
-            f"a joint connects {quoted(parent)} and {quoted(child)}, but <disable_collisions> "
-            "does not name them"
+            f"a joint connects {quoted(joint.parent)} and {quoted(joint.child)}, but "
+            "<disable_collisions> does not name them"
         )
-        # Wrong only if their shapes touch in some position, which is not computed.
         yield warning(DISABLED_PAIRS, message, file.location(file.root))

@@ -3,6 +3,7 @@ another transport, displays of RViz that ask for more, and programs that send an
 """
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 from grader.base.text import quoted
 from grader.ros.known.package_tables import transport_types
@@ -75,18 +76,18 @@ def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Misma
     for each in publishers:
         offered.setdefault(each.name, set()).add(each.endpoint.qos.reliability)
     for package in workspace.packages:
-        for path in package.rviz_files:
-            for display in package.rviz(path).displays:
-                policy = display.node.get("Topic", "Reliability Policy")
-                topic = display.node.get("Topic", "Value")
-                if policy is None or topic is None or policy.text != "Reliable":
-                    continue
-                if display.enabled and offered.get(topic.text or "") == {"best_effort"}:
-                    message = (
-                        f"the display {quoted(display.name)} asks for reliable messages of "
-                        f"{topic.text}, which are published as best effort: it stays empty"
-                    )
-                    yield warning(DISPLAY_QUALITY, message, policy.location)
+        files = [package.rviz(path) for path in package.rviz_files]
+        for display in chain.from_iterable(file.displays for file in files):
+            policy = display.node.get("Topic", "Reliability Policy")
+            topic = display.node.get("Topic", "Value")
+            if policy is None or topic is None or not display.enabled:
+                continue
+            if policy.text == "Reliable" and offered.get(topic.text or "") == {"best_effort"}:
+                message = (
+                    f"the display {quoted(display.name)} asks for reliable messages of "
+                    f"{topic.text}, which are published as best effort: it stays empty"
+                )
+                yield warning(DISPLAY_QUALITY, message, policy.location)
 
 
 def _programs(graph: Graph) -> Iterator[Mismatch]:

@@ -5,7 +5,7 @@ includes.
 import posixpath
 import re
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 
 from grader.base.source import Location, Source
 from grader.files.tree import Tree
@@ -55,10 +55,9 @@ def _unnamed(workspace: Workspace) -> Iterator[str]:
     """Yield the paths of the installed files whose names no other file has."""
     words = _words_of_files(workspace)
     counts: Counter[bytes] = Counter()
-    for words_of_file in words.values():
-        counts.update(words_of_file)
     configured: set[bytes] = set()  # the words of files that look for others by their usual names
     for words_of_file in words.values():
+        counts.update(words_of_file)
         if _BY_USUAL_NAMES in words_of_file:
             configured |= words_of_file
     for package in workspace.packages:
@@ -70,10 +69,15 @@ def _unnamed(workspace: Workspace) -> Iterator[str]:
             if not path.endswith(_KINDS) or "test" in path.split("/"):
                 continue
             own_words = words.get(package.path(path), frozenset())
-            stem = posixpath.basename(path).partition(".")[0].encode()
-            is_named = counts[stem] > (stem in own_words)
-            if not is_named and not own_words >= _OF_MAP:
+            is_map = own_words >= _OF_MAP
+            if not is_map and not _is_named(path, own_words, counts):
                 yield package.path(path)
+
+
+def _is_named(path: str, words: Collection[bytes], counts: Mapping[bytes, int]) -> bool:
+    """Return whether another file than that with these words has the name of one."""
+    stem = posixpath.basename(path).partition(".")[0].encode()
+    return counts[stem] > (stem in words)
 
 
 def _made(workspace: Workspace) -> Iterator[MadePath]:

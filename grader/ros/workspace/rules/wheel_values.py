@@ -116,7 +116,11 @@ class _Wheels(NamedTuple):
 
 
 def wheel_value_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the numbers of wheels that are not those of the robot."""
+    """Yield the numbers of wheels that are not those of the robot.
+
+    They are warnings where there may be other robots. Nothing is said where xacro may place or size
+    the wheels in another way, or where the numbers are those of one of several robots.
+    """
     sources = [*_controllers(workspace), *_plugins(workspace)]
     if not sources or may_vary(workspace, *_PLACING):
         return
@@ -148,13 +152,20 @@ def _controllers(workspace: Workspace) -> Iterator[_Source]:
         source = _Source(controller.name, rows, _reader_of_yaml(section), ())
         keys = {key for row in rows.values() for key in chain(*row.of)}
         named = [joint.text for joint in source.joints(sorted(keys))]
-        robots = [it for it in workspace.robots.known if all(map(it.robot.has_joint, named))]
-        if not robots and len(workspace.robots.known) == 1:
-            [robot] = workspace.robots.known
-            if all(robot.robot.has_joint(_meant(robot.robot, name)) for name in named):
-                robots = [robot]
+        robots = _robots_with_joints(workspace, named)
         if named and robots:
             yield source._replace(robots=robots)
+
+
+def _robots_with_joints(workspace: Workspace, names: Sequence[str]) -> list[KnownRobot]:
+    """Return the robots that have all of some joints; the only one if names are misspelt."""
+    robots = workspace.robots.known
+    having = [each for each in robots if all(map(each.robot.has_joint, names))]
+    if having or len(robots) != 1:
+        return having
+    [robot] = robots
+    meant = [_meant(robot.robot, name) for name in names]
+    return [robot] if all(map(robot.robot.has_joint, meant)) else []
 
 
 def _meant(robot: Robot, name: str) -> str:
@@ -210,15 +221,13 @@ def _faults_of(source: _Source, robot: Configuration) -> Iterator[Mismatch]:
         names = {wheel.joint.name for wheel in wheels.all}
         if compared.isdisjoint(names):
             compared |= names
-            faults += _faults_of_side(wheels, groups, kind)
+            placed = _PlacedWheels(wheels, kind, _places_of_joints(wheels, groups))
+            faults = [*_other_sides(placed), *_other_axes(placed)]
             yield from faults
         is_of_sides = bool(faults) and kind in _SIDED  # a number of these wheels means nothing
-        if is_of_sides or _is_corrected(source, row):
-            continue
-        for number in source.parameters(key):
-            value = finite_number(number.text)
-            if value is not None:
-                yield from _faults_of_number(key, value, number.location, kind, wheels)
+        if not is_of_sides and not _is_corrected(source, row):
+            for number in source.parameters(key):
+                yield from _faults_of_number(_WheelNumber(key, kind, number), wheels)
 
 
 def _is_corrected(source: _Source, row: WheelRow) -> bool:
@@ -257,51 +266,84 @@ def _joint(robot: Configuration, name: str) -> Joint:
     return robot.joint(_meant(robot.robot, name))
 
 
-def _faults_of_side(wheels: _Wheels, groups: list[list[_Word]], kind: str) -> Iterator[Mismatch]:
-    """Yield that left wheels are on the right, and the reverse, wheels that turn about an axis
-    across their axle, and wheels that turn backward.
-    """
-    places = {
-        wheel.joint.name: word.location
-        for wheel, word in zip(chain(*wheels.groups), chain(*groups), strict=True)
-    }
+class _PlacedWheels(NamedTuple):
+    """Wheels whose sides and directions are compared, with where their joints are named."""
+
+    wheels: _Wheels
+    kind: str  # of the number that they have
+    places: Mapping[str, Location]
+
+    @property
+    def backward(self) -> Sequence[WheelSize]:
+        """The wheels that drive backward with a positive speed."""
+        return [wheel for wheel in self.wheels.all if wheel.axis[1] < -_SIDEWAYS]
+
+    @property
+    def are_all_exchanged(self) -> bool:
+        """Whether the left wheels are on the right and the reverse, and all of them turn backward,
+        so that the robot drives backward.
+        """
+        if self.kind not in _ROLLING or self.kind not in _SIDED:
+            return False
+        return len(_exchanged(self.wheels)) == len(self.backward) == len(self.wheels.all)
 
     def fault(
-        rule: Rule, joints: Sequence[WheelSize], message: str, *, is_certain: bool = False
+        self, rule: Rule, wheels: Sequence[WheelSize], message: str, *, is_certain: bool = False
     ) -> Mismatch:
-        at = places[joints[0].joint.name]
-        return Mismatch(rule, message, at, _place(joints[0]), is_certain)
+        """Return what is wrong with some of the wheels, where the first is named."""
+        at = self.places[wheels[0].joint.name]
+        return Mismatch(rule, message, at, _place(wheels[0]), is_certain)
 
-    base = quoted(wheels.base)
-    backward = [wheel for wheel in wheels.all if wheel.axis[1] < -_SIDEWAYS]
-    if kind in _SIDED:
-        toward_left = _toward_left(wheels)
-        across = [it for it in wheels.all if abs(dot(it.axis, toward_left)) < _LEVEL]
-        exchanged = _exchanged(wheels)
-        if kind in _ROLLING and len(exchanged) == len(backward) == len(wheels.all):
-            message = (
-                f"the wheels of {wheels.names} drive the robot toward -x of {base}: left and right "
-                "are exchanged, and their axes point to the right"
-            )
-            yield fault(WHEEL_SIDE, exchanged, message)
-            return
-        if exchanged and abs(toward_left[1]) > _SIDEWAYS:
-            sides = [f"{quoted(it.joint.name)} is at y {it.middle[1]:.4g} m" for it in exchanged]
-            message = f"left and right wheels are exchanged: {', '.join(sides)} in {base}"
-            yield fault(WHEEL_SIDE, exchanged, message, is_certain=True)
-        if kind in _ROLLING and across:
-            x, y, z = across[0].axis
-            message = (
-                f"{_joints(across)} should turn about the axle from right to left, not about "
-                f"{x:.3g} {y:.3g} {z:.3g} in {base}"
-            )
-            yield fault(WHEEL_AXIS, across, message)
-    if kind in _ROLLING and backward:
+
+def _places_of_joints(wheels: _Wheels, groups: list[list[_Word]]) -> Mapping[str, Location]:
+    places = {}
+    for wheel, word in zip(chain(*wheels.groups), chain(*groups), strict=True):
+        places[wheel.joint.name] = word.location
+    return places
+
+
+def _other_sides(placed: _PlacedWheels) -> Iterator[Mismatch]:
+    """Yield that left wheels are on the right, and the reverse. It is certain unless they turn
+    backward too, as where the front of the robot is its -x.
+    """
+    wheels, base = placed.wheels, quoted(placed.wheels.base)
+    exchanged = _exchanged(wheels) if placed.kind in _SIDED else []
+    if placed.are_all_exchanged:
         message = (
-            f"a positive speed of {_joints(backward)} drives toward -x of {base}: the axis should "
-            "point to the left"
+            f"the wheels of {wheels.names} drive the robot toward -x of {base}: left and right "
+            "are exchanged, and their axes point to the right"
         )
-        yield fault(WHEEL_AXIS, backward, message)
+        yield placed.fault(WHEEL_SIDE, exchanged, message)
+    elif exchanged and abs(_toward_left(wheels)[1]) > _SIDEWAYS:
+        sides = [f"{quoted(each.joint.name)} is at y {each.middle[1]:.4g} m" for each in exchanged]
+        message = f"left and right wheels are exchanged: {', '.join(sides)} in {base}"
+        yield placed.fault(WHEEL_SIDE, exchanged, message, is_certain=True)
+
+
+def _other_axes(placed: _PlacedWheels) -> Iterator[Mismatch]:
+    """Yield wheels that turn about an axis across their axle, and wheels that turn backward.
+    Nothing is said where left and right are exchanged as well, which is said of the sides.
+    """
+    wheels, base = placed.wheels, quoted(placed.wheels.base)
+    if placed.kind not in _ROLLING or placed.are_all_exchanged:
+        return
+    across: list[WheelSize] = []
+    if placed.kind in _SIDED:
+        toward_left = _toward_left(wheels)
+        across = [each for each in wheels.all if abs(dot(each.axis, toward_left)) < _LEVEL]
+    if across:
+        x, y, z = across[0].axis
+        message = (
+            f"{_joints(across)} should turn about the axle from right to left, not about "
+            f"{x:.3g} {y:.3g} {z:.3g} in {base}"
+        )
+        yield placed.fault(WHEEL_AXIS, across, message)
+    if placed.backward:
+        message = (
+            f"a positive speed of {_joints(placed.backward)} drives toward -x of {base}: the axis "
+            "should point to the left"
+        )
+        yield placed.fault(WHEEL_AXIS, placed.backward, message)
 
 
 def _toward_left(wheels: _Wheels) -> Vector:
@@ -329,30 +371,52 @@ def _place(wheel: WheelSize) -> Location | None:
     return location.resolve() if location is not None else None
 
 
-def _faults_of_number(
-    key: str, value: float, at: Location, kind: str, wheels: _Wheels
-) -> Iterator[Mismatch]:
+class _WheelNumber(NamedTuple):
+    """A number that a source has for wheels."""
+
+    key: str
+    kind: str
+    word: _Word
+
+
+def _faults_of_number(number: _WheelNumber, wheels: _Wheels) -> Iterator[Mismatch]:
     """Yield that a number is not what the wheels of the robot have."""
+    value = finite_number(number.word.text)
+    is_size = number.kind in ("radius", "diameter")
+    if value is not None and is_size:
+        yield from _other_sizes(number, value, wheels)
+    elif value is not None:
+        yield from _other_distance(number, value, wheels)
+
+
+def _other_distance(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
+    """Yield that the wheels of the robot are not as far apart as a number says, by more than their
+    width and 2 %.
+
+    It is certain for a negative number, and for twice or half the track of two wheels. The track of
+    more than two wheels, which slip sideways, may be wider.
+    """
+    key, at = number.key, number.word.location
     if value < 0.0:
-        rule = WHEEL_SIZE if kind in ("radius", "diameter") else WHEEL_DISTANCE
-        yield Mismatch(rule, f"{key} is {value:g}: a length is not negative", at)
+        yield Mismatch(WHEEL_DISTANCE, _negative(key, value), at)
         return
-    related = _place(wheels.all[0])
-    if kind in ("radius", "diameter"):
-        yield from _faults_of_radius(key, value, at, kind, wheels)
-        return
-    measured, slack, what = _SPANS[kind](wheels)
+    measured, slack, what = _SPANS[number.kind](wheels)
     low, high = measured - slack, measured + slack
-    if len(wheels.all) > 2 and kind == "track":
-        high = max(high, value)  # wheels that slip sideways need a wider track
+    is_track = number.kind == "track"
+    if len(wheels.all) > 2 and is_track:
+        high = max(high, value)
     rounding = _ROUNDING + _TOLERANCE * measured
     if low - rounding <= value <= high + rounding:
         return
-    is_certain = kind == "track" and _is_other_half(value, measured, wheels)
     message = f"{key} is {value:g} m; {what} {measured:.4g} m"
     if slack:
         message += f" ({low:.4g} to {high:.4g} m with the width of the wheels)"
-    yield Mismatch(WHEEL_DISTANCE, message, at, related, is_certain)
+    is_certain = is_track and _is_other_half(value, measured, wheels)
+    yield Mismatch(WHEEL_DISTANCE, message, at, _place(wheels.all[0]), is_certain)
+
+
+def _negative(key: str, value: float) -> str:
+    return f"{key} is {value:g}: a length is not negative"
 
 
 def _is_other_half(value: float, measured: float, wheels: _Wheels) -> bool:
@@ -368,19 +432,22 @@ def _is_near(value: float, other: float) -> bool:
     return abs(value - other) <= _TOLERANCE * other
 
 
-def _faults_of_radius(
-    key: str, value: float, at: Location, kind: str, wheels: _Wheels
-) -> Iterator[Mismatch]:
-    """Yield that no wheel has a radius, and that wheels of one radius have several."""
+def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
+    """Yield that no wheel has a radius, and that wheels of one radius have several; for certain
+    that a radius is negative.
+    """
+    key, kind, at = number.key, number.kind, number.word.location
+    if value < 0.0:
+        yield Mismatch(WHEEL_SIZE, _negative(key, value), at)
+        return
     factor = 2.0 if kind == "diameter" else 1.0
     sized = [wheel for wheel in wheels.all if wheel.radii]
     fitting = []
     for wheel in sized:
         if any(_is_near(value, factor * radius) for radius in wheel.radii):
             fitting.append(wheel)
-    for wheel in sized:
-        if wheel in fitting or (not fitting and wheel is not sized[0]):
-            continue
+    others = [wheel for wheel in sized if wheel not in fitting]
+    for wheel in others if fitting else others[:1]:
         name, size = quoted(wheel.joint.name), factor * wheel.radii[0]
         message = f"{key} is {value:g} m; the wheel of {name} has the {kind} {size:.4g} m"
         yield warning(WHEEL_SIZE, message, at, _place(wheel))
