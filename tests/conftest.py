@@ -58,10 +58,11 @@ os.environ |= {"GIT_CONFIG_GLOBAL": os.devnull, "GIT_CONFIG_NOSYSTEM": "1"}
 _QUICK = "not exhaustive and not slow"  # the tests of README's command
 _MARKED = re.compile(r"^pytestmark = (\[\s*)?pytest\.mark\.(exhaustive|slow)\b", re.MULTILINE)
 _DECIDING = (  # what covers the code that decides a mark: see [tool.coverage] in pyproject.toml
-    *("checks", "classroom/marks", "corpus", "driving", "grading", "labs", "robot", "workspace"),
+    *("checks", "classroom/marks", "corpus", "driving", "grading", "labs", "rubric", "urdf"),
+    "base/test_transforms.py",
     *("authoring/test_equivalents.py", "authoring/test_random_robots.py"),
     "classroom/test_typed_names.py",
-    *("interfaces", "parameters"),
+    *("interfaces", "parameters", "workspace"),
     *("cli/test_plugin_checks.py", "cli/test_review_pages.py", "cli/test_review_server.py"),
     *("fuzz/test_harnesses.py", "test_api.py", "test_docstring_examples.py", "test_registry.py"),
 )

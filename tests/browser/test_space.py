@@ -16,8 +16,8 @@ from grader.ros.urdf.model import Robot
 from grader.ros.urdf.reader import read_urdf
 from tests.browser.conftest import CHROMIUM, OpenPage
 from tests.command_line import ROOT, run
-from tests.robot.builders import joint, links, robot
 from tests.samples import SAMPLES
+from tests.urdf.builders import joint, links, robot
 
 pytestmark = pytest.mark.exhaustive
 Open = Callable[..., OpenPage]

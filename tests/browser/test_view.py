@@ -10,8 +10,8 @@ import pytest
 from tests.browser.conftest import OpenPage
 from tests.cli.test_view import XACRO, box, mesh
 from tests.mesh.mesh_files import CUBE, binary_stl
-from tests.robot.builders import joint, robot
 from tests.samples import SAMPLES
+from tests.urdf.builders import joint, robot
 from tests.view_server import put, viewing
 
 pytestmark = pytest.mark.exhaustive

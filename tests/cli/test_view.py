@@ -20,8 +20,8 @@ from grader.report.open_browser import opened_in_browser
 from tests.classroom.gradebooks import ENVIRONMENT
 from tests.command_line import HANG_TIMEOUT, ROOT, run
 from tests.mesh.mesh_files import CUBE, binary_stl, text_stl
-from tests.robot.builders import joint, links, robot
 from tests.samples import SAMPLES
+from tests.urdf.builders import joint, links, robot
 from tests.view_server import Page, put, viewing
 
 BOX = '<link name="{}"><visual><geometry><box size="{} 1 1"/></geometry></visual></link>'

@@ -13,9 +13,9 @@ from grader.ros.installation.installation import Installation
 from grader.ros.package.finding import read_packages
 from grader.ros.package.package import Package
 from tests.differential.compared import Compared
+from tests.installation.my_robot import write_package
+from tests.installation.setup_grammar import other_files, setup_py
 from tests.oracles.colcon_builds import IMPLIED, Build, build_all
-from tests.package.my_robot import write_package
-from tests.package.setup_grammar import other_files, setup_py
 
 
 def compare(numbers: range) -> Iterator[Compared]:

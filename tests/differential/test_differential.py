@@ -7,7 +7,7 @@ from tests.differential.__main__ import ORACLES, compared_part
 from tests.differential.compared import Compared, summary
 from tests.oracles import colcon_builds, urdfdom
 from tests.oracles.check_urdf import LYRICAL
-from tests.robot.edge_cases import EDGE_CASES
+from tests.urdf.edge_cases import EDGE_CASES
 
 pytestmark = pytest.mark.slow
 

@@ -16,7 +16,7 @@ from grader.ros.urdf.reader import read_urdf
 from grader.ros.urdf.urdf_problems import FORMAT_DIRECTIVE
 from tests.differential.compared import Compared
 from tests.oracles.urdfdom import verdicts
-from tests.robot.edge_cases import EDGE_CASES
+from tests.urdf.edge_cases import EDGE_CASES
 
 _SAMPLES = Path(__file__).parents[2] / "submissions"
 _MAX_SIZE = 12_000  # bytes: longer files take longer, and are mutated in the same ways

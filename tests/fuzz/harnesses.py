@@ -34,7 +34,7 @@ def _row(
 
 
 def _launch(ending: str, words: str) -> Harness:
-    patterns = (f"tests/package/launch_samples/*.{ending}.txt", f"rubrics/**/*.launch.{ending}")
+    patterns = (f"tests/launch/launch_samples/*.{ending}.txt", f"rubrics/**/*.launch.{ending}")
     return _row(packages.LAUNCHES[ending], words, 4096, found=patterns)
 
 
@@ -61,7 +61,7 @@ HARNESSES: dict[str, Harness] = {
         packages.setup,
         "python",
         4096,
-        found=["tests/package/setup_samples/*", "rubrics/**/setup.py"],
+        found=["tests/installation/setup_samples/*", "rubrics/**/setup.py"],
     ),
     "launch-py": _launch("py", "python launch"),
     "launch-xml": _launch("xml", "xml frontend"),
@@ -76,7 +76,7 @@ HARNESSES: dict[str, Harness] = {
     "manifest": _row(packages.manifest, "xml manifest", 4096, found=["rubrics/**/package.xml"]),
     "rviz": _row(packages.rviz, "yaml rviz", 4096, found=["rubrics/**/*.rviz"]),
     "yaml": _row(
-        packages.yaml, "yaml", 2048, seeds.yaml_files, ["tests/package/launch_samples/*.yaml.txt"]
+        packages.yaml, "yaml", 2048, seeds.yaml_files, ["tests/launch/launch_samples/*.yaml.txt"]
     ),
     **{
         f"mesh-{ending}": _row(

@@ -16,8 +16,8 @@ from grader.ros.package.finding import read_packages
 from grader.ros.python.parse import Position, parse
 from tests.checks.submissions import file_of
 from tests.fuzz.harness import check_location, check_message, decoded
-from tests.package.launch_samples import Installed
-from tests.package.my_robot import FILES
+from tests.installation.my_robot import FILES
+from tests.launch.launch_samples import Installed
 
 _TREE = make_tree(
     "my_robot", [file_of(path, text.format(path).encode()) for path, text in FILES.items()], ()

@@ -4,8 +4,8 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 
 from tests.hints.broken_urdfs import BROKEN
-from tests.robot.edge_cases import EDGE_CASES
-from tests.robot.problem_samples import SAMPLES
+from tests.urdf.edge_cases import EDGE_CASES
+from tests.urdf.problem_samples import SAMPLES
 from tests.xacro.documents import GROUPS
 from tests.xacro.documents.document import Document
 from tests.xacro.hostile import HOSTILE

@@ -21,7 +21,7 @@ from grader.ros.known.parameter_rows import COVERED, ParameterRow, known_nodes, 
 from grader.ros.known.releases import RELEASES, Release, is_before, names_in, releases_with
 from grader.ros.launch.launch_classes import class_named, first_release, front_end
 from tests.interfaces.make_known import PACKAGES, interfaces_in
-from tests.package.launch_api import table
+from tests.launch.launch_api import table
 from tests.parameters.make_known import SOURCES, rows_in
 
 # Branches of other names than their releases; those of ros2_control that Lyrical is released from, by ros/rosdistro.

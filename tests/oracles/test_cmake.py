@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
+from tests.installation.cmake_grammar import FILES, cmake_lists
 from tests.oracles.example_robots import MISSING
-from tests.package.cmake_grammar import FILES, cmake_lists
 
 pytestmark = pytest.mark.exhaustive
 

@@ -12,7 +12,7 @@ from grader.ros.installation.installation import Installation
 from grader.ros.installation.setup_py import read_setup
 from grader.ros.python.parse import Code, parse
 from tests.examples import examples, spread
-from tests.package.my_robot import FILES
+from tests.installation.my_robot import FILES
 from tests.work import limited_work
 
 

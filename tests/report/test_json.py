@@ -19,7 +19,7 @@ from grader.report.writers.as_json import render_json
 from grader.report.writers.inspection_json import inspection_json
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import read_urdf
-from tests.robot.edge_cases import EDGE_CASES
+from tests.urdf.edge_cases import EDGE_CASES
 
 RUBRIC = load_rubric("lab6")
 

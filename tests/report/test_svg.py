@@ -18,8 +18,8 @@ from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import read_urdf
 from tests.command_line import run, run_with_input
 from tests.report.readers import read_svg
-from tests.robot.edge_cases import EDGE_CASES
 from tests.samples import REPORTED, SAMPLES
+from tests.urdf.edge_cases import EDGE_CASES
 from tests.work import limited_work
 
 REFERENCE = "submissions/lab6/reference"

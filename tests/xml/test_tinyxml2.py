@@ -12,7 +12,7 @@ from grader.ros.xml.parsing import is_plain
 from grader.ros.xml.tinyxml2 import MAX_NAME_LENGTH, Scan, scan
 from grader.ros.xml.xml_problems import MISPLACED_DECLARATION
 from tests.examples import examples, spread
-from tests.robot.random_text import data
+from tests.urdf.random_text import data
 from tests.work import limited_work
 
 _PARSER = etree.XMLParser(

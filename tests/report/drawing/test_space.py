@@ -15,8 +15,8 @@ from grader.report.drawing.space import space_data, without_names
 from grader.report.pages.student import render_html
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import read_urdf
-from tests.robot.builders import joint, links, robot
 from tests.samples import ROOT, SAMPLES
+from tests.urdf.builders import joint, links, robot
 
 pytestmark = pytest.mark.slow
 

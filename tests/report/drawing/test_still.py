@@ -9,8 +9,8 @@ from grader.report.drawing.picture import plain_picture
 from grader.report.drawing.still import HEIGHT, MAX_SIZE, WIDTH, Still, still_of
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.reader import read_urdf
-from tests.robot.builders import joint, robot
 from tests.samples import SAMPLES
+from tests.urdf.builders import joint, robot
 
 pytestmark = pytest.mark.slow
 

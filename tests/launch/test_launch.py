@@ -7,7 +7,7 @@ import pytest
 
 from grader.ros.launch.launch_model import Launch
 from tests.examples import light
-from tests.package.launch_samples import FOLDER, SAMPLES, read, summarize, summarize_sample
+from tests.launch.launch_samples import FOLDER, SAMPLES, read, summarize, summarize_sample
 from tests.work import limited_work
 
 # What is found in each sample: its nodes, and with their lines the files that it names, its faults and what is unknown.

@@ -10,8 +10,8 @@ import pytest
 from grader.files.folder import read_folder
 from grader.ros.installation.installation import Installation
 from grader.ros.installation.setup_py import read_setup
+from tests.installation.my_robot import write_package
 from tests.oracles.python_setups import Ran, run_all
-from tests.package.my_robot import write_package
 
 _HEAD = "import os\nfrom glob import glob\nfrom pathlib import Path\nfrom setuptools import find_packages, setup\nname = 'my_robot'\n"
 _LIST = "data_files = [\n    ('share/my_robot', ['package.xml']),\n    (os.path.join('share', name), glob('urdf/*')),\n    ('share/my_robot/launch', {launch}),\n]\n"

@@ -13,9 +13,9 @@ from grader.ros.urdf.model import Origin
 from grader.ros.urdf.reader import Reading, read_urdf
 from grader.ros.urdf.urdf_problems import CATALOGUE
 from tests.examples import examples, spread
-from tests.robot.builders import joint, links, robot
-from tests.robot.problem_samples import SAMPLES, ProblemSample
-from tests.robot.random_text import data
+from tests.urdf.builders import joint, links, robot
+from tests.urdf.problem_samples import SAMPLES, ProblemSample
+from tests.urdf.random_text import data
 from tests.work import limited_work
 
 _AT_THE_TOP = ("URDF003", "URDF005", "URDF008")  # kinds that are about the beginning of the file

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from random import Random
 
-from tests.package.my_robot import FILES
+from tests.installation.my_robot import FILES
 
 FOLDERS = ("urdf", "launch", "rviz", "meshes", "config", "resource", "meshes/a")
 _PATTERNS = (

@@ -13,7 +13,7 @@ import pytest
 
 from grader.ros.launch.launch_file import read_launch
 from tests.command_line import ROOT
-from tests.package.launch_samples import Installed
+from tests.launch.launch_samples import Installed
 
 pytestmark = pytest.mark.slow
 

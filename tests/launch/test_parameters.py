@@ -7,7 +7,7 @@ import pytest
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters, controllers_of, parameters_of
 from grader.ros.python.values import Unknown
-from tests.package.launch_samples import Installed, read
+from tests.launch.launch_samples import Installed, read
 
 SHARE = "share/my_robot/config"
 FILES = {

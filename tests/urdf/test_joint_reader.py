@@ -8,7 +8,7 @@ from grader.base.errors import MissingElement
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Calibration, Dynamics, Joint, Limit, Mimic, SafetyController
 from grader.ros.urdf.reader import read_urdf
-from tests.robot.builders import joint, links, one_joint, robot
+from tests.urdf.builders import joint, links, one_joint, robot
 
 pytestmark = pytest.mark.slow
 

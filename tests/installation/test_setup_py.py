@@ -1,6 +1,6 @@
 """The static evaluation of a setup.py gives the files that a colcon build installs.
 
-`python -m tests.package.test_setup_py` builds the samples again and writes what colcon does.
+`python -m tests.installation.test_setup_py` builds the samples again and writes what colcon does.
 """
 
 import json
@@ -11,8 +11,8 @@ from tempfile import TemporaryDirectory
 import pytest
 
 from tests.differential.colcons import difference, evaluated
+from tests.installation.my_robot import SAMPLES, make_package
 from tests.oracles.colcon_builds import Build, build_all, is_available
-from tests.package.my_robot import SAMPLES, make_package
 
 _RECORDED = Path(__file__).with_name("setup_samples.expected")
 

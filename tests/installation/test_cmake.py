@@ -5,7 +5,7 @@ import pytest
 from grader.ros.installation.cmake.cmake_lists import read_cmake
 from grader.ros.installation.installation import Installation
 from tests.checks.submissions import Submitted
-from tests.package.cmake_grammar import FILES
+from tests.installation.cmake_grammar import FILES
 from tests.work import limited_work
 
 START = "cmake_minimum_required(VERSION 3.8)\nproject(bot)\nfind_package(ament_cmake REQUIRED)\n"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.package.test_cpp_nodes import nodes_of
+from tests.nodes.test_cpp_nodes import nodes_of
 from tests.workspace.test_cpp_nodes import messages
 
 pytestmark = pytest.mark.slow

@@ -3,7 +3,7 @@
 import pytest
 
 from grader.ros.nodes.node_facts import CodeFault
-from tests.package.test_cpp_nodes import nodes_of
+from tests.nodes.test_cpp_nodes import nodes_of
 
 pytestmark = pytest.mark.slow
 

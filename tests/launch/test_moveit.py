@@ -8,7 +8,7 @@ from grader.ros.launch.launch_file import read_launch
 from grader.ros.launch.launch_model import Launch
 from grader.ros.launch.node_parameters import parameters_of
 from grader.ros.python.values import Unknown
-from tests.package.launch_samples import Installed, summarize
+from tests.launch.launch_samples import Installed, summarize
 
 pytestmark = pytest.mark.slow
 

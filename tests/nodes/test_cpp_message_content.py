@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.package.test_cpp_nodes import nodes_of
+from tests.nodes.test_cpp_nodes import nodes_of
 
 pytestmark = pytest.mark.slow
 

@@ -1,4 +1,4 @@
-"""Write the table of launch's classes from its sources: `python -m tests.package.launch_api LAUNCH LAUNCH_ROS`.
+"""Write the table of launch's classes from its sources: `python -m tests.launch.launch_api LAUNCH LAUNCH_ROS`.
 
 The arguments are checkouts of github.com/ros2/launch and github.com/ros2/launch_ros (branch jazzy), which are parsed and
 not imported. The table is `grader/ros/launch/launch_classes.json`.
@@ -15,7 +15,7 @@ TABLE = Path("grader/ros/launch/launch_classes.json")
 PACKAGES = ("launch", "launch_ros", "launch_xml", "launch_yaml")
 SOURCE = (
     "github.com/ros2/launch and github.com/ros2/launch_ros, branch jazzy (3.4.3 and 0.26.6), with what later versions add by "
-    "their changelogs, read in November 2026, by python -m tests.package.launch_api"
+    "their changelogs, read in November 2026, by python -m tests.launch.launch_api"
 )
 # What later releases export, so that a newer patch of Jazzy may: whether the name is there is not known.
 LATER = {

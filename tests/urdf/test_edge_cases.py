@@ -6,7 +6,7 @@ import pytest
 
 from grader.ros.urdf.reader import read_urdf
 from tests.oracles.check_urdf import LYRICAL, check_urdf
-from tests.robot.edge_cases import EDGE_CASES, EdgeCase
+from tests.urdf.edge_cases import EDGE_CASES, EdgeCase
 
 _ENDINGS = {"agrees": "finished", "hangs": "hung", "aborts": "aborted"}
 _ENDINGS_OF_LYRICAL = {**_ENDINGS, "aborts": "finished"}  # no value is a format for printf
