@@ -5,6 +5,7 @@ import json
 import re
 import tomllib
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from shutil import copytree
@@ -126,6 +127,24 @@ def test_a_robot_loses_what_it_should(robot: Robot, tmp_path: Path) -> None:
     assert pending == set(robot.row.get("pending", manual))
     assert "errored" not in statuses.values(), lost
     assert bool(lost or pending - manual) == (robot.kind == "wrong")
+
+
+@pytest.mark.exhaustive
+def test_a_lab_for_lyrical_gives_the_same_marks(tmp_path: Path) -> None:
+    """No robot of a lab, correct or wrong, uses what one of Jazzy and Lyrical lacks."""
+    differing = []
+    for number, robot in enumerate(ROBOTS):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        path, rubric = str(robot.write(folder)), rubric_of(robot.lab)
+        outcomes = []
+        for distro in ("jazzy", "lyrical"):
+            lab = replace(rubric, distro=distro)
+            report = grade(lab, open_submission(path, lab.lab))
+            outcomes.append([(row.criterion.id, row.outcome, row.points) for row in report.results])
+        if outcomes[0] != outcomes[1]:
+            differing.append((robot.lab, robot.name))
+    assert differing == []
 
 
 @every_lab
