@@ -30,6 +30,7 @@ ns: {driver: {ros__parameters: {deep: 4}}}
 /other: {ros__parameters: {speed: 5}}
 """,
     f"{SHARE}/texts.yaml": b"/**: {ros__parameters: {a: $(var name), b: .inf, c: 1e3, d: 010, e: [1, a], f: 1:30, g: !x z}}",
+    f"{SHARE}/tags.yaml": b"/**: {ros__parameters: {a: !!str 1, b: !!float 1, c: !!str , d: [!!str 1, x]}}",
     f"{SHARE}/broken.yaml": b"/**: {",
 }
 HEAD = """\
@@ -353,3 +354,9 @@ def test_controllers() -> None:
         ("other", "/", {})
     ]
     assert controllers("'other', EnvironmentVariable('A')") is None
+
+
+def test_a_tag_makes_a_string() -> None:
+    """!!str counts in every release; what other tags make of a text depends on the release."""
+    action = "Node(package='p', executable='e', parameters=[str(CONFIG / 'tags.yaml')])"
+    assert values(given(action)) == {"a": "1", "b": "?", "c": "", "d": ["1", "x"]}

@@ -34,6 +34,7 @@ _TAGS = frozenset(
         "set",
     )
 )
+_TEXT = "tag:yaml.org,2002:str"
 _DEEP = "the file is too deeply nested"
 # of newer versions of libyaml, which look ahead of the events
 _TOO_DEEP = "exceeded maximum nesting depth"
@@ -58,6 +59,7 @@ class YamlNode:
     value: "str | list[YamlNode] | dict[str, YamlNode]"
     quoted: bool = False  # a text in quotes, which is a string even if it is true or 1
     end_mark: Any = None  # of a text
+    tag: str = ""  # of a text
     key_marks: dict[str, Any] = field(default_factory=dict)  # of a mapping
     replaced: list[tuple[str, "YamlNode"]] = field(
         default_factory=list
@@ -73,6 +75,16 @@ class YamlNode:
         """The offsets of the start and the end of a text, with its quotes."""
         shift = int(self.source.text.startswith("\ufeff"))
         return self.mark.index + shift, self.end_mark.index + shift
+
+    @property
+    def is_string(self) -> bool:
+        """Whether it is a string even if it is true or 1: by its quotes or its tag."""
+        return self.quoted or self.tag == _TEXT
+
+    @property
+    def has_type(self) -> bool:
+        """Whether a tag says which type it has, and not that it is a string."""
+        return self.tag in _TAGS - {_TEXT}
 
     def get(self, *keys: str) -> "YamlNode | None":
         """Return the node at a path of keys, None where there is none."""
@@ -281,6 +293,7 @@ class _Anchors:
                 event.value,
                 event.style in ("'", '"'),
                 event.end_mark,
+                event.tag or "",
             )
         else:
             node = YamlNode(

@@ -375,7 +375,7 @@ def _plain_value(node: YamlNode) -> Any:
     if isinstance(node.value, list):
         return [_plain_value(item) for item in node.items]
     text = node.text
-    if text is None or node.quoted:
+    if text is None or node.is_string:
         return text
     try:
         loaded = yaml_value(text) if len(text) < 50 else text  # longer ones are no numbers

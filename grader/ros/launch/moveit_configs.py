@@ -511,7 +511,7 @@ def _read_value(node: YamlNode, depth: int) -> Value:
         case list() as items:
             return [_read_value(it, depth + 1) for it in items]
         case str() as text:
-            if node.quoted or len(text) > _MAX_NUMBER:
+            if node.is_string or len(text) > _MAX_NUMBER:
                 return text
             return yaml_value(text)
 

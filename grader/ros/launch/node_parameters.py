@@ -412,9 +412,11 @@ def _read_value(node: YamlNode) -> Any:
             return items
         return Unknown("a list of different values", START)
     text = node.text
-    if text is None or (not text and not node.quoted):
+    if text is None or (not text and not node.is_string):
         return Unknown("no value", START)
-    return text if node.quoted else _scalar(text)
+    if node.has_type:
+        return Unknown("a value with a tag, which rcl reads from Lyrical on", START)
+    return text if node.is_string else _scalar(text)
 
 
 def _scalar(text: str) -> "bool | int | float | str":

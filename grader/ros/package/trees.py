@@ -168,7 +168,7 @@ def _yaml_entry(node: "YamlNode", name: str = "") -> TreeEntry:
         partial(_list_yaml_children, node),
         lambda: node.location,
         is_xml=False,
-        is_quoted=node.quoted,
+        is_quoted=node.is_string,
         is_list=isinstance(node.value, list),
     )
 
