@@ -89,22 +89,22 @@ class PackageListing:
                 return [*values[1:], *values[:1]]
         return values
 
-    def record(self, pattern: str, found: list[Value], at: Position) -> list[Value]:
+    def record(self, pattern: str, paths: list[Value], at: Position) -> list[Value]:
         """Keep the position of a search for each path that it found, up to a limit, and return the
         paths.
         """
-        self.positions |= dict.fromkeys(map(str, found[:_MAX_RECORDED]), at)
-        if not found:
+        self.positions |= dict.fromkeys(map(str, paths[:_MAX_RECORDED]), at)
+        if not paths:
             self.empty[EmptyGlob(pattern, at)] = None
-        return found
+        return paths
 
     def names(self, folder: str) -> list[str]:
         """Return the names in a folder. Raises Undetermined for an ignored folder."""
         if folder in self._unseen:
             raise Undetermined(_IGNORED)
-        found = self._children.get(folder, [])
-        self.budget.charge(1 + len(found))
-        return found
+        names_in_folder = self._children.get(folder, [])
+        self.budget.charge(1 + len(names_in_folder))
+        return names_in_folder
 
     def files_below(self, folder: str) -> list[str]:
         """Return the paths of the files in a folder and in the folders of it."""
@@ -162,10 +162,10 @@ class PackageListing:
             raise Undetermined(_OUTSIDE)
         start = f"{above}./" if pattern.startswith("./") else above
         parts = _SLASHES.sub("/", pattern.removeprefix("./")).split("/")
-        found = self._search(parts, recursive=recursive)
+        paths = self._search(parts, recursive=recursive)
         if recursive and parts[-1] == "**":  # also the folder that it begins in
-            found = [*self._search([*parts[:-1], ""]), *self._search([*parts, "*"], recursive=True)]
-        return [start + path for path in found if start + path]
+            paths = [*self._search([*parts[:-1], ""]), *self._search([*parts, "*"], recursive=True)]
+        return [start + path for path in paths if start + path]
 
     def path_glob(self, folder: str, pattern: str) -> list[str]:
         """Return the paths below a folder that pathlib's glob finds in Python 3.12. Raises
@@ -180,10 +180,10 @@ class PackageListing:
         if start not in self.folders:
             return []
         folders_only = [""] if parts[-1] == "**" else []
-        found = self._search(
+        paths = self._search(
             [*parts, *folders_only], recursive=True, hidden=True, folder=start or ""
         )
-        return [path.rstrip("/") for path in found]
+        return [path.rstrip("/") for path in paths]
 
     def _search(
         self, parts: list[str], *, recursive: bool = False, hidden: bool = False, folder: str = ""
@@ -303,9 +303,9 @@ def _evaluate_search(
 ) -> Value:
     """Evaluate a search, charge it and record whether the order of files in a folder matters."""
     known([call.args, [*call.kwargs.values()]])
-    found = function(evaluation, call)
-    listing.order_matters |= isinstance(found, list) and len(found) > 1
-    return found
+    result = function(evaluation, call)
+    listing.order_matters |= isinstance(result, list) and len(result) > 1
+    return result
 
 
 class _PackageFolder(NamedTuple):
@@ -357,16 +357,16 @@ class _PackageFolder(NamedTuple):
         above = self.root + "/" if pattern.startswith(self.root + "/") else ""
         pattern = pattern.removeprefix(above)
         try:
-            found = self.listing.glob(pattern, recursive=bool(recursive), above=above)
+            paths = self.listing.glob(pattern, recursive=bool(recursive), above=above)
         except Undetermined as error:  # glob raises no error of its own
             return Unknown(str(error), call.at)
-        return self.listing.record(pattern, found, call.at)
+        return self.listing.record(pattern, paths, call.at)
 
     def iglob(self, evaluation: Evaluation, call: Call) -> Value:
-        found = self.glob(evaluation, call)
-        if isinstance(found, list):
-            return Items(found)
-        return found
+        paths = self.glob(evaluation, call)
+        if isinstance(paths, list):
+            return Items(paths)
+        return paths
 
     def path_glob(self, _: Evaluation, call: Call, prefix: str = "") -> Value:
         pattern = call.argument(1, "pattern")
@@ -374,9 +374,9 @@ class _PackageFolder(NamedTuple):
         if not isinstance(pattern, str) or not is_supported:
             raise Undetermined("this search for files is not supported")
         folder = self.inside(call.args[0])
-        found = [call.args[0] / path for path in self.listing.path_glob(folder, prefix + pattern)]
-        self.listing.order_matters |= len(found) > 1
-        return Items(self.listing.record(str(PurePosixPath(folder) / pattern), found, call.at))
+        paths = [call.args[0] / path for path in self.listing.path_glob(folder, prefix + pattern)]
+        self.listing.order_matters |= len(paths) > 1
+        return Items(self.listing.record(str(PurePosixPath(folder) / pattern), paths, call.at))
 
     def test(self, answer: Callable[[str | None], bool], _: Evaluation, call: Call) -> Value:
         if len(call.args) != 1 or call.kwargs:
@@ -396,9 +396,9 @@ class _PackageFolder(NamedTuple):
         return Unknown("the size of a folder is not known", call.at) if file is None else file.size
 
     def iterdir(self, _: Evaluation, call: Call) -> Value:
-        found = [call.args[0] / name for name in self._names(call.args[0])]
-        self.listing.order_matters |= len(found) > 1
-        return Items(found)
+        paths = [call.args[0] / name for name in self._names(call.args[0])]
+        self.listing.order_matters |= len(paths) > 1
+        return Items(paths)
 
     def walk(self, evaluation: Evaluation, call: Call) -> Value:
         if len(call.args) != 1 or not call.kwargs.keys() <= {"followlinks"}:

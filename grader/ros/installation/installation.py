@@ -187,7 +187,12 @@ class Installation(NamedTuple):
             ):
                 return glob
         return next(
-            (it for it in self.empty if word is not None and word in it.pattern.lower()), None
+            (
+                empty_glob
+                for empty_glob in self.empty
+                if word is not None and word in empty_glob.pattern.lower()
+            ),
+            None,
         )
 
     def has_program(self, name: str, package: str, programs: KnownPrograms) -> bool | None:
@@ -230,7 +235,9 @@ class Installation(NamedTuple):
     @property
     def is_unknown_after_error(self) -> bool:
         """Whether what is installed is unknown only because of an error that stops Python."""
-        return bool(self.unknown and self.faults) and all(it.follows_error for it in self.unknown)
+        return bool(self.unknown and self.faults) and all(
+            reason.follows_error for reason in self.unknown
+        )
 
     @property
     def fault_text(self) -> str:

@@ -38,7 +38,9 @@ class Manifest(NamedTuple):
     def refusals(self) -> tuple[Problem, ...]:
         """The problems for which the tools of ROS 2 do not take the package for one of ROS 2."""
         return tuple(
-            it for it in self.problems if it.kind in (kinds.BAD_MANIFEST, kinds.REFUSED_MANIFEST)
+            problem
+            for problem in self.problems
+            if problem.kind in (kinds.BAD_MANIFEST, kinds.REFUSED_MANIFEST)
         )
 
 
@@ -127,8 +129,8 @@ def _read_broken(data: bytes, source: Source, problem: Problem) -> Manifest:
 
 
 def _exports(root: Element) -> list[Element]:
-    found = (element for element in root.iterchildren("*") if tag_of(element) == "export")
-    return [element for export in found for element in export.iterchildren("*")]
+    exports = (element for element in root.iterchildren("*") if tag_of(element) == "export")
+    return [element for export in exports for element in export.iterchildren("*")]
 
 
 def _refused(words: str, location: Location) -> Problem:

@@ -65,8 +65,10 @@ def is_launch_named(path: str, name: str) -> bool:
     """Return whether a launch file has this name, in any of the three languages that ros2 launch
     reads.
     """
-    own = path.rpartition("/")[2]
-    return own == name or (launch_stem(own) == launch_stem(name) and own.endswith(ENDINGS[:4]))
+    file_name = path.rpartition("/")[2]
+    return file_name == name or (
+        launch_stem(file_name) == launch_stem(name) and file_name.endswith(ENDINGS[:4])
+    )
 
 
 def launch_stem(name: str) -> str:

@@ -207,8 +207,11 @@ def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None)
         _evaluate_setup(code, PackageListing(tree, budget, order), written, "setup.py")
         for order in orders
     ]
-    results = {(it.name, frozenset(it.copies), it.is_called, bool(it.faults)) for it in setups}
-    doubts = [unknown for it in setups[1:] for unknown in it.unknown]
+    results = {
+        (setup.name, frozenset(setup.copies), setup.is_called, bool(setup.faults))
+        for setup in setups
+    }
+    doubts = [unknown for setup in setups[1:] for unknown in setup.unknown]
     if len(results) == 1 and not doubts:
         return setups[0]
     doubt = Unknown(
@@ -389,7 +392,7 @@ class _DataFiles:
                 self.stop("an entry of data_files is not a tuple: write (folder, [files])", at)
                 for folder, files in entry.items() if isinstance(entry, dict) else ():
                     self._folder(folder, files, at)
-            case (*folders, list() as files) if all(isinstance(it, str) for it in folders):
+            case (*folders, list() as files) if all(isinstance(part, str) for part in folders):
                 self.stop(
                     "an entry of data_files is not a tuple of a folder and a list of files", at
                 )
@@ -621,17 +624,23 @@ def _is_version(text: str) -> bool:
 
 # Whether setuptools certainly accepts the value of an argument.
 _USUAL: Mapping[str, Callable[[Value], bool]] = {
-    **dict.fromkeys(_TEXTS, lambda it: isinstance(it, str | Unknown)),
+    **dict.fromkeys(_TEXTS, lambda argument: isinstance(argument, str | Unknown)),
     **dict.fromkeys(
-        ("keywords", "classifiers", "platforms"), lambda it: isinstance(it, str) or _is_list(it)
+        ("keywords", "classifiers", "platforms"),
+        lambda argument: isinstance(argument, str) or _is_list(argument),
     ),
     **dict.fromkeys(("install_requires", "tests_require"), _are_requirements),
-    "setup_requires": lambda it: (
-        _are_requirements(it) and _AT_HAND.issuperset([it] if isinstance(it, str) else it)
+    "setup_requires": lambda argument: (
+        _are_requirements(argument)
+        and _AT_HAND.issuperset([argument] if isinstance(argument, str) else argument)
     ),
-    "extras_require": lambda it: isinstance(it, dict) and all(map(_are_requirements, it.values())),
-    "package_data": lambda it: (
-        isinstance(it, dict) and all(map(_is_list, it.values())) and _is_list([*it])
+    "extras_require": lambda argument: (
+        isinstance(argument, dict) and all(map(_are_requirements, argument.values()))
+    ),
+    "package_data": lambda argument: (
+        isinstance(argument, dict)
+        and all(map(_is_list, argument.values()))
+        and _is_list([*argument])
     ),
 }
 
@@ -666,7 +675,7 @@ def _package_findings(
     kwargs: Mapping[str, Value], listing: PackageListing, at: Position
 ) -> Iterator[_Finding]:
     packages = kwargs.get("packages")
-    if isinstance(packages, list | tuple) and all(isinstance(it, str) for it in packages):
+    if isinstance(packages, list | tuple) and all(isinstance(package, str) for package in packages):
         for name in packages:
             if name.replace(".", "/") not in listing.folders:
                 yield f"packages lists {name!r}, but there is no such folder"
@@ -679,13 +688,13 @@ def _discovery_findings(listing: PackageListing) -> Iterator[_Finding]:
     folders = [
         name for name in listing.names("") if name in listing.folders and name.isidentifier()
     ]
-    found = sorted(
+    candidates = sorted(
         name for name in folders if name not in _NO_PACKAGES and not name.startswith("_")
     )
-    if len(found) > 1:
+    if len(candidates) > 1:
         yield (
             "packages=[...] is missing, and setuptools cannot choose between the folders "
-            f"{enumerated(found)}"
+            f"{enumerated(candidates)}"
         )
 
 
@@ -721,7 +730,7 @@ def _cfg_findings(text: str, call: Call) -> Iterator[_Finding]:
 
 def _packages_in(value: Value) -> tuple[str, ...]:
     if isinstance(value, list | tuple):
-        return tuple(it for it in value if isinstance(it, str))
+        return tuple(name for name in value if isinstance(name, str))
     return ()
 
 

@@ -258,7 +258,9 @@ def _read_element(text: str, package: str) -> FieldType:
     if not _is_message_name(name):
         meant = _MEANT.get(text) or near(text, PRIMITIVES) if not is_foreign else None
         word = text.rstrip("0123456789")
-        sizes = [it for it in sorted(PRIMITIVES) if it.rstrip("0123456789") == word]
+        sizes = [
+            primitive for primitive in sorted(PRIMITIVES) if primitive.rstrip("0123456789") == word
+        ]
         if meant is not None:
             hint = f"; did you mean {meant!r}?"
         else:

@@ -34,13 +34,13 @@ def known_interfaces(
     table = interface_table(package)
     if table is None:
         return None
-    found: dict[str, Interface] = {}
+    interfaces: dict[str, Interface] = {}
     for kind in get_args(InterfaceKind):
         for name, row in table.get(kind, {}).items():
             forms = [form for form in _forms(row, releases or RELEASES) if form != _ABSENT]
             if forms:
-                found[f"{kind}.{name}"] = _merged(kind, package, forms)
-    return found
+                interfaces[f"{kind}.{name}"] = _merged(kind, package, forms)
+    return interfaces
 
 
 def is_open_in(releases: Collection[Release]) -> bool:
@@ -95,12 +95,12 @@ def _merged(kind: InterfaceKind, package: str, forms: Iterable[str]) -> Interfac
 
 def _section(text: str, package: str) -> InterfaceSection:
     fields, _, constants = text.partition("|")
-    found = {}
+    section_fields = {}
     for written in fields.split(";"):
         if written.strip():
             type_text, name = written.split()
-            found[name] = InterfaceField(name, read_type(type_text, package))
-    return InterfaceSection(found, frozenset(constants.split()))
+            section_fields[name] = InterfaceField(name, read_type(type_text, package))
+    return InterfaceSection(section_fields, frozenset(constants.split()))
 
 
 def _with(one: InterfaceSection, other: InterfaceSection) -> InterfaceSection:

@@ -102,23 +102,23 @@ def other_name(
         shown: The start of the name that messages leave out, such as the package of a program.
     """
     row = _row_with(kind, name)
-    own = next((it for it in row if it.matches(name)), None)
-    if own is None or not releases or any(map(own.is_in, releases)):
+    named_row = next((other for other in row if other.matches(name)), None)
+    if named_row is None or not releases or any(map(named_row.is_in, releases)):
         return None
     release = min(releases, key=RELEASES.index)
-    is_later = RELEASES.index(release) > own.last
-    meant = next((it for it in row if it.is_in(release)), None)
+    is_later = RELEASES.index(release) > named_row.last
+    meant = next((other for other in row if other.is_in(release)), None)
     here = name.removeprefix(shown)
     if meant is None and is_later:
-        next_one = RELEASES[own.last + 1].title()
+        next_one = RELEASES[named_row.last + 1].title()
         return _OtherName(f"there is no {kind} {here!r} from {next_one} on")
     if meant is None:
-        return _OtherName(f"there is no {kind} {here!r} before {own.since.title()}")
-    there = meant.in_place_of(own, name).removeprefix(shown)
+        return _OtherName(f"there is no {kind} {here!r} before {named_row.since.title()}")
+    there = meant.in_place_of(named_row, name).removeprefix(shown)
     if is_later:
-        first = RELEASES[max(own.last + 1, meant.first)]
+        first = RELEASES[max(named_row.last + 1, meant.first)]
         return _OtherName(f"{here!r} is {there!r} from {first.title()} on", there)
-    last = RELEASES[min(own.first - 1, meant.last)]
+    last = RELEASES[min(named_row.first - 1, meant.last)]
     return _OtherName(f"{here!r} is {there!r} until {last.title()}", there)
 
 

@@ -146,7 +146,7 @@ def _types_given(
         for node in nodes
         if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
     )
-    found: dict[tuple[Location | None, str], list[tuple[str, ...]]] = {}
+    types_by_name: dict[tuple[Location | None, str], list[tuple[str, ...]]] = {}
     for part in parts:
         for call in part.calls:
             row = _CALLBACKS.get(last_name(call.func))
@@ -157,9 +157,9 @@ def _types_given(
             name, kind = dotted(callback), _interface_name(value_of(made, part.scope))
             types = tuple(f"{kind}{section}" for section in row.sections) if kind else ()
             of = part.of if name.startswith("self.") else None
-            found.setdefault((of, name), []).append(types)
+            types_by_name.setdefault((of, name), []).append(types)
     given = {}
-    for key, types_of_each in found.items():
+    for key, types_of_each in types_by_name.items():
         if len({*types_of_each}) == 1 and named[key[1]] == len(types_of_each):
             given[key] = types_of_each[0]
     return given
@@ -170,7 +170,9 @@ def given_argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
     for keyword in call.keywords:
         if keyword.arg == name:
             return keyword.value
-    if position < len(call.args) and not any(isinstance(it, ast.Starred) for it in call.args):
+    if position < len(call.args) and not any(
+        isinstance(argument, ast.Starred) for argument in call.args
+    ):
         return call.args[position]
     return None
 
@@ -329,7 +331,7 @@ def certain_nodes(function: ast.AST) -> Iterator[ast.AST]:
             case ast.Try(handlers=handlers, orelse=orelse, finalbody=final) if _catches(handlers):
                 pending += [*handlers, *orelse, *final]
             case ast.Module(body=body):
-                pending += [it for it in body if not isinstance(it, _SCOPES)]
+                pending += [statement for statement in body if not isinstance(statement, _SCOPES)]
             case _:
                 pending += ast.iter_child_nodes(node)
 

@@ -49,7 +49,11 @@ def _defaults(
         return
     kind = f"{node.package}/{node.executable}"
     if node.executable in SPAWNERS:
-        kinds = {it.type.text or "" for it in defined_controllers(workspace) if it.name == name}
+        kinds = {
+            controller.type.text or ""
+            for controller in defined_controllers(workspace)
+            if controller.name == name
+        }
         kind = kinds.pop() if len(kinds) == 1 else ""
     if not is_as_released(workspace, kind):
         yield ParameterValue(_NOT_KNOWN, node.location)
@@ -68,12 +72,16 @@ def _own_default(workspace: Workspace, node: StartedNode, parameter: str) -> Par
     for_all = row_for(_EVERY_NODE, parameter)
     if for_all is not None:
         return ParameterValue(_scalar_or_list(for_all.default), node.location)
-    same_name = [it for it in own_node.parameters if it.name in (parameter, None)]
+    same_name = [
+        candidate for candidate in own_node.parameters if candidate.name in (parameter, None)
+    ]
     nodes = workspace.code.by_package[node.package]
     if not same_name and not own_node.doubts and not nodes.has_loose_declarations:
         return None
-    declarations = [it for it in same_name if it.is_declared and it.name is not None]
-    if len({repr(it.default) for it in declarations}) != 1:
+    declarations = [
+        candidate for candidate in same_name if candidate.is_declared and candidate.name is not None
+    ]
+    if len({repr(declaration.default) for declaration in declarations}) != 1:
         return unknown
     declared = declarations[0]
     if declared.default is None:

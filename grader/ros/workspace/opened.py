@@ -65,10 +65,12 @@ class OpenedWorkspace:
         )
 
         has_other_robots = any(
-            not it.is_part for it in self.unused_candidates if not it.path.endswith(MANIFEST)
+            not candidate.is_part
+            for candidate in self.unused_candidates
+            if not candidate.path.endswith(MANIFEST)
         )
-        urdfs = tuple(it for it in (*self.robots, self.urdf) if isinstance(it, Read))
-        has_unread = has_other_robots or any(isinstance(it, Unreadable) for it in self.robots)
+        urdfs = tuple(robot for robot in (*self.robots, self.urdf) if isinstance(robot, Read))
+        has_unread = has_other_robots or any(isinstance(robot, Unreadable) for robot in self.robots)
         releases = (self.distro,) if self.distro is not None else self.stated.releases
         return Workspace(
             self.packages, urdfs, self.whole_tree, has_unread, releases, memory=self.memory
@@ -84,7 +86,9 @@ class OpenedWorkspace:
     @property
     def unused_candidates(self) -> tuple[OtherCandidate, ...]:
         """The other candidates that the URDF is not expanded from."""
-        return tuple(it for it in self.other_candidates if it.path not in self.included)
+        return tuple(
+            candidate for candidate in self.other_candidates if candidate.path not in self.included
+        )
 
     @property
     def included(self) -> Collection[str]:
@@ -123,10 +127,10 @@ class OpenedWorkspace:
         from grader.ros.workspace.rules.file_problems import listed_problems, ros1_problem
         from grader.ros.workspace.rules.release_problems import compared_names
 
-        found = [ros1_problem(package) for package in self.ros1_packages]
-        found += listed_problems(self.workspace)
-        found += compared_names(self.workspace)
-        return found
+        problems = [ros1_problem(package) for package in self.ros1_packages]
+        problems += listed_problems(self.workspace)
+        problems += compared_names(self.workspace)
+        return problems
 
     def default_value(self, node: str, parameter: str) -> "ParameterValue | None":
         """Return the value that a node has for a parameter that it does not get; None without."""
@@ -155,7 +159,7 @@ class OpenedWorkspace:
         """Return how much of it was read."""
         from grader.ros.workspace.extent import extent_of  # late: few commands say it
 
-        unread = sum(isinstance(it, Unreadable) for it in self.robots)
+        unread = sum(isinstance(robot, Unreadable) for robot in self.robots)
         return extent_of(self.workspace, unread, self.stated)
 
     def source(self, path: str) -> Source | None:

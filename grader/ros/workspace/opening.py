@@ -144,8 +144,12 @@ def _read_with_neighbours(
         )
         root = _workspace_around(root, _packages_in(asked) - {root.name})
         path = printable((folder / place.name).relative_to(root).as_posix())
-        found = read_folder(root)
-        tree = overlaid(found, {path: data}) if path in found.files or place.is_symlink() else None
+        folder_tree = read_folder(root)
+        tree = (
+            overlaid(folder_tree, {path: data})
+            if path in folder_tree.files or place.is_symlink()
+            else None
+        )
     except (OSError, InputError) as error:
         MachineError.check(error, printable_path(place.name))
         tree = None
@@ -166,8 +170,8 @@ def _read_around(place: Path, names: Collection[str]) -> tuple[tuple[Package, ..
     try:
         folder = place.parent.resolve()
         above = (folder, *folder.parents)
-        package = next((it for it in above if (it / MANIFEST).is_file()), None)
-        root = next((it for it in above if it.name in names), None)
+        package = next((parent for parent in above if (parent / MANIFEST).is_file()), None)
+        root = next((parent for parent in above if parent.name in names), None)
         if package is not None:
             root = _workspace_around(package, {*names} - {package.name})
         if root is None:

@@ -79,7 +79,12 @@ class Build:
             files_at=self._package_at or self.last,
             packages=tuple(self.modules),
             interfaces=tuple(self.interfaces),
-            targets=self.made.all({it: self.inside(it) for it in self.made.written_sources}),
+            targets=self.made.all(
+                {
+                    written_path: self.inside(written_path)
+                    for written_path in self.made.written_sources
+                }
+            ),
         )
 
     def give_up(self, reason: str, at: Position) -> None:
@@ -151,7 +156,7 @@ class Build:
             if words[1:2] != [ROOT]:
                 return Unknown("a search relative to another folder is not evaluated", at)
             words, start = words[2:], ""
-        found: set[str] = set()
+        found_paths: set[str] = set()
         for word in words:
             pattern = self.inside(word) if isinstance(word, str) else None
             if pattern is None or words[0] == "LIST_DIRECTORIES":
@@ -159,8 +164,8 @@ class Build:
             paths = self._matching(pattern, recursive=recursive)
             if not paths:
                 self.listing.empty[EmptyGlob(pattern, at)] = None
-            found.update(paths)
-        text = ";".join(f"{start}{path}" for path in sorted(found))
+            found_paths.update(paths)
+        text = ";".join(f"{start}{path}" for path in sorted(found_paths))
         self.listing.budget.charge(1, len(text))
         return text
 
@@ -224,14 +229,14 @@ class Build:
             return
         if name not in self.targets:
             self._stop_target(command, name)
-        found = self.values.packages
+        packages = self.values.packages
         reached = self.values.reached_packages()
         for text in rest if command.name == "ament_target_dependencies" else ():
-            if not isinstance(text, str) or not text.islower() or text in (reached or found):
+            if not isinstance(text, str) or not text.islower() or text in (reached or packages):
                 continue
-            self.listing.budget.charge(len(found))
+            self.listing.budget.charge(len(packages))
             # What is found may export the package, unless it is surely misspelt.
-            if reached is not None or near(text, found) is not None:
+            if reached is not None or near(text, packages) is not None:
                 self.stop(
                     f"{command.name}() names the package {text!r}, without find_package({text})",
                     command.at,
@@ -308,14 +313,14 @@ class Build:
         for keyword, items in _groups([str(text) for text in rest], keywords):
             groups.setdefault(keyword, []).extend(items)
         is_known = len(made) == len(files) and all(isinstance(text, str) for text in rest)
-        found = GeneratedInterfaces(
+        interfaces = GeneratedInterfaces(
             command.at,
             tuple(made),
             tuple(groups.get("DEPENDENCIES", ())),
             is_certain=is_known and self.values.uncertain is None,
             needs_group=groups.keys().isdisjoint(("SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK")),
         )
-        self.interfaces.append(found)
+        self.interfaces.append(interfaces)
 
     # --- Installed files
     # ----------------------------------------------------------------------

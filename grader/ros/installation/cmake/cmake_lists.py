@@ -333,8 +333,8 @@ class _Evaluation:
         texts = self.values.texts(command.arguments)
         match texts:
             case ["GLOB" | "GLOB_RECURSE" as word, str() as name, *patterns]:
-                found = self.build.searched(patterns, command.at, recursive=word != "GLOB")
-                self.values.assign(name, found)
+                found_paths = self.build.searched(patterns, command.at, recursive=word != "GLOB")
+                self.values.assign(name, found_paths)
             case _:
                 names = [
                     text for text in texts[1:] if isinstance(text, str) and text.isidentifier()

@@ -141,7 +141,9 @@ class _CMakeSlips:
         if not path or path in known:
             return
         folder = path.rpartition("/")[0]
-        meant = self._near(path, [it for it in known if it.rpartition("/")[0] == folder])
+        meant = self._near(
+            path, [other_path for other_path in known if other_path.rpartition("/")[0] == folder]
+        )
         if meant is not None:
             new = argument.text.replace(path, meant)
             yield self._of_argument(argument, new, f"the package has no {argument.text}")

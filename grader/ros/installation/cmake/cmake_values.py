@@ -50,12 +50,12 @@ class Values:
             self._reached = (key, self._reach(self.packages - {key[1]}))
         return self._reached[1]
 
-    def _reach(self, found: set[str]) -> set[str] | None:
+    def _reach(self, packages: set[str]) -> set[str] | None:
         exports = cmake_words().exports
-        self.budget.charge(len(found))
-        if not found.issubset(exports):
+        self.budget.charge(len(packages))
+        if not packages.issubset(exports):
             return None
-        pending, reached = [*found], set[str]()
+        pending, reached = [*packages], set[str]()
         while pending:
             package = pending.pop()
             if package not in reached:
@@ -104,11 +104,11 @@ class Values:
                 stack[-1].append(Unknown(f"{piece[0]} is not known", at))
             else:
                 stack[-1].append(piece[0])
-        found = joined(part for parts in stack for part in parts)
-        self.budget.charge(1, len(text) if isinstance(found, Unknown) else len(found))
-        if isinstance(found, str) and len(found) > _MAX_TEXT:
+        text_value = joined(part for parts in stack for part in parts)
+        self.budget.charge(1, len(text) if isinstance(text_value, Unknown) else len(text_value))
+        if isinstance(text_value, str) and len(text_value) > _MAX_TEXT:
             return Unknown("a value is too long", at)
-        return found
+        return text_value
 
     def lookup(self, name: str, at: Position) -> Text:
         """Return the value of a variable: an empty text if it is certainly not set."""

@@ -68,7 +68,9 @@ class _CppSearch:
 
     def __init__(self, unit: CppUnit, nodes: Collection[str]) -> None:
         self._unit, self._nodes = unit, nodes
-        self._methods = [it for it in unit.functions if unit.owner_of(it) in nodes]
+        self._methods = [
+            function for function in unit.functions if unit.owner_of(function) in nodes
+        ]
 
     def _calls(self, function: CppFunction, *names: str) -> Iterator[CppNode]:
         for call in self._unit.calls_in(function):
@@ -79,8 +81,8 @@ class _CppSearch:
     def _uses(self, name: str, function: CppFunction) -> list[CppNode]:
         """Return where a name is written in a function."""
         node = function.node
-        uses = [it for it in self._unit.uses.get(name, ()) if it.file is node.file]
-        return [it for it in uses if node.start <= it.start < node.end]
+        uses = [use for use in self._unit.uses.get(name, ()) if use.file is node.file]
+        return [use for use in uses if node.start <= use.start < node.end]
 
     def destroyed(self) -> Iterator[CodeFault]:
         """Yield what a method makes and nothing keeps: it is destroyed when the method ends."""
@@ -130,19 +132,19 @@ class _CppSearch:
         for function in self._unit.functions:
             if function.body is None or not any(self._calls(function, "sendTransform")):
                 continue
-            found: dict[str, dict[str, list[CppNode]]] = {}
+            assigned: dict[str, dict[str, list[CppNode]]] = {}
             for node in function.node.walk():
                 if node.kind != "assignment_expression":
                     continue
                 left, right = node.child("left"), node.child("right")
                 match = _ROTATION.fullmatch(left.text) if left is not None else None
                 if match is not None and right is not None:
-                    parts = found.setdefault(match[1], {})
+                    parts = assigned.setdefault(match[1], {})
                     parts.setdefault(match[2], []).append(right)
-            for path, parts in found.items():
-                written = [it for values in parts.values() for it in values]
-                numbers = [it for it in written if it.kind == "number_literal"]
-                zeros = [it for it in numbers if _ZERO.fullmatch(it.text)]
+            for path, parts in assigned.items():
+                written = [value for values in parts.values() for value in values]
+                numbers = [value for value in written if value.kind == "number_literal"]
+                zeros = [number for number in numbers if _ZERO.fullmatch(number.text)]
                 is_zero = len(parts) == len(zeros) == len(written) == 4
                 if is_zero and self._is_only_sent(path, function):
                     message = "the rotation 0 0 0 0 turns nothing: tf2 ignores the transform"
@@ -199,15 +201,23 @@ class _CppSearch:
         owner = called.child("argument") if called is not None else None
         if owner is None or owner.kind != "identifier":
             return False
-        variables = [it for found in self._unit.variables.values() for it in found]
-        own = [it for it in variables if it.declarator.text == owner.text]
-        if len(own) != 1 or not re.search(rf"\b{_BUFFER}\b", own[0].type):
+        variables = [
+            variable
+            for variables_of_name in self._unit.variables.values()
+            for variable in variables_of_name
+        ]
+        declared = [variable for variable in variables if variable.declarator.text == owner.text]
+        if len(declared) != 1 or not re.search(rf"\b{_BUFFER}\b", declared[0].type):
             return False
         return all(_is_plain_use(use) for use in self._unit.uses[owner.text])
 
     def without_spin(self) -> Iterator[CodeFault]:
         """Yield the end of a main() whose nodes nothing spins."""
-        mains = [it for it in self._unit.functions if it.name == "main" and not it.owner]
+        mains = [
+            function
+            for function in self._unit.functions
+            if function.name == "main" and not function.owner
+        ]
         words = {word for file in self._unit.files for word in file.words}
         if len(mains) != 1 or any(_SPINNING.search(word) for word in words):
             return
@@ -247,10 +257,18 @@ class _CppSearch:
             if around.kind == "lambda_expression":
                 return _is_callback_argument(around)
         for use in self._unit.uses.get(function.name, ()):
-            pointed = next((it for it in use.ancestors() if it.kind == "pointer_expression"), None)
+            pointed = next(
+                (ancestor for ancestor in use.ancestors() if ancestor.kind == "pointer_expression"),
+                None,
+            )
             if pointed is not None and pointed.text.startswith("&"):
                 bound = next(
-                    (it for it in pointed.ancestors() if it.kind == "call_expression"), None
+                    (
+                        ancestor
+                        for ancestor in pointed.ancestors()
+                        if ancestor.kind == "call_expression"
+                    ),
+                    None,
                 )
                 if bound is not None and called_name(bound) == "std::bind":
                     return _is_callback_argument(bound)
@@ -280,7 +298,7 @@ def _may_wait(function: CppFunction, unit: CppUnit) -> bool:
     """Return whether a function may run for so long that what it makes does its work."""
     if any(node.kind in _LOOPS for node in function.node.walk()):
         return True
-    calls = [it for it in unit.calls_in(function) if it.kind == "call_expression"]
+    calls = [call for call in unit.calls_in(function) if call.kind == "call_expression"]
     return any(_SPINNING.search(called_name(call).rpartition("::")[2]) for call in calls)
 
 

@@ -47,7 +47,7 @@ def _set_frame(
     value = setting.child("right")
     if member.field != "left" or value is None:
         return
-    root = next((it for it in member.walk() if it.kind == "identifier"), None)
+    root = next((inner for inner in member.walk() if inner.kind == "identifier"), None)
     is_transform = root is not None and _type_of(root, function, unit).endswith(_TRANSFORM)
     is_child = use.text == "child_frame_id"
     kind: FrameUse = "names"

@@ -74,11 +74,13 @@ class CppContentReader:
                 if len(names) != 1 or given is None or is_conditional(node, file.syntax.root):
                     continue
                 [by] = names
-                written = [it for it in given.children if it.kind == "type_descriptor"]
-                types = [message_type(it.text, self._unit, scopes) for it in written]
+                written = [child for child in given.children if child.kind == "type_descriptor"]
+                types = [
+                    message_type(descriptor.text, self._unit, scopes) for descriptor in written
+                ]
                 if (by, *types) not in said:
                     said.add((by, *types))
-                    others = tuple(it for it in types if it is not None)
+                    others = tuple(type_name for type_name in types if type_name is not None)
                     for each, at in zip(types, written, strict=True):
                         if each is not None:
                             yield SynchronisedType(each, by, at.location, others)
@@ -102,15 +104,15 @@ class CppContentReader:
         """
         if not any(name in self._unit.uses for name in (_ENCODING, *_CONVERTING, _TO_MESSAGE)):
             return {}
-        found = {}
+        encodings_by_place = {}
         for function in self._unit.functions:
             for call in self._unit.calls_in(function):
                 name = called_name(call) if call.kind == "call_expression" else ""
                 if name == "create_publisher":
-                    found[call.location] = self._sent_by(call)
+                    encodings_by_place[call.location] = self._sent_by(call)
                 elif name == "create_subscription":
-                    found[call.location] = self._asked_by(call, function)
-        return found
+                    encodings_by_place[call.location] = self._asked_by(call, function)
+        return encodings_by_place
 
     # --- What is sent
     # ----------------------------------------------------------------------
@@ -219,7 +221,8 @@ class CppContentReader:
             [assignment, *more] = writes.encodings
             value = assignment.child("right")
             is_last = not more and all(
-                it.file is assignment.file and it.start < assignment.start for it in writes.values
+                write.file is assignment.file and write.start < assignment.start
+                for write in writes.values
             )
             is_set = value is not None and is_last and self._reaches(assignment, node)
             return self._encoding_in([value], 0) if is_set and value is not None else None
@@ -227,7 +230,9 @@ class CppContentReader:
             return None
         [value] = writes.values
         if value.kind in _LISTS:
-            return self._encoding_in([it for it in value.children if it.kind != "comment"], 1)
+            return self._encoding_in(
+                [child for child in value.children if child.kind != "comment"], 1
+            )
         return self._encoding_of(value, depth - 1)
 
     def _writes_of(self, name: CppNode) -> _Writes | None:
@@ -293,8 +298,10 @@ class CppContentReader:
     ) -> tuple[CppNode | None, CppNode | None]:
         """Return the body of a callback and the name of what it is given, as far as known."""
         if callback.kind == "identifier":
-            declared = [it for it in self._evaluation.uses_of(callback) or () if it is not callback]
-            values = [_value_declared(it) for it in declared if it.field == "declarator"]
+            declared = [
+                use for use in self._evaluation.uses_of(callback) or () if use is not callback
+            ]
+            values = [_value_declared(use) for use in declared if use.field == "declarator"]
             if len(declared) == 1 and len(values) == 1 and values[0] is not None:
                 callback = values[0]
         if callback.kind == "lambda_expression":
@@ -323,11 +330,11 @@ class CppContentReader:
     @cached_property
     def _methods(self) -> Mapping[tuple[str, str], Sequence[CppFunction]]:
         """The functions by their classes and names."""
-        found: dict[tuple[str, str], list[CppFunction]] = {}
+        methods: dict[tuple[str, str], list[CppFunction]] = {}
         for function in self._unit.functions:
             owner = self._unit.owner_of(function)
-            found.setdefault((owner, function.name), []).append(function)
-        return found
+            methods.setdefault((owner, function.name), []).append(function)
+        return methods
 
     def _asked_in(self, body: CppNode, message: CppNode) -> tuple[ImageEncoding, ...]:
         """Return the encodings to which a function converts a message; none where one is not
@@ -441,7 +448,7 @@ def _parameter_name(parameters: Sequence[CppNode]) -> CppNode | None:
 
 def _only_call(body: CppNode, message: CppNode | None) -> CppNode | None:
     """Return the call of a method that is all that a function does with what it is given."""
-    statements = [it for it in body.children if it.kind != "comment"]
+    statements = [child for child in body.children if child.kind != "comment"]
     if message is None or len(statements) != 1 or not statements[0].children:
         return None
     call = statements[0].children[0]

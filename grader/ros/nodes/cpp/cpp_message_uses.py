@@ -77,10 +77,10 @@ def _types_in(function: CppFunction, unit: CppUnit) -> dict[str, str]:
             continue
         for name, value in declared_in(node):
             declared[name.text] += 1
-            found = _type_of(node, value, unit, scopes)
-            if found is not None:
-                types[name.text] = found
-    return {name: found for name, found in types.items() if declared[name] == 1}
+            type_found = _type_of(node, value, unit, scopes)
+            if type_found is not None:
+                types[name.text] = type_found
+    return {name: type_name for name, type_name in types.items() if declared[name] == 1}
 
 
 def _type_of(
@@ -97,11 +97,11 @@ def _type_of(
     if name.rpartition("::")[2] in _POINTERS:
         arguments = written.partition("<")[2].rpartition(">")[0]
         name = plain(arguments.strip().removeprefix("const ").removesuffix(" const"))
-    found = _TYPE.fullmatch(unit.meanings(name, scopes)[0])
-    if found is None:
+    match = _TYPE.fullmatch(unit.meanings(name, scopes)[0])
+    if match is None:
         return None
-    section = f".{found['section']}" if found["section"] else ""
-    return f"{found['package']}.{found['kind']}.{found['name']}{section}"
+    section = f".{match['section']}" if match["section"] else ""
+    return f"{match['package']}.{match['kind']}.{match['name']}{section}"
 
 
 def _type_made(value: CppNode | None) -> str:

@@ -172,21 +172,21 @@ class _Target:
     def _node_classes(self) -> Mapping[str, CppClass]:
         """The classes of nodes by their full names: those that are derived from one of rclcpp's."""
         kinds = set(cpp_table().nodes)
-        found: dict[str, CppClass] = {}
+        node_classes: dict[str, CppClass] = {}
         is_growing = True
         while is_growing:
             is_growing = False
             for name, classes in self._unit.classes.items():
                 self._budget.charge(_OF_NODE)
-                if name not in found and self._is_node(classes[0], kinds):
-                    found[name] = classes[0]
+                if name not in node_classes and self._is_node(classes[0], kinds):
+                    node_classes[name] = classes[0]
                     kinds.add(name)
                     is_growing = True
-        return found
+        return node_classes
 
     def _is_node(self, each: CppClass, kinds: set[str]) -> bool:
         scopes = each.name.split("::")[:-1]
-        return any(not kinds.isdisjoint(self._unit.meanings(it, scopes)) for it in each.bases)
+        return any(not kinds.isdisjoint(self._unit.meanings(base, scopes)) for base in each.bases)
 
     def _doubts_of_class(self, each: CppClass) -> Iterator[Doubt]:
         """Yield why a class may declare or open more than its own methods do."""
@@ -266,8 +266,12 @@ class _Target:
         if node.kind != "identifier":
             return None
         inside = function.node
-        uses = [it for it in self._unit.uses.get(node.text, ()) if it.file is node.file]
-        uses = [it for it in uses if inside.start <= it.start < inside.end]
+        uses = [
+            same_name
+            for same_name in self._unit.uses.get(node.text, ())
+            if same_name.file is node.file
+        ]
+        uses = [same_name for same_name in uses if inside.start <= same_name.start < inside.end]
         self._budget.charge(1 + len(uses))
         made: list[CppNode] = []
         for use in uses:
@@ -287,9 +291,9 @@ class _Target:
         if variable is not None and function is not None:
             uses = [*self._unit.uses.get(variable.text, ())]
             if variable.kind == "identifier" and variable.field == "declarator":
-                inside = [it for it in uses if it.file is function.node.file]
+                inside = [same_name for same_name in uses if same_name.file is function.node.file]
                 start, end = function.node.start, function.node.end
-                uses = [it for it in inside if start <= it.start < end]
+                uses = [same_name for same_name in inside if start <= same_name.start < end]
         self._budget.charge(1 + len(uses))
         for use in uses:
             taker = taker_of(self_of(use, _SELF))
@@ -313,7 +317,7 @@ class _Target:
         if owner in self._facts:
             self._facts[owner] += frames
         else:
-            self.loose_frames += [it for it in frames if it.use == "publishes"]
+            self.loose_frames += [frame for frame in frames if frame.use == "publishes"]
 
     def _read_call(
         self, call: CppNode, function: CppFunction, scopes: Sequence[str], owner: str
@@ -357,8 +361,8 @@ class _Target:
             return False
         owner = self._unit.owner_of(function)
         return any(
-            it.name == name and self._unit.owner_of(it) in ("", owner)
-            for it in self._unit.functions
+            candidate.name == name and self._unit.owner_of(candidate) in ("", owner)
+            for candidate in self._unit.functions
         )
 
     def _read_function_of_library(self, call: CppNode, owner: str) -> None:
@@ -417,13 +421,13 @@ class _Target:
             return None
         scopes = self._unit.scopes_of(function)
         match = _FILTER.search(self._type_given(taker, scopes))
-        arguments = [it for it in given.children if it.kind != "comment"]
+        arguments = [child for child in given.children if child.kind != "comment"]
         if match is None or arguments[:1] != [node]:
             return None
         if _SUBSCRIBER not in self._unit.meanings(match["class"], scopes):
             return None
         type_name = message_type(match["type"], self._unit, scopes)
-        values = [self._evaluation.value_of(it) for it in arguments]
+        values = [self._evaluation.value_of(argument) for argument in arguments]
         return filter_subscription(type_name, values, taker.location)
 
     def _type_given(self, taker: CppNode, scopes: Sequence[str]) -> str:
@@ -509,12 +513,15 @@ class _Target:
     @cached_property
     def _names(self) -> Mapping[str, _Name]:
         """The name that each class gives its node."""
-        found: dict[str, set[_Name]] = {name: set() for name in self._node_classes}
+        names_of_classes: dict[str, set[_Name]] = {name: set() for name in self._node_classes}
         for function in self._unit.functions:
             owner = self._unit.owner_of(function)
-            if owner in found and function.name == owner.rpartition("::")[2]:
-                found[owner] |= set(self._names_in(function))
-        return {name: names.pop() if len(names) == 1 else None for name, names in found.items()}
+            if owner in names_of_classes and function.name == owner.rpartition("::")[2]:
+                names_of_classes[owner] |= set(self._names_in(function))
+        return {
+            name: names.pop() if len(names) == 1 else None
+            for name, names in names_of_classes.items()
+        }
 
     def _names_in(self, constructor: CppFunction) -> Iterator[_Name]:
         """Yield the name that a constructor gives its base class, if that is rclcpp's own."""
@@ -524,7 +531,9 @@ class _Target:
                 written = each.children[0].text if each.children else ""
                 meanings = {*self._unit.meanings(plain(written), scopes)}
                 is_base = bool(meanings & cpp_table().nodes)
-                is_short = any(it.endswith(f"::{written}") for it in cpp_table().nodes)
+                is_short = any(
+                    node_class.endswith(f"::{written}") for node_class in cpp_table().nodes
+                )
                 if is_base or is_short:
                     given = arguments_of(each)
                     yield self._name_given(given[0], constructor) if given else None
@@ -553,8 +562,11 @@ class _Target:
 
     def faults(self) -> Iterator[CodeFault]:
         """Yield what keeps the nodes of the target from doing anything."""
-        created = [it.node if it.node in self._facts else it.class_name for it in self._created]
-        is_known = not any(isinstance(it, Doubt) for key in created for it in self._facts[key])
+        created = [
+            started.node if started.node in self._facts else started.class_name
+            for started in self._created
+        ]
+        is_known = not any(isinstance(fact, Doubt) for key in created for fact in self._facts[key])
         is_read = not self._compiled.unread and self._compiled.target.is_certain
         is_program = self._compiled.target.kind == "executable" and bool(created) and is_known
         yield from cpp_faults(
@@ -585,17 +597,21 @@ class _Target:
         target = self._compiled.target
         setup = package.installation
         if target.kind == "executable":
-            mains = [it for it in self._unit.functions if it.name == "main" and not it.owner]
-            nodes = tuple(self._started_by(it) for it in self._created)
+            mains = [
+                function
+                for function in self._unit.functions
+                if function.name == "main" and not function.owner
+            ]
+            nodes = tuple(self._started_by(started) for started in self._created)
             at = mains[0].node.location if mains else self._start
             path = at.path.removeprefix(package.path(""))
             yield NodeProgram(target.name, nodes if mains else (), at, path, "main")
         for component in target.components:
             if component.executable and setup is not None:
                 name = component.plugin.removeprefix("::")
-                found = [self._node(name)] if name in self._facts else []
+                component_nodes = [self._node(name)] if name in self._facts else []
                 at = setup.location(component.at)
-                yield NodeProgram(component.executable, tuple(found), at, "", "")
+                yield NodeProgram(component.executable, tuple(component_nodes), at, "", "")
 
     def _started_by(self, created: _Created) -> NodeFacts:
         """Return the node that an object is, with the name that its constructor is given."""

@@ -104,12 +104,12 @@ def filter_subscription(
 
 def message_type(written: str, unit: CppUnit, scopes: Sequence[str]) -> str | None:
     """Return the full name of a message, service or action; None for one that is not known."""
-    found = set()
+    types = set()
     for meaning in unit.meanings(plain(written), scopes):
         match = _MESSAGE.fullmatch(meaning)
         if match is not None:
-            found.add(".".join(match.groups()))
-    return found.pop() if len(found) == 1 else None
+            types.add(".".join(match.groups()))
+    return types.pop() if len(types) == 1 else None
 
 
 def name_of(value: CppValue) -> tuple[str | None, tuple[NamePart, ...]]:

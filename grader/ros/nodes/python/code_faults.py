@@ -106,7 +106,7 @@ def _undefined_names(code: Code) -> Iterator[CodeFault]:
         return
     unevaluated = _unevaluated(code.tree)
     said = set[str]()
-    for message in sorted(checker.messages, key=lambda it: (it.lineno, it.col)):
+    for message in sorted(checker.messages, key=lambda fault: (fault.lineno, fault.col)):
         text = message.message % message.message_args
         at = Position(message.lineno, message.col + 1)
         if type(message).__name__ in _CERTAIN and at not in unevaluated and text not in said:
@@ -203,18 +203,18 @@ class _Search:
         self, part: CodePart, owner: ast.ClassDef, known: Collection[str], asked: set[str]
     ) -> Iterator[CodeFault]:
         """Yield those of a method; what is said is added to what the module asks for."""
-        own = {name for node in owner.body for name in _defined_by(node)}
+        own_names = {name for node in owner.body for name in _defined_by(node)}
         for node in certain_nodes(part.node):
             match node:
                 case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Load()):
                     pass
                 case _:
                     continue
-            if name in own or name in known or name in asked or name.startswith("_"):
+            if name in own_names or name in known or name in asked or name.startswith("_"):
                 continue
             asked.add(name)
-            sure = near(name, own.union(known))
-            meant = sure or closest(name, own)
+            sure = near(name, own_names.union(known))
+            meant = sure or closest(name, own_names)
             hint = f"; did you mean {meant}?" if meant is not None else ""
             message = f"{owner.name} has no attribute {name}{hint}"
             end = self._end(node)
@@ -228,37 +228,37 @@ class _Search:
 
     def called_callbacks(self) -> Iterator[CodeFault]:
         """Yield callbacks that are called in place of passed."""
-        for found in self._registered:
-            if not isinstance(found.given, ast.Call):
+        for registered in self._registered:
+            if not isinstance(registered.given, ast.Call):
                 continue
-            function = self._function(found.given.func, found.part)
+            function = self._function(registered.given.func, registered.part)
             if function is None or function.decorator_list:
                 continue
-            name = dotted(found.given.func)
-            if _lacks_arguments(found.given, function, is_method=name.startswith("self.")):
+            name = dotted(registered.given.func)
+            if _lacks_arguments(registered.given, function, is_method=name.startswith("self.")):
                 what = f"calls {name}() without its arguments"
             elif not _gives_value(function):
                 what = f"is given what {name}() returns, which is None"
             else:
                 continue
-            message = f"{found.by}() {what}; write {name} without the parentheses"
-            at, fixes = self._at(found.given), NO_FIXES
-            if not (found.given.args or found.given.keywords):
+            message = f"{registered.by}() {what}; write {name} without the parentheses"
+            at, fixes = self._at(registered.given), NO_FIXES
+            if not (registered.given.args or registered.given.keywords):
                 start = self._code.source.offset(at.line, at.column)
-                fixes = self._rewrite(start, self._end(found.given), name)
+                fixes = self._rewrite(start, self._end(registered.given), name)
             yield CodeFault("callback is called", message, at, fixes=fixes)
 
     def without_response(self) -> Iterator[CodeFault]:
         """Yield callbacks of services and actions that return nothing."""
         said = set[ast.AST]()
-        for found in self._registered:
-            function = self._function(found.given, found.part)
-            if found.by not in _ANSWERING or function is None or function in said:
+        for registered in self._registered:
+            function = self._function(registered.given, registered.part)
+            if registered.by not in _ANSWERING or function is None or function in said:
                 continue
             said.add(function)
             if function.decorator_list or _is_generator(function):
                 continue
-            what = "response" if found.by == "create_service" else "result"
+            what = "response" if registered.by == "create_service" else "result"
             for node, is_certain in _ends_without_value(function):
                 message = f"{function.name}() ends without returning its {what} here"
                 if node is function:
@@ -266,7 +266,7 @@ class _Search:
                     if not is_certain:
                         message = f"{message} on every path"
                 at = self._at(node)
-                yield CodeFault("no response", message, at, self._at(found.call), is_certain)
+                yield CodeFault("no response", message, at, self._at(registered.call), is_certain)
 
     def waiting_callbacks(self) -> Iterator[CodeFault]:
         """Yield what callbacks wait for while nothing else can run: with one thread, and one
@@ -288,7 +288,9 @@ class _Search:
     def _waiting(self, call: ast.Call, name: str, clients: Collection[str]) -> Iterator[CodeFault]:
         called = dotted(call.func)
         owner, _, method = called.rpartition(".")
-        has_timeout = any(it.arg == "timeout_sec" for it in call.keywords) or len(call.args) > 2
+        has_timeout = (
+            any(keyword.arg == "timeout_sec" for keyword in call.keywords) or len(call.args) > 2
+        )
         if method == "call" and owner in clients and not has_timeout:
             message = (
                 f"{called}() in the callback {name}() waits for ever: the answer is only read "
@@ -311,8 +313,11 @@ class _Search:
         call.
         """
         seen = set[ast.AST]()
-        pending = [it for it in self._registered if it.by != "ActionServer"]
-        reached = [(self._function(it.given, it.part), it.part) for it in pending]
+        pending = [registered for registered in self._registered if registered.by != "ActionServer"]
+        reached = [
+            (self._function(registered.given, registered.part), registered.part)
+            for registered in pending
+        ]
         while reached:
             function, part = reached.pop(0)
             if function is None or function in seen:
@@ -329,14 +334,18 @@ class _Search:
         """
         name = self._module.name
         for module in self._others.values():
-            is_user = any(f"{it}.".startswith(f"{name}.") for it in module.imports)
-            is_used = any(f"{it}.".startswith(f"{module.name}.") for it in self._module.imports)
+            is_user = any(f"{imported}.".startswith(f"{name}.") for imported in module.imports)
+            is_used = any(
+                f"{imported}.".startswith(f"{module.name}.") for imported in self._module.imports
+            )
             if module.name != name and not is_user and not is_used:
                 continue
             text = module.code.source.text
             if any(word in text for word in _CONCURRENT):
                 return True
-            if not _CONCURRENT_MODULES.isdisjoint(it.partition(".")[0] for it in module.imports):
+            if not _CONCURRENT_MODULES.isdisjoint(
+                imported.partition(".")[0] for imported in module.imports
+            ):
                 return True
         return False
 
@@ -371,8 +380,10 @@ class _Search:
 
     def _is_imported(self) -> bool:
         name = self._module.name
-        others = [it for it in self._others.values() if it.name != name]
-        return any(f"{it}.".startswith(f"{name}.") for other in others for it in other.imports)
+        others = [other for other in self._others.values() if other.name != name]
+        return any(
+            f"{imported}.".startswith(f"{name}.") for other in others for imported in other.imports
+        )
 
     def _reached_modules(self) -> list[ModuleText] | None:
         """Return the module and the own ones that it imports; None if others may spin a node."""
@@ -381,11 +392,18 @@ class _Search:
         while pending:
             for full in pending.pop().imports:
                 names = [full, full.rpartition(".")[0]]
-                own = next((self._others[it] for it in names if it in self._others), None)
-                if own is not None:
-                    if own.name not in reached:
-                        reached[own.name] = own
-                        pending.append(own)
+                own_module = next(
+                    (
+                        self._others[module_name]
+                        for module_name in names
+                        if module_name in self._others
+                    ),
+                    None,
+                )
+                if own_module is not None:
+                    if own_module.name not in reached:
+                        reached[own_module.name] = own_module
+                        pending.append(own_module)
                 elif not is_passive(full):
                     return None
         return [*reached.values()]
@@ -434,7 +452,7 @@ def _lacks_arguments(
     call: ast.Call, function: ast.FunctionDef | ast.AsyncFunctionDef, *, is_method: bool
 ) -> bool:
     """Return whether a call certainly gives a function too few arguments."""
-    if any(isinstance(it, ast.Starred) for it in call.args) or any(
+    if any(isinstance(argument, ast.Starred) for argument in call.args) or any(
         keyword.arg is None for keyword in call.keywords
     ):
         return False
@@ -444,14 +462,14 @@ def _lacks_arguments(
 
 
 def _is_generator(function: ast.AST) -> bool:
-    return any(isinstance(it, ast.Yield | ast.YieldFrom) for it in ast.walk(function))
+    return any(isinstance(node, ast.Yield | ast.YieldFrom) for node in ast.walk(function))
 
 
 def _gives_value(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
     if isinstance(function, ast.AsyncFunctionDef) or _is_generator(function):
         return True
-    returns = [it for it in _own_statements(function.body) if isinstance(it, ast.Return)]
-    return any(it.value is not None for it in returns)
+    returns = [inner for inner in _own_statements(function.body) if isinstance(inner, ast.Return)]
+    return any(returned.value is not None for returned in returns)
 
 
 def _ends_without_value(
@@ -492,27 +510,27 @@ def _falls_off(body: Sequence[ast.stmt]) -> str:
 
 def _falls_off_plain(statement: ast.stmt) -> str:
     """Return the same for a statement that is a loop, or has no blocks."""
-    found = "yes"
+    ending = "yes"
     match statement:
         case ast.Return() | ast.Raise() | ast.Continue() | ast.Break():
-            found = "no"
+            ending = "no"
         case ast.Expr(value=ast.Call(func=made)) if dotted(made) in _ENDING:
-            found = "no"
+            ending = "no"
         case ast.While(test=ast.Constant(value=value)) if value:
-            has_break = any(isinstance(it, ast.Break) for it in ast.walk(statement))
-            found = "maybe" if has_break else "no"
+            has_break = any(isinstance(inner, ast.Break) for inner in ast.walk(statement))
+            ending = "maybe" if has_break else "no"
         case ast.While() | ast.For() | ast.AsyncFor() | ast.Match():
-            found = "maybe"
-    return found
+            ending = "maybe"
+    return ending
 
 
 def _falls_off_try(statement: ast.Try) -> str:
     if statement.finalbody and _falls_off(statement.finalbody) == "no":
         return "no"
-    found = _falls_off(statement.orelse or statement.body)
+    ending = _falls_off(statement.orelse or statement.body)
     for handler in statement.handlers:
-        found = _either(found, _falls_off(handler.body))
-    return found
+        ending = _either(ending, _falls_off(handler.body))
+    return ending
 
 
 def _either(one: str, other: str) -> str:

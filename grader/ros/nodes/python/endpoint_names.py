@@ -79,15 +79,18 @@ def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
     return Bindings(_only(values, once), _only(loops, once))
 
 
-def _only(found: Mapping[str, _Found], names: Collection[str]) -> dict[str, _Found]:
-    return {name: value for name, value in found.items() if name in names}
+def _only(constants: Mapping[str, _Found], names: Collection[str]) -> dict[str, _Found]:
+    return {name: value for name, value in constants.items() if name in names}
 
 
 def _looped(node: ast.For | ast.comprehension) -> tuple[str, _Loop]:
     """Return the name that a loop gives each item of a list; of enumerate() that of the item."""
     first, last = 0, sys.maxsize
     if isinstance(node, ast.For):
-        first, last = node.lineno, max(it.end_lineno or it.lineno for it in node.body)
+        first, last = (
+            node.lineno,
+            max(statement.end_lineno or statement.lineno for statement in node.body),
+        )
     match node.target, node.iter:
         case ast.Tuple(elts=[_, named]), ast.Call(func=ast.Name(id="enumerate"), args=[items]):
             return dotted(named), _Loop(items, first, last)
@@ -137,15 +140,15 @@ class EndpointNames:
 
     def _joined(self, parts: Iterable[NamePart]) -> _Parts:
         """Return parts, of which no two texts follow each other."""
-        found: list[NamePart] = []
+        joined: list[NamePart] = []
         for part in parts:
-            if found and found[-1].kind == part.kind == "text":
-                found[-1] = NamePart("text", found[-1].text + part.text)
-            elif len(found) < _MAX_PARTS:
-                found.append(part)
+            if joined and joined[-1].kind == part.kind == "text":
+                joined[-1] = NamePart("text", joined[-1].text + part.text)
+            elif len(joined) < _MAX_PARTS:
+                joined.append(part)
             else:
-                found[-1] = _UNKNOWN
-        return tuple(found)
+                joined[-1] = _UNKNOWN
+        return tuple(joined)
 
     def _parts(
         self, node: ast.expr, items: Mapping[str, ast.expr], depth: int = 0

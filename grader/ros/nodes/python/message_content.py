@@ -77,7 +77,7 @@ class ContentReader:
         they get, by the places where these are made; none where one is not known.
         """
         asked = self._encodings_asked()
-        found: dict[Location, list[ImageEncoding | None]] = {}
+        encodings_by_place: dict[Location, list[ImageEncoding | None]] = {}
         for function in self._functions:
             names_encoding = _names_encoding(function.part)
             for call in function.part.calls:
@@ -86,13 +86,15 @@ class ContentReader:
                         made = function.resolve(owner)
                         if isinstance(made, ast.Call) and last_name(made.func) == _PUBLISHES:
                             sent = None if names_encoding else self._sent(function, call)
-                            found.setdefault(self._at(made), []).append(sent)
+                            encodings_by_place.setdefault(self._at(made), []).append(sent)
                     case ast.Attribute(attr="create_subscription"):
                         name = dotted(given_argument(call, 2, "callback") or call)
                         of = function.part.of if name.startswith("self.") else None
-                        found.setdefault(self._at(call), []).extend(asked.get((of, name), ()))
+                        encodings_by_place.setdefault(self._at(call), []).extend(
+                            asked.get((of, name), ())
+                        )
         known = {}
-        for at, encodings in found.items():
+        for at, encodings in encodings_by_place.items():
             if None not in encodings:
                 known[at] = tuple(each for each in encodings if each is not None)
         return known

@@ -52,8 +52,8 @@ def node_slips(code: Code, program: Program) -> list[Slip]:
     nodes = [*ast.walk(code.tree)]
     if binds_unseen(nodes):
         return []
-    found = [*_NodeSlips(code, nodes, program).found()]
-    return sorted(found, key=lambda slip: (slip.location.line, slip.location.column))
+    slips = [*_NodeSlips(code, nodes, program).found()]
+    return sorted(slips, key=lambda slip: (slip.location.line, slip.location.column))
 
 
 class _NodeSlips:
@@ -136,9 +136,9 @@ class _NodeSlips:
                 yield from self._called_callbacks(function.owner, statements)
                 pending += self._methods(function.owner, statements)
             for statement in statements:
-                found = [*_calls(statement)]
-                pending += [_Function(self._functions[name]) for name in self._called(found)]
-                for name in {dotted(call.func) for call in found} & self._classes.keys():
+                calls = [*_calls(statement)]
+                pending += [_Function(self._functions[name]) for name in self._called(calls)]
+                for name in {dotted(call.func) for call in calls} & self._classes.keys():
                     made.append((function, statement, name))
         yield from self._without_rclpy(made)
 
@@ -171,7 +171,7 @@ class _NodeSlips:
                 names = {dotted(kind).rpartition(".")[2] for kind in _types(handlers)}
                 return [body, final] if names <= _INTERRUPTS else [final]
             case ast.With(items=items, body=body):
-                is_caught = any("suppress" in dotted(_function_of(it)) for it in items)
+                is_caught = any("suppress" in dotted(_function_of(context)) for context in items)
                 return [] if is_caught else [body]
             case ast.While(test=test, body=body):
                 return [body] if _runs_on(test) else []
@@ -188,18 +188,18 @@ class _NodeSlips:
 
     def _methods(self, owner: ast.ClassDef, statements: Sequence[ast.stmt]) -> Iterator[_Function]:
         """Yield the methods that statements of a method call, or let be called."""
-        own = {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
+        methods = {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
         for statement in statements:
             for call in _calls(statement):
                 name = dotted(call.func)
-                if name.startswith("self.") and name[5:] in own:
-                    yield _Function(own[name[5:]], owner)
+                if name.startswith("self.") and name[5:] in methods:
+                    yield _Function(methods[name[5:]], owner)
                 callback = _callback(call)
-                if callback is not None and dotted(callback)[5:] in own:
+                if callback is not None and dotted(callback)[5:] in methods:
                     message = ""
                     if name.endswith("create_subscription") and call.args:
                         message = self._full_name(call.args[0])
-                    yield _Function(own[dotted(callback)[5:]], owner, message)
+                    yield _Function(methods[dotted(callback)[5:]], owner, message)
 
     def _undefined(self, statements: Sequence[ast.AST]) -> Iterator[Slip]:
         """Yield the names that are not defined, where it is sure what is meant."""
@@ -273,25 +273,25 @@ class _NodeSlips:
         """Yield the attributes of self that are like one that the class has, and not defined."""
         if owner.decorator_list:
             return
-        own = {node.name for node in owner.body if isinstance(node, ast.FunctionDef)}
+        own_names = {node.name for node in owner.body if isinstance(node, ast.FunctionDef)}
         for node in self._nodes:
             match node:
                 case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Name(id=name, ctx=ast.Store()):
-                    own.add(name)
-        own |= python_table().node_attributes
-        seen = {*own}
+                    own_names.add(name)
+        own_names |= python_table().node_attributes
+        seen = {*own_names}
         for statement in statements:
             for node in _certain_parts(statement):
                 if not isinstance(node, ast.Attribute) or not isinstance(node.ctx, ast.Load):
                     continue
-                if len(seen) > len(own) + _MAX_NAMES:
+                if len(seen) > len(own_names) + _MAX_NAMES:
                     return
                 name = node.attr
                 if dotted(node) != f"self.{name}" or name in seen or name.startswith("_"):
                     continue
                 seen.add(name)
-                alike = [other for other in own if other.strip("_") == name.strip("_")]
-                meant = alike[0] if len(alike) == 1 else near(name, own)
+                alike = [other for other in own_names if other.strip("_") == name.strip("_")]
+                meant = alike[0] if len(alike) == 1 else near(name, own_names)
                 if meant is not None:
                     reaction = f"{owner.name} has no attribute {name}"
                     yield self._replaced(node, name, meant, reaction)
@@ -300,14 +300,14 @@ class _NodeSlips:
         self, owner: ast.ClassDef, statements: Sequence[ast.stmt]
     ) -> Iterator[Slip]:
         """Yield callbacks that are called where they should be given."""
-        own = {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
+        methods = {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
         for statement in statements:
             for call in _calls(statement):
                 given = _callback(call)
                 if not isinstance(given, ast.Call) or given.args or given.keywords:
                     continue
                 name = dotted(given.func)
-                method = own.get(name.removeprefix("self."))
+                method = methods.get(name.removeprefix("self."))
                 if method is None or method.decorator_list or _gives_value(method):
                     continue
                 what = dotted(call.func).rpartition(".")[2]
@@ -322,7 +322,7 @@ class _NodeSlips:
         for method in owner.body:
             if not isinstance(method, ast.FunctionDef) or method.name != "__init__":
                 continue
-            names = {getattr(it, "attr", getattr(it, "id", "")) for it in ast.walk(method)}
+            names = {getattr(inner, "attr", getattr(inner, "id", "")) for inner in ast.walk(method)}
             if names.isdisjoint(("__init__", "super")):
                 code = f'super().__init__("{self._program.name.removesuffix(".py")}")'
                 reaction = f"super().__init__() is missing in the class {owner.name}"
@@ -336,12 +336,12 @@ class _NodeSlips:
         [(function, statement, name)] = made
         if function.owner is not None:
             return
-        names = {getattr(it, "attr", getattr(it, "id", "")) for it in self._nodes}
+        names = {getattr(node, "attr", getattr(node, "id", "")) for node in self._nodes}
         if "init" not in names and "context" not in text.lower():
             reaction = "rclpy.init() is missing, so that rclpy makes no node"
             code = "rclpy.init()"
             yield from self._before(function.node.body, f"{code}; ", statement, reaction, code)
-        waits = any(isinstance(it, ast.While | ast.For | ast.AsyncFor) for it in self._nodes)
+        waits = any(isinstance(node, ast.While | ast.For | ast.AsyncFor) for node in self._nodes)
         modules = {full.partition(".")[0] for full in self._imports.values()}
         inside = ast.walk(self._classes[name])
         called = {getattr(node, "attr", getattr(node, "id", "")) for node in inside}
@@ -502,7 +502,7 @@ def _callback(call: ast.Call) -> ast.expr | None:
 
 def _package_of_message(name: str) -> str | None:
     """Return the module of the only well-known message of a name."""
-    found = [full for full in python_table().messages if full.rpartition(".")[2] == name]
-    if len(found) == 1:
-        return found[0].rpartition(".")[0]
+    matches = [full for full in python_table().messages if full.rpartition(".")[2] == name]
+    if len(matches) == 1:
+        return matches[0].rpartition(".")[0]
     return None

@@ -160,10 +160,12 @@ def read_nodes(package: Package) -> PackageNodes:
         else:
             is_package = path.endswith("/__init__.py")
             modules[name] = _Module(code, name, package.work, is_package=is_package)
-    bases = {full: found for module in modules.values() for full, found in module.bases.items()}
+    bases = {
+        full: own_bases for module in modules.values() for full, own_bases in module.bases.items()
+    }
     derived: dict[str | None, list[str]] = {}  # classes by each of their bases
-    for full, found in bases.items():
-        for base in found:
+    for full, own_bases in bases.items():
+        for base in own_bases:
             derived.setdefault(base, []).append(full)
     kinds, reached = set(NODE_CLASSES), [*NODE_CLASSES]
     while reached:
@@ -183,9 +185,13 @@ def read_nodes(package: Package) -> PackageNodes:
         syntax = unreadable_module(package, program.path) if program.path in unread else None
         programs.append(program._replace(nodes=() if slips else program.nodes, syntax=syntax))
     is_loose = any(module.has_loose_declarations for module in modules.values())
-    imports = [found for module in modules.values() for found in module.type_imports()]
+    imports = [type_import for module in modules.values() for type_import in module.type_imports()]
     uses = [use for module in modules.values() for use in module.field_uses()]
-    synchronised = [it for module in modules.values() for it in module.synchronised_types()]
+    synchronised = [
+        synchronised_type
+        for module in modules.values()
+        for synchronised_type in module.synchronised_types()
+    ]
     faults, is_searched = _faults_of([module.text() for module in modules.values()])
     return PackageNodes(
         nodes=tuple(nodes),
@@ -219,11 +225,11 @@ def _faults_of(modules: Sequence[ModuleText]) -> tuple[list[CodeFault], bool]:
 
 def program_slips(package: Package) -> Iterator[Slip]:
     """Yield the slips for which a program in Python stops, or does nothing."""
-    found: dict[Edits, Slip] = {}
+    slips: dict[Edits, Slip] = {}
     for program in _programs(package, {}, ()):
         for slip in _slips_of(package, program) or ():
-            found.setdefault(slip.edits, slip)
-    yield from found.values()
+            slips.setdefault(slip.edits, slip)
+    yield from slips.values()
 
 
 def _slips_of(package: Package, program: NodeProgram) -> list[Slip] | None:
@@ -309,11 +315,18 @@ def _created_by(
 
     `nodes` are those at a place, and those of a class by its full name.
     """
-    found: dict[Location, NodeFacts] = {}
+    created: dict[Location, NodeFacts] = {}
     pending, seen = [f"{module}.{function}"], set[str]()
     while pending:
         name = pending.pop(0)
-        owner = next((modules[it] for it in (name.rpartition(".")[0], name) if it in modules), None)
+        owner = next(
+            (
+                modules[module_name]
+                for module_name in (name.rpartition(".")[0], name)
+                if module_name in modules
+            ),
+            None,
+        )
         if name in seen or owner is None:
             continue
         seen.add(name)
@@ -321,13 +334,15 @@ def _created_by(
         if not budget.take_of_whole(_OF_CALL * (1 + len(calls))):
             return ()
         for called, at in calls:
-            found |= {it.location: it for it in (*nodes.get(at, ()), *nodes.get(called, ()))}
+            created |= {
+                node.location: node for node in (*nodes.get(at, ()), *nodes.get(called, ()))
+            }
             pending.append(called)
-    return tuple(found.values())
+    return tuple(created.values())
 
 
 def _find_calls(nodes: Sequence[ast.AST]) -> list[ast.Call]:
-    return sorted((it for it in nodes if isinstance(it, ast.Call)), key=offset_of)
+    return sorted((node for node in nodes if isinstance(node, ast.Call)), key=offset_of)
 
 
 class _Module:
@@ -383,10 +398,10 @@ class _Module:
         ]
         self._classes[at] = full
         self._class_nodes[at] = node
-        own = own_nodes(node)
-        constants = self._constants.bound(own, Scope({}, scope)).names
+        nodes_of_class = own_nodes(node)
+        constants = self._constants.bound(nodes_of_class, Scope({}, scope)).names
         attributes = Scope({f"self.{name}": value for name, value in constants.items()}, scope)
-        for method in own:
+        for method in nodes_of_class:
             if not isinstance(method, ast.FunctionDef | ast.AsyncFunctionDef):
                 continue
             nodes = [*ast.walk(method)]
@@ -514,19 +529,19 @@ class _Module:
 
     def _called(self, part: CodePart, call: ast.Call) -> str:
         first, dot, rest = dotted(call.func).partition(".")
-        found = constant_in(part.scope, first)
-        if isinstance(found, QualifiedName):
-            return f"{found.name}{dot}{rest}"
+        constant = constant_in(part.scope, first)
+        if isinstance(constant, QualifiedName):
+            return f"{constant.name}{dot}{rest}"
         return ""
 
     def _argument(self, part: CodePart, call: ast.Call, position: int, name: str) -> Value:
         """Return an argument of a call; None where it is missing, Unknown where * or ** may give
         it.
         """
-        if any(isinstance(it, ast.Starred) for it in call.args[: position + 1]):
+        if any(isinstance(argument, ast.Starred) for argument in call.args[: position + 1]):
             return Unknown("it is unpacked", position_of(call))
         given = given_argument(call, position, name)
-        if given is None and any(it.arg is None for it in call.keywords):
+        if given is None and any(keyword.arg is None for keyword in call.keywords):
             return Unknown("it is unpacked", position_of(call))
         return self._constants.value_of(given, part.scope)
 
@@ -548,7 +563,7 @@ class _Module:
             return
         names = EndpointNames(self._bindings_around(part), partial(self._value_in, part.scope))
         for parts in names.read(given):
-            kinds = {it.kind for it in parts}
+            kinds = {name_part.kind for name_part in parts}
             if kinds == {"text"}:
                 yield parts[0].text, ()
             else:
@@ -727,7 +742,7 @@ def _default(value: Value) -> Value:
     if is_rclpy and ".Parameter.Type." in value.name:
         return None
     items = value if isinstance(value, list | tuple) else [value]
-    is_known = all(isinstance(it, SCALARS) or it is None for it in items)
+    is_known = all(isinstance(scalar, SCALARS) or scalar is None for scalar in items)
     if is_known:
         return value
     return Unknown("the default is computed", getattr(value, "at", START))

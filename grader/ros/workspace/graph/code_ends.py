@@ -125,7 +125,7 @@ def _values_given(
     )
     if given.unknown:
         return {}
-    return {**values, **{name: it.value for name, it in given.values.items()}}
+    return {**values, **{name: given_value.value for name, given_value in given.values.items()}}
 
 
 def _names(

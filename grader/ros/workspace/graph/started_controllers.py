@@ -39,12 +39,12 @@ def named_sections(workspace: Workspace) -> tuple[tuple[tuple[str, ...], YamlNod
     """Return the parameters of nodes, also those that are inside of others, which is another
     mistake.
     """
-    found: list[tuple[tuple[str, ...], YamlNode]] = []
+    sections: list[tuple[tuple[str, ...], YamlNode]] = []
     for _, tree in workspace.installed.trees:
         for keys, node in sections_in(tree):
             if keys:
-                found += [(keys, node), *sections_in(node, keys)]
-    return tuple(found)
+                sections += [(keys, node), *sections_in(node, keys)]
+    return tuple(sections)
 
 
 def parameters_of_controllers(workspace: Workspace) -> Mapping[str, YamlNode]:
@@ -57,7 +57,7 @@ def parameters_of_controllers(workspace: Workspace) -> Mapping[str, YamlNode]:
 @lru_cache(maxsize=2)
 def defined_controllers(workspace: Workspace) -> tuple[Controller, ...]:
     """Return the controllers that parameter files define, with their types."""
-    found: list[Controller] = []
+    controllers: list[Controller] = []
     for keys, section in named_sections(workspace):
         name = keys[-1].rpartition("/")[2]
         # The type is in a section of the controller manager, or in their own, for a spawner.
@@ -69,8 +69,8 @@ def defined_controllers(workspace: Workspace) -> tuple[Controller, ...]:
             kind = node.get("type")
             if kind is not None and kind.text is not None and "/" in kind.text:
                 has_file = node.get("params_file") is not None
-                found.append(Controller(controller, kind, kind.location, has_file))
-    return tuple(found)
+                controllers.append(Controller(controller, kind, kind.location, has_file))
+    return tuple(controllers)
 
 
 def controller_endpoints(

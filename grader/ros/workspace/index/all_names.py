@@ -40,16 +40,18 @@ class WorkspaceNames:
         self.names = tuple(sorted(dict.fromkeys(names), key=_order))
         self._by_path: dict[str, list[WrittenName]] = {}
         self._alike: dict[tuple[str, str], list[WrittenName]] = {}
-        for it in self.names:
-            self._by_path.setdefault(it.location.path, []).append(it)
-            self._alike.setdefault(_key(it), []).append(it)
+        for written in self.names:
+            self._by_path.setdefault(written.location.path, []).append(written)
+            self._alike.setdefault(_key(written), []).append(written)
 
     def at(self, path: str, line: int, column: int) -> tuple[WrittenName, ...]:
         """Return the names at a place of a file, the shortest first: a made one may hold others,
         and a macro gives one place several names.
         """
-        found = [it for it in self._by_path.get(path, ()) if it.covers(path, line, column)]
-        return tuple(sorted(found, key=_length))
+        names = [
+            written for written in self._by_path.get(path, ()) if written.covers(path, line, column)
+        ]
+        return tuple(sorted(names, key=_length))
 
     def same_as(self, one: WrittenName) -> tuple[WrittenName, ...]:
         """Return all places of a name: those of its owner, and those that share a place with them,
@@ -59,9 +61,9 @@ class WorkspaceNames:
         owners, count = {one.owner}, 0
         while count < len(owners):
             count = len(owners)
-            places = {it.location for it in alike if it.owner in owners}
-            owners |= {it.owner for it in alike if it.location in places}
-        return tuple(it for it in alike if it.owner in owners)
+            places = {other.location for other in alike if other.owner in owners}
+            owners |= {other.owner for other in alike if other.location in places}
+        return tuple(other for other in alike if other.owner in owners)
 
 
 def read_names(workspace: Workspace, facts: Iterable[Fact]) -> WorkspaceNames:
@@ -75,10 +77,10 @@ def read_names(workspace: Workspace, facts: Iterable[Fact]) -> WorkspaceNames:
     names += names_in_xacro(workspace.urdfs, workspace.robots.xacro_sources)
     names += names_in_launch_files(workspace)
     names += names_in_yaml(workspace)
-    written = {(_key(it), it.role, it.location) for it in names}
-    for found in _names_of_facts(workspace, facts):
-        if (_key(found), found.role, found.location) not in written:
-            names.append(found)
+    written = {(_key(known_name), known_name.role, known_name.location) for known_name in names}
+    for addition in _names_of_facts(workspace, facts):
+        if (_key(addition), addition.role, addition.location) not in written:
+            names.append(addition)
     return WorkspaceNames(_owned(workspace, names))
 
 

@@ -137,11 +137,11 @@ class GivenFiles:
         return self._find_given(package, path) if is_given else open_meant(package, path)
 
     def _find_given(self, package: Package, path: str) -> tuple[bytes, str] | None:
-        found = open_meant(package, path, absent_are_empty=True)
+        opened = open_meant(package, path, absent_are_empty=True)
         owner = package.find(share_parts(f"{PREFIX}/{path}")[0])
-        if found is None and owner is not None and are_installs_known(owner):
+        if opened is None and owner is not None and are_installs_known(owner):
             return (b"", path) if self.texts.is_nowhere(owner, path) else None
-        return found
+        return opened
 
 
 def _spawned_by(node: StartedNode) -> Sequence[StartedNode]:

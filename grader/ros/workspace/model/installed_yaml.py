@@ -32,7 +32,7 @@ class InstalledFiles:
         for package in self.folder.packages:
             paths = [path for path in package.tree.files if path.endswith((".yaml", ".yml"))]
             launched = {path for owner, path, _ in self.launches.files if owner is package}
-            for path in read_paths(package, (it for it in paths if it not in launched)):
+            for path in read_paths(package, (file for file in paths if file not in launched)):
                 whole_path, data = package.path(path), package.tree.read(path, MAX_YAML)
                 if data is not None:
                     files[whole_path] = self.folder.recall(_read_yaml, data, whole_path)

@@ -117,10 +117,10 @@ def _read(files: Sequence[File]) -> Iterator[tuple[str, str]]:
 
 def _names_in(pattern: re.Pattern[str], text: str) -> set[str]:
     """Return the releases in what a pattern matches."""
-    found: set[str] = set()
+    releases: set[str] = set()
     for match in pattern.finditer(text):
-        found.update(name.lower() for name in _RELEASE.findall(match[0]))
-    return found
+        releases.update(name.lower() for name in _RELEASE.findall(match[0]))
+    return releases
 
 
 def _in_setting(text: str) -> set[str]:
@@ -137,19 +137,19 @@ def _in_prose(text: str) -> set[str]:
     """Return the releases that a README states, but for those that are on other branches, and those
     that the work was ported from.
     """
-    found: set[str] = set()
+    releases: set[str] = set()
     text = _ORIGIN.sub(lambda match: f"ROS 2 {match['to'] or ''}", text)
     for line in text.splitlines():
-        found |= (_in_setting(line) | _names_in(_SENTENCE, line)) - _names_in(_BRANCH, line)
-    return found
+        releases |= (_in_setting(line) | _names_in(_SENTENCE, line)) - _names_in(_BRANCH, line)
+    return releases
 
 
 def _by_ubuntu(text: str) -> set[str]:
     """Return the releases for the images of Ubuntu that a Dockerfile or a workflow names."""
-    found: set[str] = set()
+    releases: set[str] = set()
     for version in _UBUNTU.findall(text):
-        found.update(_OF_UBUNTU[version])
-    return found
+        releases.update(_OF_UBUNTU[version])
+    return releases
 
 
 def releases_in_path(path: str) -> list[Release]:

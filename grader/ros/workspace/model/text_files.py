@@ -50,7 +50,9 @@ class TextFiles:
 
     def _xml_files(self, endings: tuple[str, ...]) -> Iterator[XmlFile]:
         for package in self.folder.packages:
-            for path in [it for it in package.tree.files if it.endswith(endings)][:_MAX_FILES]:
+            for path in [file for file in package.tree.files if file.endswith(endings)][
+                :_MAX_FILES
+            ]:
                 with suppress(InputError, XmlFault):
                     data = package.tree.files[path].read(MAX_YAML)
                     yield XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace")))
@@ -106,9 +108,11 @@ class TextFiles:
     def has_plugin(self, name: str) -> bool:
         """Return whether a package describes a plugin of this name for pluginlib."""
         sources = (
-            it for package in self.folder.packages for it in self.sources_of(package, (".xml",))
+            source
+            for package in self.folder.packages
+            for source in self.sources_of(package, (".xml",))
         )
-        return any(f'name="{name}"' in it.text for it in sources)
+        return any(f'name="{name}"' in source.text for source in sources)
 
     def is_nowhere(self, owner: Package, target: str) -> bool:
         """Return whether a file of text that the package does not have is surely nowhere.

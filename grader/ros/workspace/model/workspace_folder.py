@@ -104,5 +104,9 @@ class WorkspaceFolder:
     @cached_property
     def counts(self) -> Counter[str]:
         """How many packages have a name, without those that are ignored and backups."""
-        used = [it for it in self.found_packages if not it.ignored_by and not is_backup(it.folder)]
+        used = [
+            package
+            for package in self.found_packages
+            if not package.ignored_by and not is_backup(package.folder)
+        ]
         return Counter(package.name for package in used)

@@ -148,8 +148,8 @@ def _nameless_sensors(
             types = gazebo().sensor.get(sensor.get("type", ""), NO_SENSOR)
             gz_type = f"gz.msgs.{types.topic}"
             if gz_type not in named and next(sensor.iterchildren("topic"), None) is None:
-                found = _NamelessSensor(sensor.get("name", ""), gz_type, place(sensor))
-                nameless.setdefault(gz_type, found)
+                nameless_sensor = _NamelessSensor(sensor.get("name", ""), gz_type, place(sensor))
+                nameless.setdefault(gz_type, nameless_sensor)
     return nameless
 
 

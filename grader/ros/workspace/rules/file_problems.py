@@ -92,7 +92,11 @@ def listed_problems(workspace: Workspace) -> list[Problem]:
     """Return what is wrong in the files, each once, without what is not evaluated, which is only
     counted.
     """
-    return [it for it in dict.fromkeys(_file_problems(workspace)) if it.kind not in _COUNTED]
+    return [
+        problem
+        for problem in dict.fromkeys(_file_problems(workspace))
+        if problem.kind not in _COUNTED
+    ]
 
 
 def ros1_problem(package: Package) -> Problem:
@@ -112,7 +116,9 @@ def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
         is_named = count > (name in launch.source.text)
     except NotDecided:
         is_named = True
-    is_closed = not is_named and not any(it.unknown for _, _, it in workspace.launches.files)
+    is_closed = not is_named and not any(
+        any_launch.unknown for _, _, any_launch in workspace.launches.files
+    )
     faults = []
     for fault in launch.in_releases(workspace.releases).faults:
         having = releases_with("argument", fault.argument) if fault.argument else ()

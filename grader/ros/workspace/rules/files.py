@@ -64,13 +64,13 @@ def file_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def _faults_of(workspace: Workspace, every: Iterable["_NamedPath"]) -> Iterator[Fact]:
     """Yield the paths that are compared, and then what is wrong with them."""
-    found: dict[tuple[str, Location], _NamedPath] = {}
+    first_named: dict[tuple[str, Location], _NamedPath] = {}
     for named in every:
         yield Compared("files", posixpath.normpath(named.path).removeprefix(f"{PREFIX}/"))
-        first = found.setdefault((named.path, named.location), named)
+        first = first_named.setdefault((named.path, named.location), named)
         if named.is_needed:
-            found[named.path, named.location] = first._replace(is_needed=True)
-    for named in found.values():
+            first_named[named.path, named.location] = first._replace(is_needed=True)
+    for named in first_named.values():
         for fact in _fault_of(workspace, named):
             if isinstance(fact, Mismatch) and not named.is_read:
                 yield fact._replace(is_certain=False)
@@ -96,8 +96,8 @@ class _NamedPath(NamedTuple):
 
 def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
     """Yield the paths that are named."""
-    for package, own, launch in workspace.launches.files:
-        yield from _paths_in_launch_file(workspace, package, own, launch)
+    for package, own_path, launch in workspace.launches.files:
+        yield from _paths_in_launch_file(workspace, package, own_path, launch)
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, (".xacro", ".urdf", ".yaml")):
             is_read = (
@@ -112,13 +112,13 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
 
 
 def _paths_in_launch_file(
-    workspace: Workspace, package: Package, own: str, launch: Launch
+    workspace: Workspace, package: Package, own_path: str, launch: Launch
 ) -> Iterator[_NamedPath]:
     """Yield the paths that a launch file of a package names."""
     beside = None
     # From the folder of the sources, a launch file finds what is beside it.
-    if own not in package.installed.values():
-        beside = f"{PREFIX}/{package.share}{posixpath.dirname(own)}/"
+    if own_path not in package.installed.values():
+        beside = f"{PREFIX}/{package.share}{posixpath.dirname(own_path)}/"
     for text in _texts_of(workspace, launch):
         paths = _PATH.findall(text.text or "")
         uri = _URI.fullmatch(text.text or "")
@@ -158,7 +158,9 @@ class _Text(NamedTuple):
 def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
     """Yield the texts of a launch file that may name files."""
     for passed in launch.passed:
-        is_own = any(passed.path.startswith(own.share) for own in workspace.packages)
+        is_own = any(
+            passed.path.startswith(own_package.share) for own_package in workspace.packages
+        )
         for name, value in passed.values:
             is_needed = bool(passed.when) and not is_own and name in names_of_read_files()
             yield _Text(value, passed.location, is_needed=is_needed)
@@ -292,11 +294,11 @@ def _folder_corrections(
     if target.count("/") != elsewhere.count("/"):
         return ()
     pairs = zip(target.split("/"), elsewhere.split("/"), strict=True)
-    differing = [(own, other) for own, other in pairs if own != other]
+    differing = [(own_part, other) for own_part, other in pairs if own_part != other]
     if len(differing) != 1:
         return ()
-    [(own, other)] = differing
-    return corrections(own, at, other, start)
+    [(own_part, other)] = differing
+    return corrections(own_part, at, other, start)
 
 
 def _install_corrections(setup: Installation, file: str, start: Location) -> tuple[Correction, ...]:
@@ -324,7 +326,7 @@ def _map_images(workspace: Workspace) -> Iterator[Fact]:
             continue
         workspace.charge(len(files) + cost_of_guess(len(files)))
         folder, name = posixpath.split(wanted)
-        beside = [it for it in files if posixpath.dirname(it) == folder and it != path]
+        beside = [file for file in files if posixpath.dirname(file) == folder and file != path]
         meant = closest(name, map(posixpath.basename, beside))
         guess = f"; did you mean {meant!r}?" if meant else ""
         message = f"the image of the map, {image.text!r}, does not exist{guess}"

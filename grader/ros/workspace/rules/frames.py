@@ -55,7 +55,9 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield the frames and joints that are defined, and those that YAML, SRDF, Gazebo and
     transforms name.
     """
-    robots = [found.robot for found in workspace.robots.known if found.robot.links]
+    robots = [
+        known_robot.robot for known_robot in workspace.robots.known if known_robot.robot.links
+    ]
     if not robots:
         return
     for robot in robots:
@@ -71,8 +73,8 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
         if is_parameters(tree):
             for value in values_in(tree):
                 yield from _in_yaml(value, is_of_controller=not controllers.isdisjoint(value.keys))
-    for found in workspace.robots.known:
-        yield from _in_robot(found)
+    for known_robot in workspace.robots.known:
+        yield from _in_robot(known_robot)
     yield from _odometry_frames(workspace, robots)
     yield from _sensor_frames(workspace, robots)
 

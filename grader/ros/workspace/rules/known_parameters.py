@@ -129,7 +129,7 @@ def _values_of(
     if workspace.package_of(node) is not None:
         return None
     has_name = workspace.code.name_of(node) is not None and node.namespace is not None
-    if not has_name and any(it.path for it in node.parameters or ()):
+    if not has_name and any(parameter.path for parameter in node.parameters or ()):
         return None  # any section may be its own
     given = workspace.parameters.read_given(package, node, workspace.code.name_of(node) or "")
     return not given.unknown and node.arguments == (), _without_time(given.values)
@@ -198,9 +198,9 @@ def is_as_released(workspace: Workspace, node: str) -> bool:
     if rows is None:
         return False
     package = node.partition("/")[0]
-    is_own = any(own.name == package for own in workspace.packages) or workspace.texts.has_plugin(
-        node
-    )
+    is_own = any(
+        own_package.name == package for own_package in workspace.packages
+    ) or workspace.texts.has_plugin(node)
     repository = rows.source.partition(",")[0].rpartition("/")[2]
     return not is_own and repository not in _built_repositories(workspace)
 
@@ -226,7 +226,10 @@ def _sections_by_name(workspace: Workspace) -> Iterator[GivenNode]:
     the usual one of a well-known node.
     """
     usual = _usual_names(workspace) if workspace.installed.yaml else {}
-    types = {(it.location.path, it.name): it.type.text for it in defined_controllers(workspace)}
+    types = {
+        (controller.location.path, controller.name): controller.type.text
+        for controller in defined_controllers(workspace)
+    }
     for path, tree in workspace.installed.trees:
         for keys, section in sections_in(tree):
             name = keys[-1].rpartition("/")[2] if keys else ""

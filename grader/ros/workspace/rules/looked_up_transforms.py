@@ -88,7 +88,11 @@ def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
 def _published(workspace: Workspace) -> _Trees | None:
     """Return what launch files publish, whatever conditions say; None where that is not known."""
     systems = gazebo().odometry_systems
-    if any(system_of(it) in systems for root, _ in roots(workspace) for it in root.iter("plugin")):
+    if any(
+        system_of(plugin) in systems
+        for root, _ in roots(workspace)
+        for plugin in root.iter("plugin")
+    ):
         return None
     trees = _Trees()
     for edge in graph_of(workspace).edges:

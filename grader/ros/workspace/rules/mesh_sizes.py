@@ -38,15 +38,15 @@ def mesh_size_problems(workspace: Workspace) -> list[Problem]:
     """Return a warning for each mesh that is about 1000 times as large as it should be, or as
     small, as far as meshes are read before the budget of the workspace is spent.
     """
-    meshes, found = _Meshes(workspace), dict[tuple[str, Location], Problem]()
+    meshes, problems = _Meshes(workspace), dict[tuple[str, Location], Problem]()
     with suppress(NotDecided, InputError):
         for urdf in workspace.urdfs:
             loaded = urdf.loaded
             if loaded.robot is None or loaded.undetermined or loaded.verdict == "rejected":
                 continue
             for problem in _problems_of(meshes, urdf, loaded.robot):
-                found.setdefault((problem.message, problem.location), problem)
-    return [*found.values()]
+                problems.setdefault((problem.message, problem.location), problem)
+    return [*problems.values()]
 
 
 def _problems_of(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Problem]:
@@ -105,7 +105,7 @@ def _is_off(length: float, right: float, least: float, most: float) -> bool:
 
 def _of_primitives(link: Link) -> _Reference | None:
     """Return the length of the shapes of a link's collision that are no meshes."""
-    length = max((_length_of(it.geometry) for it in link.collisions), default=0.0)
+    length = max((_length_of(collision.geometry) for collision in link.collisions), default=0.0)
     return _Reference(length, "its collision") if length else None
 
 

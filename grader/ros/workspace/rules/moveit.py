@@ -99,7 +99,11 @@ def _not_started(controller: _MoveItController, left_out: Collection[str]) -> It
 def _not_spawned(workspace: Workspace) -> frozenset[str]:
     """Return the controllers that no spawner starts, while one starts others that move joints."""
     started = started_controllers(workspace)
-    movers = {it.name for it in defined_controllers(workspace) if not it.is_broadcaster}
+    movers = {
+        controller.name
+        for controller in defined_controllers(workspace)
+        if not controller.is_broadcaster
+    }
     if started is None or started.isdisjoint(movers):
         return frozenset()
     return frozenset(movers - started)

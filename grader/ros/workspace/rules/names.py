@@ -140,7 +140,9 @@ class Agreement(NamedTuple):
 
     def holds(self, family: AnyFamily) -> bool:
         """Return whether something of a family is compared, and all of it certainly agrees."""
-        is_wrong = any(it.family == family and it.is_certain for it in self.mismatches)
+        is_wrong = any(
+            mismatch.family == family and mismatch.is_certain for mismatch in self.mismatches
+        )
         return family in self.families and family not in self.undecided and not is_wrong
 
 
@@ -148,9 +150,11 @@ def uncompared(facts: Iterable[Fact], reason: str) -> Agreement:
     """Return the mismatches among facts that are not all known, and for each family why nothing
     else is compared.
     """
-    found = [fact for fact in facts if isinstance(fact, Mismatch)]
-    families = frozenset(fact.family for fact in found)
-    return Agreement(_in_order(found), dict.fromkeys(FAMILIES, reason), families, frozenset(), {})
+    mismatches = [fact for fact in facts if isinstance(fact, Mismatch)]
+    families = frozenset(fact.family for fact in mismatches)
+    return Agreement(
+        _in_order(mismatches), dict.fromkeys(FAMILIES, reason), families, frozenset(), {}
+    )
 
 
 def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: None) -> Agreement:

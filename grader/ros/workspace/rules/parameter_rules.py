@@ -200,7 +200,9 @@ class _NodeReader:
             return None
         if row.only_with and match.full_name(row.only_with) not in self._values:
             return None
-        is_read = bool(row.only_with) or all(self._items(match.table, it) for it in row.places)
+        is_read = bool(row.only_with) or all(
+            self._items(match.table, place) for place in row.places
+        )
         return row.default if is_read and row.default is not None else _NOT_KNOWN
 
     def findings(self) -> Iterator[_RowFinding]:
@@ -280,9 +282,9 @@ class _NodeReader:
             if row is not None:
                 return _ParameterMatch(table, row, ())
             for row in table.rows.patterns:
-                found = row.pattern.fullmatch(own_name)
-                if found is not None and self._are_listed(table, row, found.groups()):
-                    return _ParameterMatch(table, row, found.groups())
+                match = row.pattern.fullmatch(own_name)
+                if match is not None and self._are_listed(table, row, match.groups()):
+                    return _ParameterMatch(table, row, match.groups())
         return None
 
     def _are_listed(self, table: _RowTable, row: ParameterRow, parts: Sequence[str]) -> bool:
@@ -411,7 +413,7 @@ class _NodeReader:
     def _near(self, name: str) -> str | None:
         """Return the parameter that another name surely stands for: one part of it is misspelt."""
         candidates: dict[str, str] = {}  # the parts that are misspelt, by what they stand for
-        found: dict[str, str] = {}  # the names, by the same
+        corrected_names: dict[str, str] = {}  # the names, by the same
         for table in self._tables:
             if not name.startswith(table.prefix):
                 continue
@@ -423,10 +425,10 @@ class _NodeReader:
                 full = table.prefix + ".".join(corrected.parts)
                 if full not in self._values and self.has(full):
                     candidates[corrected.meant] = corrected.part
-                    found[corrected.meant] = full
+                    corrected_names[corrected.meant] = full
         parts = set(candidates.values())
         meant = near(parts.pop(), candidates) if len(parts) == 1 else None
-        return found[meant] if meant is not None else None
+        return corrected_names[meant] if meant is not None else None
 
     def _unknown(
         self, name: str, value: ParameterValue, near_name: str | None
@@ -449,7 +451,9 @@ class _NodeReader:
                 corrections=corrections(old, at, new),
             )
             return _RowFinding(name, mismatch)
-        table = next(it for it in reversed(self._tables) if name.startswith(it.prefix))
+        table = next(
+            candidate for candidate in reversed(self._tables) if name.startswith(candidate.prefix)
+        )
         if table.is_open or any(not prefix for prefix in self._unread):
             return None
         section = self._first_unknown(name, table)
@@ -473,10 +477,10 @@ class _NodeReader:
     def _begins(self, table: _RowTable, row: ParameterRow, start: Sequence[str]) -> bool:
         """Return whether the name of a row may begin with some parts."""
         parts = row.name.split(".")
-        for own, part in zip(parts, start, strict=False):
-            place = own[1:-1] if own.startswith("<") and own.endswith(">") else ""
+        for own_part, part in zip(parts, start, strict=False):
+            place = own_part[1:-1] if own_part.startswith("<") and own_part.endswith(">") else ""
             items = self._items(table, place) if place else None
-            is_other = own != part and "<" not in own
+            is_other = own_part != part and "<" not in own_part
             if is_other or (items is not None and part not in items):
                 return False
         return len(parts) >= len(start) or parts[-1] == "<**>"
@@ -563,9 +567,9 @@ class _Corrected(NamedTuple):
 
 
 @lru_cache(maxsize=4096)
-def _may_mean(part: str, own: str) -> bool:
+def _may_mean(part: str, own_part: str) -> bool:
     """Return whether a part of a name may be a misspelt one; each release asks for the same."""
-    return near(part, [own]) is not None
+    return near(part, [own_part]) is not None
 
 
 def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> _Corrected | None:
@@ -576,12 +580,12 @@ def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> _Corrected | None
         return None
     corrected: list[str] = []
     changed: list[tuple[str, str]] = []
-    for part, own in zip(parts, wanted, strict=True):
-        meant = own
-        if "<#>" in own:
-            digits = "".join(it for it in part if it.isdigit())
-            meant = own.replace("<#>", digits) if digits else part
-        elif "<" in own:
+    for part, own_part in zip(parts, wanted, strict=True):
+        meant = own_part
+        if "<#>" in own_part:
+            digits = "".join(character for character in part if character.isdigit())
+            meant = own_part.replace("<#>", digits) if digits else part
+        elif "<" in own_part:
             meant = part
         if meant != part:
             changed.append((part, meant))

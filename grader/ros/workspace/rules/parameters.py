@@ -386,7 +386,11 @@ def _not_given(
     and rclcpp raise ParameterUninitializedException. Nothing is said where `values` is None: the
     node may get more than is known.
     """
-    read = {it.name for it in own_node.parameters if not it.is_declared and it.is_needed}
+    read = {
+        own_parameter.name
+        for own_parameter in own_node.parameters
+        if not own_parameter.is_declared and own_parameter.is_needed
+    }
     for parameter in own_node.parameters if values is not None else ():
         name = parameter.name
         if parameter.is_unset and name in read and name not in (values or ()):

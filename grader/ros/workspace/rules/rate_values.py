@@ -55,7 +55,7 @@ def rate_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _largest(numbers: Iterable[_StatedNumber]) -> _StatedNumber | None:
-    return max(numbers, key=lambda it: it.value, default=None)
+    return max(numbers, key=lambda stated: stated.value, default=None)
 
 
 def _too_far(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mismatch]:

@@ -110,13 +110,13 @@ def read_agreement(workspace: Workspace) -> Agreement:
     try:
         if error is not None:
             raise error
-        found = agreement(facts, workspace.charge)
+        agreed = agreement(facts, workspace.charge)
         unused = tuple(unused_files(workspace))
     except NotDecided as reason:
-        found = uncompared(facts, str(reason))
+        agreed = uncompared(facts, str(reason))
     # names_agree needs a package.
-    families = found.families if workspace.packages else frozenset[AnyFamily]()
-    return found._replace(families=families, unused=unused)
+    families = agreed.families if workspace.packages else frozenset[AnyFamily]()
+    return agreed._replace(families=families, unused=unused)
 
 
 @lru_cache(maxsize=2)

@@ -44,7 +44,9 @@ def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
     for each in workspace.code.by_package[package].synchronised:
         if _has_header(workspace, each.type) is not False:
             continue
-        if each.together and not any(_has_header(workspace, it) for it in each.together):
+        if each.together and not any(
+            _has_header(workspace, type_name) for type_name in each.together
+        ):
             continue  # all have the same time in C++, and each pair fits
         effect = _EFFECTS.get(
             each.by, "uses time 0 instead, so it stops or never matches the messages"
@@ -56,10 +58,10 @@ def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
 def _has_header(workspace: Workspace, name: str) -> bool | None:
     """Return whether messages of a type have a header; None where this is not known."""
     package, _, own_name = name.partition(".")
-    own = workspace.code.interfaces.get(package)
-    if own is not None:
-        found = own.types.get(own_name)
-        interface = found.interface if found is not None and own.is_complete else None
+    interfaces = workspace.code.interfaces.get(package)
+    if interfaces is not None:
+        own_type = interfaces.types.get(own_name)
+        interface = own_type.interface if own_type is not None and interfaces.is_complete else None
     else:
         interface = (known_interfaces(package, workspace.releases) or {}).get(own_name)
     if interface is None or not interface.sections:

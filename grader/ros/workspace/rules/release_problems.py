@@ -43,9 +43,11 @@ def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Proble
     """
     if not workspace.releases:
         return []
-    said = {it.location for it in agreement.mismatches if it.family != "dependencies"}
+    said = {
+        mismatch.location for mismatch in agreement.mismatches if mismatch.family != "dependencies"
+    }
     deciding = deciding_launch_files(workspace)
-    found: dict[tuple[str, str], Problem] = {}
+    problems: dict[tuple[str, str], Problem] = {}
     for reader in _READERS:
         for kind, name, at, owner in reader(workspace):
             if at in said or at.path in deciding:
@@ -54,9 +56,14 @@ def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Proble
             other = other_name(kind, name, releases, shown=owner)
             if other is not None:
                 problem = NAME_RELEASE.problem(other.message, at, kind)
-                found.setdefault((other.message, at.path), problem)
+                problems.setdefault((other.message, at.path), problem)
     return sorted(
-        found.values(), key=lambda it: (it.location.path, it.location.line, it.location.column)
+        problems.values(),
+        key=lambda release_problem: (
+            release_problem.location.path,
+            release_problem.location.line,
+            release_problem.location.column,
+        ),
     )
 
 
@@ -65,12 +72,12 @@ _Use = tuple[NameKind, str, Location, str]  # with the start of the name that is
 
 def _uses_in_robots(workspace: Workspace) -> Iterator[_Use]:
     """Yield the plugins of Gazebo and of ros2_control that robots load, but for own ones."""
-    own = [package.name for package in workspace.packages]
+    own_packages = [package.name for package in workspace.packages]
     for robot in workspace.robots.known:
         for element in robot.root.iter("plugin"):
             name = element.get("filename", "") or (element.text or "").strip()
             package = name.partition("/")[0].removeprefix("lib").removesuffix(".so")
-            if package not in own:
+            if package not in own_packages:
                 yield "plugin", name, robot.place(element), ""
 
 
@@ -110,7 +117,7 @@ def _uses_in_launch_files(workspace: Workspace) -> Iterator[_Use]:
 
 def _topics_of_controllers(workspace: Workspace) -> Iterator[_Use]:
     """Yield the topics that are those of controllers, by their names."""
-    types = {it.name: it.type.text or "" for it in defined_controllers(workspace)}
+    types = {defined.name: defined.type.text or "" for defined in defined_controllers(workspace)}
     for topic, at in _topics(workspace):
         controller, _, last = topic.strip("/ ").rpartition("/")
         owner = f"{types.get(controller.rpartition('/')[2], '')}/"
@@ -137,10 +144,10 @@ def _declared(workspace: Workspace) -> Iterator[_Use]:
         manifest = package.manifest
         if manifest is None:
             continue
-        for found in _DEPENDENCY.finditer(manifest.source.text):
-            name = found[1]
+        for match in _DEPENDENCY.finditer(manifest.source.text):
+            name = match[1]
             if name in manifest.dependencies and package.find(name) is None:
-                yield "package", name, manifest.source.at(found.start(1)), ""
+                yield "package", name, manifest.source.at(match.start(1)), ""
 
 
 def _uses_in_code(workspace: Workspace) -> Iterator[_Use]:

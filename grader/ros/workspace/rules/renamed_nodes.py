@@ -71,7 +71,7 @@ def _unread_sections(
     for node in nodes:
         key = key_of_program_name(workspace, node, keys)
         full = node.full_name(node.node_name or "")
-        names = elsewhere if any(is_key_of(it, full) for it in keys) else read
+        names = elsewhere if any(is_key_of(section_key, full) for section_key in keys) else read
         if key is not None and None not in names and key.rpartition("/")[2] not in names:
             unread.append((node, key))
     for node, key in unread:
@@ -113,11 +113,11 @@ def key_of_program_name(workspace: Workspace, node: StartedNode, keys: _Keys) ->
     if not name or not old or name == old or node.namespace is None:
         return None
     full, full_name = node.full_name(name), node.full_name(old)
-    found = None
+    found_key = None
     for key in keys:
         last = key.rpartition("/")[2]
         if last == name or (last not in _ANY_NAMES and is_key_of(key, full)):
             return None
         if last == old and is_key_of(key, full_name):
-            found = key
-    return found
+            found_key = key
+    return found_key

@@ -145,9 +145,9 @@ def _controllers_without_type(
         return None, set()
     lacks_type: dict[str | None, bool] = {}  # by the names of the controllers that are started
     for controller in _spawned_without_parameters(launch):
-        own = workspace.parameters.read(package, controller, "")
-        has_type = "type" in own.values or f"{controller.node_name}.type" in given.values
-        lacks_type[controller.node_name] = not own.unknown and not has_type
+        own_parameters = workspace.parameters.read(package, controller, "")
+        has_type = "type" in own_parameters.values or f"{controller.node_name}.type" in given.values
+        lacks_type[controller.node_name] = not own_parameters.unknown and not has_type
     return manager, {name for name, lacks in lacks_type.items() if lacks}
 
 
@@ -167,15 +167,15 @@ def _misspelt_managers(workspace: Workspace) -> Iterator[Mismatch]:
     """
     if not any(_is_spawner(node) for _, node in workspace.launches.nodes):
         return
-    found = []
+    sections = []
     for _, tree in workspace.installed.trees:
         for keys, section in sections_in(tree):
             name = keys[-1].rpartition("/")[2] if keys else ""
             if name == MANAGER:
                 return
             if near(name, (MANAGER,)) is not None and _has_types(section):
-                found.append((name, tree.key_location(*keys)))
-    for name, at in found:
+                sections.append((name, tree.key_location(*keys)))
+    for name, at in sections:
         message = (
             f"the controller manager does not read the types below {name!r}; did you mean "
             f"{MANAGER!r}?"

@@ -116,7 +116,9 @@ def _empty_groups(file: XmlFile) -> Iterator[Mismatch]:
 
 def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
     """Yield positions in states of groups that are beyond the limits of their joints."""
-    limits = {it.name: it.limit for it in robot.joints if it.type in ("revolute", "prismatic")}
+    limits = {
+        joint.name: joint.limit for joint in robot.joints if joint.type in ("revolute", "prismatic")
+    }
     for element in file.root.iterfind("group_state/joint"):
         name = element.get("name", "")
         limit = limits.get(name)

@@ -36,7 +36,7 @@ def topic_wiring_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def _two_commanders(publishers: Sequence[End], subscriptions: Sequence[End]) -> Iterator[Mismatch]:
     """Yield the topics of commands that two nodes publish, and another one obeys."""
-    obeyed = {(it.launch, it.name) for it in subscriptions}
+    obeyed = {(subscription.launch, subscription.name) for subscription in subscriptions}
     first: dict[tuple[int, str], End] = {}
     said: set[tuple[int, str]] = set()
     for each in publishers:
@@ -55,7 +55,7 @@ def _two_commanders(publishers: Sequence[End], subscriptions: Sequence[End]) -> 
 
 def _other_transport(publishers: Sequence[End], subscriptions: Sequence[End]) -> Iterator[Mismatch]:
     """Yield subscriptions of images on a topic that carries compressed ones."""
-    published = {it.name for it in publishers}
+    published = {publisher.name for publisher in publishers}
     for each in subscriptions:
         topic, _, transport = each.name.rpartition("/")
         kind = transport_types().get(transport)

@@ -73,15 +73,15 @@ class _Source(NamedTuple):
 
     def joints(self, keys: Sequence[str]) -> list[_Word]:
         """Return the joints that some parameters name."""
-        found: list[_Word] = []
+        words: list[_Word] = []
         for key in keys:
             entry = _ENTRY.fullmatch(key)
             if entry is None:
-                found += self.parameters(key)
+                words += self.parameters(key)
             else:
                 number = int(entry[2])
-                found += self.parameters(entry[1])[number : number + 1]
-        return found
+                words += self.parameters(entry[1])[number : number + 1]
+        return words
 
 
 class _Wheels(NamedTuple):
@@ -180,7 +180,9 @@ def _reader_of_yaml(section: YamlNode) -> _Parameters:
         node = section.get(*key.split("."))
         if node is None:
             return []
-        return [_Word(it.text, it.location) for it in (node.items or [node]) if it.text]
+        return [
+            _Word(scalar.text, scalar.location) for scalar in (node.items or [node]) if scalar.text
+        ]
 
     return read
 
@@ -358,8 +360,8 @@ def _exchanged(wheels: _Wheels) -> list[WheelSize]:
     """
     middle = middle_of([wheel.middle for wheel in wheels.all])[1]
     left, right = wheels.groups[:2]
-    found = [wheel for wheel in left if wheel.middle[1] < middle]
-    return found + [wheel for wheel in right if wheel.middle[1] > middle]
+    exchanged = [wheel for wheel in left if wheel.middle[1] < middle]
+    return exchanged + [wheel for wheel in right if wheel.middle[1] > middle]
 
 
 def _joints(wheels: Sequence[WheelSize]) -> str:
