@@ -114,9 +114,7 @@ def _read_robots(
 def _whole(
     robot_files: Sequence[RobotFile], launched: set[str], parts: frozenset[str]
 ) -> list[RobotFile]:
-    """Return the files that launch files load, or that are no backup and that no other one
-    includes.
-    """
+    """Return the files that launch files load, and those that are neither backups nor included."""
     return [
         file
         for file in robot_files

@@ -1,6 +1,4 @@
-"""The values that nodes have for parameters that they do not get: the defaults of own nodes,
-controllers and well-known nodes.
-"""
+"""The defaults of parameters that nodes do not get: of own and known nodes and controllers."""
 
 from collections.abc import Iterator
 
@@ -20,8 +18,10 @@ _NOT_KNOWN = Unknown("its default is not known", START)
 
 
 def default_value(workspace: Workspace, node: str, parameter: str) -> ParameterValue | None:
-    """Return the value that a node has for a parameter that it does not get, and where the node
-    declares it or is started. It is Unknown where it is not known; None if there is none.
+    """Return the value of a parameter that a node does not get, and the place that says so.
+
+    The place is where the node declares the parameter or is started. The value is Unknown where
+    it is not known. The result is None if there is no value.
 
     Args:
         workspace: The packages.

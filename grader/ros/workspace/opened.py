@@ -103,8 +103,9 @@ class OpenedWorkspace:
         return problems_of_robot(robot, (*self.packages, *self.ros1_packages), self.whole_tree)
 
     def driven_joints(self, robot: Read) -> list[str]:
-        """Return the joints of the wheels that a plugin in a robot, or else a controller, drives;
-        of a URDF on its own, only a plugin.
+        """Return the joints of the wheels that a plugin in a robot, or a controller, drives.
+
+        A controller counts only without a plugin, and not for a URDF on its own.
         """
         # Late: few commands ask for wheels.
         from grader.ros.workspace.driven_joints import joints_of_controllers, joints_of_plugins
@@ -139,8 +140,9 @@ class OpenedWorkspace:
         return default_value(self.workspace, node, parameter)
 
     def mesh_size_problems(self) -> list[Problem]:
-        """Return the meshes whose sizes surely are in another unit: `grader inspect` alone warns of
-        them.
+        """Return the meshes whose sizes surely are in another unit.
+
+        `grader inspect` alone warns of them.
         """
         from grader.ros.workspace.rules.mesh_sizes import mesh_size_problems  # late: as above
 

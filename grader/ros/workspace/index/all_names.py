@@ -1,5 +1,6 @@
-"""All names of a workspace where they are written, for editors: what defines a name, and what else
-uses it.
+"""All names of a workspace where they are written, for editors.
+
+They are what defines a name, and what else uses it.
 
 The facts that are compared say what is wrong. Here are more uses than those: what the reader of
 robots, xacro or a launch file itself reports makes no finding of a workspace. Nothing of this is
@@ -45,8 +46,9 @@ class WorkspaceNames:
             self._alike.setdefault(_key(written), []).append(written)
 
     def at(self, path: str, line: int, column: int) -> tuple[WrittenName, ...]:
-        """Return the names at a place of a file, the shortest first: a made one may hold others,
-        and a macro gives one place several names.
+        """Return the names at a place of a file, the shortest first.
+
+        A made name may hold others, and a macro gives one place several names.
         """
         names = [
             written for written in self._by_path.get(path, ()) if written.covers(path, line, column)
@@ -54,8 +56,10 @@ class WorkspaceNames:
         return tuple(sorted(names, key=_length))
 
     def same_as(self, one: WrittenName) -> tuple[WrittenName, ...]:
-        """Return all places of a name: those of its owner, and those that share a place with them,
-        as robots do that include one file.
+        """Return all places of a name.
+
+        They are those of its owner, and those that share a place with them, as robots do that
+        include one file.
         """
         alike = self._alike.get(_key(one), [])
         owners, count = {one.owner}, 0
@@ -100,8 +104,9 @@ def _order(name: WrittenName) -> tuple[str, int, int, str, str, str]:
 
 
 def _names_of_facts(workspace: Workspace, facts: Iterable[Fact]) -> Iterator[WrittenName]:
-    """Yield the names of facts at what is written of them; none of what no file of the workspace
-    has.
+    """Yield the names of facts at what is written of them.
+
+    There are none for what no file of the workspace has.
     """
     source_of = reader_of(lambda path: workspace.tree.read(path, _MAX_TEXT))
     for fact in facts:
@@ -117,8 +122,9 @@ def _names_of_facts(workspace: Workspace, facts: Iterable[Fact]) -> Iterator[Wri
 
 
 def _is_of_no_place(fact: Definition | Use) -> bool:
-    """Return whether a fact is a definition that no place has, or that is a use where it stands:
-    what passes an argument declares it to the comparison of names.
+    """Return whether a fact is a definition that no place has, or that is a use where it stands.
+
+    Such a use is an argument that is passed, which is declared to the comparison of names.
     """
     is_known_frame = fact.kind == "frame" and fact.name in shared_names().frames
     is_argument = fact.kind in ("launch argument", "xacro argument")
@@ -126,8 +132,9 @@ def _is_of_no_place(fact: Definition | Use) -> bool:
 
 
 def _owned(workspace: Workspace, names: Sequence[WrittenName]) -> Iterator[WrittenName]:
-    """Yield names, those that no robot has with the robots that are meant: of their package, else
-    all that define them.
+    """Yield names, those that no robot has with the robots that are meant.
+
+    These are the robots of their package, else all that define them.
     """
     owners: dict[tuple[str, str], dict[str, None]] = defaultdict(dict)
     for name in names:

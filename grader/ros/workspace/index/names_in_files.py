@@ -14,8 +14,9 @@ _MAX_TEXT = 4 * 1024 * 1024  # bytes of a file
 
 
 def names_in_launch_files(workspace: Workspace) -> Iterator[WrittenName]:
-    """Yield the arguments in launch files, whose owner is the installed file, as it is of those
-    that includes pass.
+    """Yield the arguments in launch files, whose owner is the installed file.
+
+    It is also the owner of the arguments that includes pass.
     """
     for package, path, _ in workspace.launches.files:
         data = package.tree.read(path, _MAX_TEXT)
@@ -43,9 +44,7 @@ def names_in_yaml(workspace: Workspace) -> Iterator[WrittenName]:
 
 
 def _keys_with_parameters(tree: YamlNode) -> Iterator[tuple[str, YamlNode]]:
-    """Yield the keys that have parameters of ROS below them, each with the mapping that it is
-    in.
-    """
+    """Yield the keys that have parameters of ROS below them, each with its mapping."""
     visits, waiting = Visits(), [tree]
     while waiting:
         mapping = waiting.pop()

@@ -1,5 +1,6 @@
-"""The names of xacro in files as they are written: arguments, properties, macros with their
-parameters, and where they are used.
+"""The names of xacro in files as they are written, and where they are used.
+
+They are those of arguments, properties, and macros with their parameters.
 """
 
 import re
@@ -30,8 +31,9 @@ _PREFIX = "xacro:"
 
 
 class _XacroName(NamedTuple):
-    """A name in a file; `scope` is the macro that it belongs to, empty outside of macros. Of an
-    argument in a macro call, only the name of the macro is known: `called`.
+    """A name in a file; `scope` is the macro that it belongs to, empty outside of macros.
+
+    Of an argument in a macro call, only the name of the macro is known: `called`.
     """
 
     kind: str
@@ -62,8 +64,9 @@ class _Document(NamedTuple):
 
 
 def names_in_xacro(urdfs: Sequence[Read], others: Sequence[Source]) -> Iterator[WrittenName]:
-    """Yield the names of xacro in the files of each robot, with its path as the owner; then those
-    of other files, each on its own.
+    """Yield the names of xacro in the files of each robot, and then in other files.
+
+    The owner is the path of the robot; each of the other files is on its own.
     """
     known: dict[str, _Document] = {}
     for urdf in urdfs:

@@ -1,5 +1,6 @@
-"""The parameters of the node that a section of a parameter file is for: own nodes, controllers and
-well-known nodes.
+"""The parameters of the node that a section of a parameter file is for.
+
+The nodes are own nodes, controllers and well-known nodes.
 """
 
 from collections.abc import Iterator
@@ -53,8 +54,9 @@ def _own_parameters(workspace: Workspace, section: str) -> Iterator[NodeParamete
 
 
 def _known_node(workspace: Workspace, section: str) -> str | None:
-    """Return the well-known node that has a section: by the type of a controller, else by the name
-    that a node usually has.
+    """Return the well-known node that has a section.
+
+    It is found by the type of a controller, else by the name that a node usually has.
     """
     for controller in defined_controllers(workspace):
         if controller.name == section:
@@ -68,8 +70,9 @@ def _release_of(workspace: Workspace) -> Release | None:
 
 
 def _key_behind(name: str, prefix: str) -> str:
-    """Return the part of a parameter's name behind a prefix; empty where the name does not begin
-    so, or where any key may be.
+    """Return the part of a parameter's name behind a prefix.
+
+    The result is empty where the name does not begin so, or where any key may be.
     """
     tables, parts = prefix.split(".")[:-1], name.split(".")
     for table, part in zip(tables, parts, strict=False):

@@ -75,8 +75,9 @@ _QUOTES = re.compile(r'''(?i:[rbuf]{0,2}|u8)("""|\'\'\'|"|')''')
 
 
 def span_of_name(source: Source, where: Location, kind: str, name: str, role: Role) -> Span | None:
-    """Return the span of a name, or of the expression that makes it, in what begins at a place;
-    None where the name is not written there.
+    """Return the span of a name, or of the expression that makes it, in what begins at a place.
+
+    The result is None where the name is not written there.
     """
     if (kind, role) == ("node", "definition"):
         kind = _STARTED
@@ -125,8 +126,9 @@ def _in_markup(source: Source, start: int, kind: str, name: str) -> Span | None:
 
 
 def _in_tag(text: str, start: int, kind: str, name: str) -> Span | None:
-    """Return where a name is in an element: in an attribute, in its text, or in an argument that an
-    include passes.
+    """Return where a name is in an element.
+
+    It is in an attribute, in its text, or in an argument that an include passes.
     """
     spans = {attribute.name: attribute.value for attribute in markup.attributes(text, start)}
     order = [key for key in (*_USUAL.get(kind, ()), *_IN_XML) if key in spans]
@@ -220,8 +222,9 @@ def _in_code(source: Source, start: int, kind: str, name: str) -> Span | None:
 
 
 def _in_call(text: str, start: int, kind: str, name: str) -> Span | None:
-    """Return the text of a call that is a name, in the usual argument if several are; else the
-    first that has it as a word.
+    """Return the text of a call that is a name.
+
+    It is in the usual argument if several are; else it is the first that has it as a word.
     """
     first: Span | None = None
     word: Span | None = None
@@ -253,8 +256,9 @@ def _given_to_xacro(text: str, start: int, name: str) -> Span | None:
 
 
 def _texts_in_call(text: str, start: int) -> Iterator[tuple[str, Span]]:
-    """Yield the texts in a call, or up to the end of a statement of C++, each with the keyword of
-    its argument.
+    """Yield the texts in a call, each with the keyword of its argument.
+
+    In C++, it is all up to the end of a statement.
     """
     depth, keyword, has_opened = 0, "", False
     for token in _TOKEN_OF_CALL.finditer(text, start, start + _MAX_CALL):

@@ -38,8 +38,9 @@ class GivenFiles:
 
     @cached_property
     def files(self) -> Mapping[str, list[StartedNode]]:
-        """The parameter files, by their paths in the workspace, with the nodes that are given
-        them.
+        """The parameter files with the nodes that are given them.
+
+        The keys are the paths of the files in the workspace.
         """
         nodes: dict[str, list[StartedNode]] = {}
         for _, node in self.launches.nodes:
@@ -56,8 +57,9 @@ class GivenFiles:
 
     @cached_property
     def owners(self) -> Mapping[str, list[NodeParameters]]:
-        """The parameters that nodes and controllers are given, by their names without
-        namespaces.
+        """The parameters that nodes and controllers are given.
+
+        The keys are the names of the nodes without namespaces.
         """
         owners: dict[str, list[NodeParameters]] = {}
         for package, launch in self.launches.roots:
@@ -81,8 +83,9 @@ class GivenFiles:
 
     @cached_property
     def controller_files(self) -> frozenset[str]:
-        """The parameter files, by their paths in the workspace, that Gazebo and spawners give
-        controllers.
+        """The parameter files that Gazebo and spawners give controllers.
+
+        The keys are the paths of the files in the workspace.
         """
         given = [*self.robots.given_in_gazebo]
         for _, node in self.launches.nodes:
@@ -96,8 +99,9 @@ class GivenFiles:
         return self.read(package, node, self.code.name_of(node) or "")
 
     def read(self, package: Package, node: StartedNode, name: str) -> NodeParameters:
-        """Return the parameters that a node gets that is called so in its program. Raises
-        NotDecided.
+        """Return the parameters that a node gets that is called so in its program.
+
+        Raises NotDecided.
         """
         return parameters_of(node, partial(self.open, package), name, self._read_tables)
 
@@ -115,8 +119,9 @@ class GivenFiles:
         return self._charged(self._search(package, path, False))
 
     def open_given(self, package: Package, path: str) -> tuple[bytes, str] | None:
-        """Return a parameter file that a launch file of a package gives, as `open_meant` does, and
-        nothing in one that surely is nowhere. Raises NotDecided.
+        """Return a parameter file that a launch file of a package gives, as `open_meant` does.
+
+        There is nothing in one that surely is nowhere. Raises NotDecided.
         """
         return self._charged(self._search(package, path, True))
 

@@ -83,8 +83,9 @@ class Robots:
 
     @property
     def has_controller_manager(self) -> bool:
-        """Return whether a launch file starts a controller manager, or the robot has one in
-        Gazebo.
+        """Return whether a launch file or the robot starts a controller manager.
+
+        The robot has one in Gazebo.
         """
         is_started = any(node.executable == CONTROL_NODE for _, node in self.launches.nodes)
         return is_started or self.has_controllers_in_gazebo
@@ -118,8 +119,9 @@ class Robots:
 
     @property
     def has_all_interfaces(self) -> bool:
-        """Return whether `command_interfaces` are those of every robot, also under other
-        arguments of xacro.
+        """Return whether `command_interfaces` are those of every robot.
+
+        This includes the robots under other arguments of xacro.
         """
         if not self.known or self.may_be_others:
             return False
@@ -141,8 +143,9 @@ class Robots:
 
     @cached_property
     def xacro_sources(self) -> tuple[Source, ...]:
-        """The texts of the xacro files and URDFs, and of the files of other endings that these
-        include.
+        """The texts of the xacro files and URDFs, and of what they include.
+
+        Included files may have other endings.
         """
         sources: list[Source] = []
         for package in self.folder.packages:

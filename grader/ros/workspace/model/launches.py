@@ -23,8 +23,9 @@ class Launches:
 
     @cached_property
     def files(self) -> tuple[tuple[Package, str, Launch], ...]:
-        """The launch files, each with its package and its path in it; without those of tests and of
-        ROS 1.
+        """The launch files, each with its package and its path in it.
+
+        Those of tests and of ROS 1 are left out.
         """
         launches: list[tuple[Package, str, Launch]] = []
         for package in self.folder.packages:
@@ -55,8 +56,9 @@ class Launches:
 
     @property
     def nodes(self) -> tuple[tuple[Package, StartedNode], ...]:
-        """The nodes that launch files start, or may start: those that no other launch file
-        includes. Raises NotDecided.
+        """The nodes that launch files start, or may start.
+
+        The launch files are those that no other one includes. Raises NotDecided.
         """
         self.folder.charge(1 + len(self._nodes))
         return self._nodes

@@ -1,6 +1,4 @@
-"""What the code of the workspace's packages opens and declares, and the interfaces that they
-define.
-"""
+"""What the workspace's packages open, declare and define in their code and interfaces."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -28,8 +26,9 @@ _NO_CODE = frozenset(
 
 @dataclass(frozen=True, eq=False)
 class OwnCode:
-    """What the code of the workspace's packages opens and declares, and the interfaces that they
-    define.
+    """What the code of packages opens and declares, and the interfaces that packages define.
+
+    The packages are those of the workspace.
     """
 
     folder: WorkspaceFolder
@@ -48,8 +47,9 @@ class OwnCode:
 
     @cached_property
     def interfaces(self) -> Mapping[str, PackageInterfaces]:
-        """The messages, services and actions of the packages, by the names of these. Of a name that
-        several packages have nothing is known.
+        """The messages, services and actions of the packages, by the names of these.
+
+        Of a name that several packages have nothing is known.
         """
         interfaces_by_package = {}
         for package in self.folder.packages:
@@ -59,8 +59,9 @@ class OwnCode:
         return interfaces_by_package
 
     def own_node(self, node: StartedNode) -> NodeFacts | None:
-        """Return the Python node of the workspace that a program starts, if it starts one that
-        is known.
+        """Return the Python node of the workspace that a program starts.
+
+        The result is None if it starts none that is known.
         """
         owner = self.folder.package_of(node)
         if owner is None or owner.name not in self.by_package:
@@ -99,16 +100,18 @@ class OwnCode:
         return program_row(node.package, node.executable).name
 
     def children_of(self, name: str) -> frozenset[str]:
-        """Return the nodes that a node of another package makes in its process, and that read
-        its parameters.
+        """Return the nodes that a node of another package makes in its process.
+
+        They read its parameters.
         """
         children = frozenset(children_by_node().get(name, ()))
         return children | self.installed.typed_sections if name == MANAGER else children
 
 
 def _program_texts(package: Package) -> tuple[tuple[str, bytes | None], ...]:
-    """Return the files of a package, each with its bytes unless its ending says that it has no
-    code.
+    """Return the files of a package, each with its bytes.
+
+    It has None in place of the bytes if its ending says that it has no code.
     """
     texts: list[tuple[str, bytes | None]] = []
     for path, file in package.tree.files.items():

@@ -55,8 +55,9 @@ _MAX_FILES, _MAX_SIZE = 60, 128 * 1024  # of one kind; bytes
 
 
 def stated_releases(tree: Tree) -> StatedReleases:
-    """Return the releases that files of a workspace state: its containers, workflows and README,
-    else other texts, else images of Ubuntu.
+    """Return the releases that files of a workspace state.
+
+    The files are its containers, workflows and README, else other texts, else images of Ubuntu.
     """
     every = [*tree.files.values()]
     settings = [file for file in every if _is_container(file.name.lower())]
@@ -134,8 +135,9 @@ def _in_setting_of_every_branch(text: str) -> set[str]:
 
 
 def _in_prose(text: str) -> set[str]:
-    """Return the releases that a README states, but for those that are on other branches, and those
-    that the work was ported from.
+    """Return the releases that a README states.
+
+    Those that are on other branches, and those that the work was ported from, are left out.
     """
     releases: set[str] = set()
     text = _ORIGIN.sub(lambda match: f"ROS 2 {match['to'] or ''}", text)

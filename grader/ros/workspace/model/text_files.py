@@ -1,6 +1,4 @@
-"""The texts of the files of packages, in which names are searched, and the XML files of Gazebo
-and MoveIt.
-"""
+"""The texts of packages in which names are searched, and XML files of Gazebo and MoveIt."""
 
 import posixpath
 import re
@@ -32,8 +30,9 @@ _COMMENT_LINE = re.compile(r"(?:^|(?<=\s))#[^\n]*")
 
 @dataclass(frozen=True, eq=False)
 class TextFiles:
-    """The texts of the files of packages, in which names are searched, and the XML files of Gazebo
-    and MoveIt. Each file is read once.
+    """The texts of the files of packages, and the XML files of Gazebo and MoveIt.
+
+    Names are searched in the texts. Each file is read once.
     """
 
     folder: WorkspaceFolder
@@ -165,8 +164,9 @@ def _without_xml_comments(text: str) -> str:
 
 
 def read_paths(package: Package, paths: Iterable[str]) -> list[str]:
-    """Return the paths of a package's files that are read: no tests, none of packages in it, and
-    not too many.
+    """Return the paths of a package's files that are read.
+
+    These are no tests, none of packages in it, and not too many.
     """
     unread = ("test/", *package.inner)
     return [path for path in paths if not path.startswith(unread)][:_MAX_FILES]

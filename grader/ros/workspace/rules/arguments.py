@@ -23,8 +23,9 @@ _XACRO_ARGUMENT = re.compile(
 
 
 def argument_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the arguments that launch files and xacro declare, and those that includes and Command
-    pass.
+    """Yield the arguments that launch files and xacro declare, or that others pass.
+
+    Includes and Command pass them.
     """
     for package, path, launch in workspace.launches.files:
         start = Location(package.path(path), 1, 1)
@@ -45,8 +46,9 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _included_arguments(workspace: Workspace, launch: Launch, owner: str) -> Iterator[Fact]:
-    """Yield the arguments of launch files outside the workspace, which a launch file passes on by
-    including them.
+    """Yield the arguments of outside launch files, which a launch file passes on.
+
+    It passes them on by including files outside the workspace.
     """
     for passed in launch.passed:
         names = launch_arguments().get(passed.path)

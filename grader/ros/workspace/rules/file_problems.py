@@ -1,5 +1,6 @@
-"""What is wrong in the files of a workspace's packages, each on its own: what stops a build or a
-launch file, and RViz files.
+"""What is wrong in the files of a workspace's packages, each on its own.
+
+It is what stops a build or a launch file, and what is wrong in RViz files.
 """
 
 from collections.abc import Iterator
@@ -42,8 +43,9 @@ def _file_problems(workspace: Workspace) -> Iterator[Problem]:
 
 
 def _launch_problems(workspace: Workspace) -> Iterator[Problem]:
-    """Yield what is wrong in launch files, but for programs that do not exist, which is also a name
-    that does not agree.
+    """Yield what is wrong in launch files, but for programs that do not exist.
+
+    A missing program is also a name that does not agree.
     """
     roots = {id(launch) for _, launch in workspace.launches.roots}
     mismatches = read_agreement(workspace).mismatches
@@ -89,8 +91,9 @@ def _build_problems(workspace: Workspace) -> Iterator[Problem]:
 
 
 def listed_problems(workspace: Workspace) -> list[Problem]:
-    """Return what is wrong in the files, each once, without what is not evaluated, which is only
-    counted.
+    """Return what is wrong in the files, each once.
+
+    What is not evaluated is left out; it is only counted.
     """
     return [
         problem
@@ -106,9 +109,10 @@ def ros1_problem(package: Package) -> Problem:
 
 
 def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
-    """Return a launch file that no other one surely includes, without the faults that its caller
-    may correct: who starts it gives it values, and a file that may include it declares arguments;
-    and without those of arguments that a stated release has.
+    """Return a launch file that no other one surely includes, without some faults.
+
+    These are the faults that its caller may correct, and those of arguments that a stated release
+    has. Who starts the file gives it values, and a file that may include it declares arguments.
     """
     name = path.rpartition("/")[2]
     try:

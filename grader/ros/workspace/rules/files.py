@@ -1,6 +1,4 @@
-"""Files: the paths that launch files, xacro and YAML name, and whether a build installs a file
-there.
-"""
+"""Files: the paths that launch files, xacro and YAML name, and whether they are installed."""
 
 import posixpath
 import re
@@ -79,8 +77,9 @@ def _faults_of(workspace: Workspace, every: Iterable["_NamedPath"]) -> Iterator[
 
 
 class _NamedPath(NamedTuple):
-    """A path below the prefix, with the package whose file names it, and whether it is certainly
-    looked for.
+    """A path below the prefix, with the package whose file names it.
+
+    It says whether the path is certainly looked for.
 
     `is_needed`: whether a program certainly reads the file and never writes it; `is_output`:
     whether an own node, which is given the path, may write it.
@@ -171,8 +170,9 @@ def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
 
 
 def _texts_given(node: StartedNode, *, is_own: bool) -> Iterator[_Text]:
-    """Yield the texts that a node is given. The launch file that includes it may never start it,
-    whatever the arguments.
+    """Yield the texts that a node is given.
+
+    The launch file that includes it may never start it, whatever the arguments.
     """
     is_read = node.when is not False or not node.included_by
     for word in node.arguments or ():
@@ -215,8 +215,9 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
 
 
 def _no_package(workspace: Workspace, named: _NamedPath) -> Iterator[Mismatch]:
-    """Yield that the package of a path is a misspelt one of the workspace. Others may be installed;
-    of a well-known one it is compared which launch files it has.
+    """Yield that the package of a path is a misspelt one of the workspace.
+
+    Others may be installed; of a well-known one it is compared which launch files it has.
     """
     package, at = named.package, named.location
     name, rest = share_parts(named.path)
@@ -288,8 +289,9 @@ def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Itera
 def _folder_corrections(
     target: str, elsewhere: str, at: Location, start: Location
 ) -> tuple[Correction, ...]:
-    """Return the correction of the one folder in which a path differs from that at which the file
-    is installed.
+    """Return the correction of the one folder in which a path differs from an installed one.
+
+    The other path is the one at which the file is installed.
     """
     if target.count("/") != elsewhere.count("/"):
         return ()
@@ -302,8 +304,9 @@ def _folder_corrections(
 
 
 def _install_corrections(setup: Installation, file: str, start: Location) -> tuple[Correction, ...]:
-    """Return the correction of a path in setup.py or CMakeLists.txt that does not exist, into one
-    that has the file.
+    """Return the correction of a path in setup.py or CMakeLists.txt that does not exist.
+
+    The corrected path has the file.
     """
     wrong = [stop.path for stop in setup.stops]
     wrong += [posixpath.dirname(empty.pattern) for empty in setup.empty]

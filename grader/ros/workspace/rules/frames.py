@@ -1,6 +1,4 @@
-"""Frames and joints: those of the robot and of static transforms, and where other files name
-them.
-"""
+"""Frames and joints of the robot and of static transforms, and where files name them."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -52,8 +50,9 @@ _OWN_FRAMES = re.compile(
 
 
 def frame_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the frames and joints that are defined, and those that YAML, SRDF, Gazebo and
-    transforms name.
+    """Yield the frames and joints that are defined, and those that files name.
+
+    The files are YAML, SRDF, those of Gazebo and those of transforms.
     """
     robots = [
         known_robot.robot for known_robot in workspace.robots.known if known_robot.robot.links
@@ -95,8 +94,9 @@ def _place(location: LazyLocation | None) -> Location:
 
 
 def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
-    """Yield that there may be other names: of other robots, under other arguments, and of programs
-    that may publish frames.
+    """Yield that there may be other names.
+
+    They may be of other robots, under other arguments, or of programs that may publish frames.
     """
     if workspace.robots.may_be_others:
         yield from (Open("frame"), Open("link"), Open("joint"), Open("group"))
@@ -114,9 +114,7 @@ def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
 
 
 def _may_be_published(workspace: Workspace) -> bool:
-    """Return whether a program, code or a system of Gazebo may publish frames that are not
-    known.
-    """
+    """Return whether a program, code or a system of Gazebo may publish unknown frames."""
     packages = {package.name for package in workspace.packages}
     for _, node in workspace.launches.nodes:
         if "frames" not in package_row(node.package).without and node.package not in packages:
@@ -133,8 +131,9 @@ def _may_be_published(workspace: Workspace) -> bool:
 
 
 def _may_publish(workspace: Workspace, package: Package) -> bool:
-    """Return whether the programs that CMake makes may publish frames that are not known: the
-    frames of programs that are started are.
+    """Return whether the programs that CMake makes may publish unknown frames.
+
+    The frames of programs that are started are known.
     """
     setup = package.installation
     if not package.is_cmake or setup is None or not setup.programs:
@@ -245,8 +244,9 @@ class _NamedFrame(NamedTuple):
 
 
 def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> Iterator[Mismatch]:
-    """Yield frames that are published, and that are like the root of a robot that nothing puts
-    anywhere. It is certain for a node that is started, with one robot.
+    """Yield frames that are published, and are like the root of a robot that nothing places.
+
+    It is certain for a node that is started, with one robot.
     """
     publishing = [each for each in named if each.frame.use == "publishes"]
     placed = {each.name for each in publishing}
@@ -302,8 +302,9 @@ def _frames_of_static(node: StartedNode) -> tuple[str, str] | None:
 
 
 def _second_parents(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Mismatch]:
-    """Yield static transforms that give a link of the robot a second parent. It is certain for a
-    node that is started, with one robot.
+    """Yield static transforms that give a link of the robot a second parent.
+
+    It is certain for a node that is started, with one robot.
     """
     joints = {joint.child: joint for robot in robots for joint in robot.joints}
     for _, node in workspace.launches.nodes:
@@ -323,8 +324,9 @@ def _second_parents(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[M
 
 
 def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
-    """Yield the joints and frames that a parameter names; what a node of another kind calls joints
-    may be others.
+    """Yield the joints and frames that a parameter names.
+
+    What a node of another kind calls joints may be other things.
     """
     key = value.keys[-1] if value.keys else ""
     names = {node.location: text for text, node in value.texts() if "$" not in text}
@@ -377,8 +379,9 @@ def _in_element(robot: KnownRobot, element: Element) -> Iterator[Fact]:
 
 
 def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
-    """Yield the frames that systems of Gazebo publish: those that they name, and by default those
-    below the model's.
+    """Yield the frames that systems of Gazebo publish.
+
+    They are those that the systems name, and by default those below the model's.
     """
     created = _created_models(workspace)
     defaults = [*gazebo().odometry_frames]
@@ -409,6 +412,7 @@ def _created_models(workspace: Workspace) -> set[str]:
 
 def _sensor_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Use]:
     """Yield the frames of the sensors of models that are a robot as well: these have a link of it.
+
     Their own links and frames are ignored, since Gazebo may publish them.
     """
     links = {link.name for robot in robots for link in robot.links}

@@ -1,5 +1,6 @@
-"""Interfaces: the files of messages, services and actions, what generates code of them, and the
-types and fields that nodes use.
+"""Interfaces: the files of messages, services and actions, and the types that nodes use.
+
+Also what generates code of the files, and the fields that nodes use.
 """
 
 from collections.abc import Iterator, Sequence
@@ -76,8 +77,9 @@ def interface_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _no_group(package: Package, interfaces: PackageInterfaces) -> Iterator[Mismatch]:
-    """Yield that package.xml does not say that a package has interfaces. Nothing is said of one
-    that is not read whole, or that ROS 2 refuses.
+    """Yield that package.xml does not say that a package has interfaces.
+
+    Nothing is said of one that is not read whole, or that ROS 2 refuses.
     """
     manifest = package.manifest
     if manifest is None or manifest.unread or manifest.refusals:
@@ -102,8 +104,9 @@ def _unreadable_files(interfaces: PackageInterfaces) -> Iterator[Mismatch]:
 def _types_of_fields(
     workspace: Workspace, package: Package, interfaces: PackageInterfaces
 ) -> Iterator[Mismatch]:
-    """Yield that nothing defines the type of a field, or that CMakeLists.txt does not name its
-    package.
+    """Yield that nothing defines the type of a field.
+
+    Or CMakeLists.txt does not name the package of the type.
     """
     for own_type in interfaces.types.values():
         for section in own_type.interface.sections:
@@ -122,8 +125,10 @@ def _types_of_fields(
 def _no_dependency(
     workspace: Workspace, interfaces: PackageInterfaces, field: InterfaceField, at: Location
 ) -> Iterator[Mismatch]:
-    """Yield that CMakeLists.txt does not name the package of the type of a field. Nothing is said
-    where not all is known that it names, and for releases that have all headers in one folder.
+    """Yield that CMakeLists.txt does not name the package of the type of a field.
+
+    Nothing is said where not all is known that it names, and for releases that have all headers
+    in one folder.
     """
     if not interfaces.is_complete or _OF_ONE_FOLDER.intersection(workspace.releases):
         return
@@ -226,9 +231,7 @@ def _no_type_of_kind(shown: str, name: str, names: Sequence[str], at: Location) 
 
 
 def _used_types(workspace: Workspace, package: Package) -> Iterator[Fact]:
-    """Yield the types that the code of a package imports, or opens something with, and that do not
-    exist.
-    """
+    """Yield the types that a package's code imports or opens, and that do not exist."""
     nodes = workspace.code.by_package[package.name]
     used = {used_type.name: used_type.location for used_type in reversed(nodes.imports)}
     for node in nodes.nodes:
@@ -258,9 +261,7 @@ def _find_interface(workspace: Workspace, package: str, name: str) -> Interface 
 
 
 def _used_field(workspace: Workspace, use: FieldUse) -> Iterator[Fact]:
-    """Yield that a type does not have a field that is used, or that it is set to a value of another
-    type.
-    """
+    """Yield that a type has no field that is used, or that it gets a value of another type."""
     package, kind, name, *sections = use.type.split(".")
     section_name, path = "".join(sections), use.path
     if section_name == _GOAL_HANDLE:
@@ -309,8 +310,9 @@ def _is_of_python(section: InterfaceSection, attribute: str) -> bool:
 def _no_field(
     workspace: Workspace, shown: str, section: InterfaceSection, attribute: str, at: Location
 ) -> Iterator[Mismatch]:
-    """Yield that a type does not have a field or a constant that code uses. Items of lists, and
-    what the classes of Python have besides, are no fields.
+    """Yield that a type does not have a field or a constant that code uses.
+
+    Items of lists, and what the classes of Python have besides, are no fields.
     """
     if attribute == ITEM or _is_of_python(section, attribute):
         return

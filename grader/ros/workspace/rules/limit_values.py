@@ -1,5 +1,6 @@
-"""Limits of joints that are said twice: MoveIt's joint_limits.yaml and <ros2_control> may allow
-less than the robot, not more.
+"""Limits of joints that are said twice: by the robot, and by MoveIt or <ros2_control>.
+
+MoveIt's joint_limits.yaml and <ros2_control> may allow less than the robot, not more.
 """
 
 from collections.abc import Iterator, Sequence

@@ -49,9 +49,11 @@ class _Trees:
 
 
 def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
-    """Yield the transforms that are looked up between frames which launch files publish, where
-    certainly nothing that these start connects them. A program in another terminal may publish
-    other frames, such as the map, and is not likely to connect these.
+    """Yield the transforms that are looked up between frames that nothing connects.
+
+    Launch files publish the frames, and certainly nothing that these start connects them. A
+    program in another terminal may publish other frames, such as the map, and is not likely to
+    connect these.
     """
     lookups = [*_lookups(workspace)]
     if not lookups or any(fact.kind == "frame" for fact in openings(workspace)):

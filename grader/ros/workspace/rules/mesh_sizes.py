@@ -1,5 +1,7 @@
-"""Meshes in millimetres that robots show in metres, or the reverse: their sizes beside the other
-shapes of their links. `grader inspect` warns of them; no criterion reads a mesh.
+"""Meshes in millimetres that robots show in metres, or the reverse.
+
+Their sizes are compared with the other shapes of their links. `grader inspect` warns of them; no
+criterion reads a mesh.
 """
 
 from collections.abc import Iterable, Iterator
@@ -35,8 +37,9 @@ class _Reference(NamedTuple):
 
 
 def mesh_size_problems(workspace: Workspace) -> list[Problem]:
-    """Return a warning for each mesh that is about 1000 times as large as it should be, or as
-    small, as far as meshes are read before the budget of the workspace is spent.
+    """Return a warning for each mesh about 1000 times as large, or as small, as it should be.
+
+    Meshes are read until the budget of the workspace is spent.
     """
     meshes, problems = _Meshes(workspace), dict[tuple[str, Location], Problem]()
     with suppress(NotDecided, InputError):
@@ -50,8 +53,9 @@ def mesh_size_problems(workspace: Workspace) -> list[Problem]:
 
 
 def _problems_of(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Problem]:
-    """Yield the meshes whose lengths are about 1000 times as large or small as those of what is
-    beside them. A sample of each mesh is read first, and whole only one that may be.
+    """Yield the meshes about 1000 times as large or small as what is beside them.
+
+    The lengths are compared. A sample of each mesh is read first, and whole only one that may be.
     """
     origins = [joint.origin for joint in robot.joints if joint.origin is not None]
     reach = max((hypot(*origin.xyz) for origin in origins), default=0.0)

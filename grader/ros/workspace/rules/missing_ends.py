@@ -55,8 +55,9 @@ def missing_end_facts(workspace: Workspace) -> Iterator[Fact]:
 def _without_publisher(
     graph: Graph, subscriptions: Sequence[End], publishers: Sequence[End]
 ) -> Iterator[Fact]:
-    """Yield subscriptions to topics that nothing publishes, where a similar one is published and
-    not subscribed to.
+    """Yield subscriptions to unpublished topics where a similar one is published.
+
+    The similar topic is one that is not subscribed to.
     """
     workspace = graph.workspace
     offers = [*_offers(workspace, publishers)]
@@ -87,8 +88,9 @@ def _offers(workspace: Workspace, publishers: Sequence[End]) -> Iterator[_Offer]
 
 
 def _similar_topic(workspace: Workspace, end: End, alike: Sequence[_Offer]) -> Iterator[Fact]:
-    """Yield the topic that a subscription surely means, of those of its type; else that it uses
-    its own, to which a similar name may be a correction.
+    """Yield the topic that a subscription surely means, of those of its type.
+
+    Else yield that it uses its own, to which a similar name may be a correction.
     """
     workspace.charge(len(alike))
     places = {offer.topic: offer.location for offer in alike if offer.launch == end.launch}
@@ -129,8 +131,9 @@ def _no_other_end(rule: Rule, what: str, end: End, meant: str, at: Location) -> 
 def _without_subscription(
     graph: Graph, subscriptions: Sequence[End], publishers: Sequence[End]
 ) -> Iterator[Mismatch]:
-    """Yield publishers that nothing subscribes to, where a controller waits for such messages on
-    another topic.
+    """Yield publishers that nothing subscribes to, where a controller waits on another topic.
+
+    The controller waits for such messages there.
 
     It is certain where one launch file starts both, and all of its topics are read. A publisher of
     the same name may be meant for a controller of Gazebo in another namespace.
@@ -157,8 +160,9 @@ def _without_subscription(
 def _unheard(
     workspace: Workspace, publisher: End, waiting: End, *, is_only: bool
 ) -> Mismatch | None:
-    """Return that a publisher means the topic on which a controller waits; None where that is not
-    known.
+    """Return that a publisher means the topic on which a controller waits.
+
+    The result is None where that is not known.
     """
     if _may_be_of_gazebo(workspace, publisher, waiting):
         return None
@@ -186,8 +190,10 @@ def _may_be_of_gazebo(workspace: Workspace, publisher: End, waiting: End) -> boo
 
 
 def _without_server(graph: Graph, meeting: Meeting) -> Iterator[Mismatch]:
-    """Yield that nothing serves what a client calls, where a server of its type waits under one
-    other name. It is certain where the nodes of both certainly are started.
+    """Yield that nothing serves what a client calls, where a server waits under another name.
+
+    The server has the type of the client, and there is one such name only. It is certain where
+    the nodes of both certainly are started.
     """
     workspace = graph.workspace
     clients, servers = meeting.ends(graph)

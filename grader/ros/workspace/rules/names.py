@@ -1,5 +1,6 @@
-"""Join the names that files define with those that they use: a name that is used has to be defined
-somewhere.
+"""Join the names that files define with those that they use.
+
+A name that is used has to be defined somewhere.
 """
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -17,8 +18,9 @@ _MAX_NEAR, _MAX_SIMILAR = 1000, 300  # known names that are compared in either w
 
 
 class Definition(NamedTuple):
-    """A name that a file defines. Those of one kind agree within one owner only, such as the
-    arguments of a file.
+    """A name that a file defines.
+
+    Those of one kind agree within one owner only, such as the arguments of a file.
     """
 
     kind: DefinedKind
@@ -28,8 +30,9 @@ class Definition(NamedTuple):
 
 
 class Use(NamedTuple):
-    """A name that a file uses, and what the file calls it. Where it is `optional`, only a similar
-    name is wrong.
+    """A name that a file uses, and what the file calls it.
+
+    Where it is `optional`, only a similar name is wrong.
     """
 
     kind: DefinedKind
@@ -41,8 +44,10 @@ class Use(NamedTuple):
 
 
 class Open(NamedTuple):
-    """That names of a kind may be defined by what is not in the workspace, or, for a reason, by
-    what is not evaluated.
+    """That names of a kind may be defined elsewhere.
+
+    They may be defined by what is not in the workspace, or, for a reason, by what is not
+    evaluated.
     """
 
     kind: DefinedKind
@@ -58,8 +63,9 @@ class Pattern(NamedTuple):
 
 
 class Correction(NamedTuple):
-    """Another name in a file: the old one is at a place, behind it in the same element, or the key
-    before it.
+    """Another name in a file.
+
+    The old one is at a place, behind it in the same element, or the key before it.
     """
 
     location: Location
@@ -68,8 +74,9 @@ class Correction(NamedTuple):
 
 
 class Mismatch(NamedTuple):
-    """Something that does not agree. It is a warning, and fails no criterion, unless it certainly
-    fails at run time.
+    """Something that does not agree.
+
+    It is a warning, and fails no criterion, unless it certainly fails at run time.
     """
 
     rule: Rule
@@ -108,9 +115,7 @@ class Undecided(NamedTuple):
 
 
 class Counted(NamedTuple):
-    """How many names of a family have a counterpart with which they are compared, and why not all
-    names are known.
-    """
+    """How many names of a family are compared with a counterpart, and why not all are known."""
 
     family: AnyFamily
     compared: int
@@ -147,8 +152,9 @@ class Agreement(NamedTuple):
 
 
 def uncompared(facts: Iterable[Fact], reason: str) -> Agreement:
-    """Return the mismatches among facts that are not all known, and for each family why nothing
-    else is compared.
+    """Return the mismatches among facts that are not all known, and why no more is compared.
+
+    The reason is given for each family.
     """
     mismatches = [fact for fact in facts if isinstance(fact, Mismatch)]
     families = frozenset(fact.family for fact in mismatches)
@@ -158,8 +164,9 @@ def uncompared(facts: Iterable[Fact], reason: str) -> Agreement:
 
 
 def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: None) -> Agreement:
-    """Return which of the names that are used are not defined, in the order of their places. The
-    work of comparing names is charged.
+    """Return which of the names that are used are not defined, in the order of their places.
+
+    The work of comparing names is charged.
     """
     every = [*facts]
     names = _DefinedNames(every)
@@ -246,8 +253,9 @@ def _in_order(mismatches: Iterable[Mismatch]) -> tuple[Mismatch, ...]:
 
 
 def cost_of_guess(known: int) -> int:
-    """Return the parts of comparing a name with as many known ones; the most similar text is
-    searched among the first of them.
+    """Return the parts of comparing a name with as many known ones.
+
+    The most similar text is searched among the first of them.
     """
     return 3 * min(known, _MAX_NEAR) + 20 * min(known, _MAX_SIMILAR)
 
@@ -282,8 +290,9 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
 def corrections(
     name: str, at: Location, meant: str | None, defined: Location | None = None
 ) -> tuple[Correction, ...]:
-    """Return that a name becomes the one that is meant, or the reverse; none for names of two sides
-    or numbers.
+    """Return that a name becomes the one that is meant, or the reverse.
+
+    There are none for names of two sides or numbers.
     """
     if meant is None or not (are_of_one_side(name, meant) or near(name, [meant])):
         return ()

@@ -1,5 +1,6 @@
-"""What is wrong with the values that a well-known node gets, by the rows of its parameters: of no
-effect, of another type or release, missing, or not accepted.
+"""What is wrong with the values of a well-known node, by the rows of its parameters.
+
+A value may have no effect, be of another type or release, be missing, or not be accepted.
 """
 
 import operator
@@ -116,8 +117,10 @@ class _ParameterMatch(NamedTuple):
 
 
 def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismatch]:
-    """Yield what is wrong with the parameters of a node in each of the stated releases; in all that
-    the rows are of where none is stated. A value that is right in one of them is right.
+    """Yield what is wrong with the parameters of a node in each of the stated releases.
+
+    Without a stated release, it is all that the rows are of. A value that is right in one of them
+    is right.
     """
     known = node_rows(given.node)
     if known is None or not all(map(known.is_known_in, stated)):
@@ -144,8 +147,9 @@ def _findings_in_all(readers: "Sequence[_NodeReader]") -> Iterator[_RowFinding]:
 
 
 def default_in(given: GivenNode, name: str, release: Release) -> Any:
-    """Return the value that a node has in a release for a parameter that it does not get; Unknown
-    where that is not known, None where it has none.
+    """Return the value that a node has in a release for a parameter that it does not get.
+
+    The result is Unknown where that is not known, None where it has none.
     """
     return _NodeReader(given, release).default(name)
 
@@ -346,8 +350,9 @@ class _NodeReader:
     def _other_type(
         self, name: str, given: ParameterValue, match: _ParameterMatch
     ) -> _RowFinding | None:
-        """Return that a value has another type than its node declares, for which a text may stand
-        that a launch file replaces.
+        """Return that a value has another type than its node declares.
+
+        A text that a launch file replaces may stand for the value.
         """
         actual, declared = type_in_words(given.value), _DECLARED.get(match.row.type, "")
         if not declared or not actual or actual == declared:
@@ -514,8 +519,10 @@ class _NodeReader:
                 yield _RowFinding(name, mismatch)
 
     def _required(self, table: _RowTable) -> Iterator[tuple[ParameterRow, str]]:
-        """Yield the rows without which a node stops, with the names that it needs: of a row with a
-        part for the value of another parameter, that of the value that is given.
+        """Yield the rows without which a node stops, with the names that it needs.
+
+        Of a row with a part for the value of another parameter, it is the name with the value
+        that is given.
         """
         for row in table.rows.all_rows.values():
             if not row.is_required:
@@ -573,8 +580,9 @@ def _may_mean(part: str, own_part: str) -> bool:
 
 
 def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> _Corrected | None:
-    """Return a name with the one part corrected that differs from a row's; None if not one does, or
-    not surely.
+    """Return a name with the one part corrected that differs from a row's.
+
+    The result is None if not one does, or not surely.
     """
     if len(parts) != len(wanted):
         return None

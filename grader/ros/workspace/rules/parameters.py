@@ -1,5 +1,6 @@
-"""Parameters: whether parameter files have some for the node that gets them, and whether own
-nodes declare them.
+"""Parameters: whether parameter files have some for the node that gets them.
+
+It is compared as well whether own nodes declare them.
 """
 
 import re
@@ -89,8 +90,9 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
-    """Yield installed YAML files that cannot be parsed, and aliases in parameter files, which rcl
-    refuses.
+    """Yield installed YAML files that cannot be parsed, and aliases in parameter files.
+
+    rcl refuses aliases.
 
     That a file is not YAML is certain to be a mistake where a node gets it. Files of OpenCV and
     those that Git LFS has not fetched are no YAML of ROS 2, and those of bridges are compared by
@@ -116,8 +118,9 @@ def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
 
 
 def _parameter_trees(workspace: Workspace) -> Iterator[YamlNode]:
-    """Yield the parameter files that nodes or controllers get. What components get, to which a
-    container gives its own files, is not evaluated.
+    """Yield the parameter files that nodes or controllers get.
+
+    What components get, to which a container gives its own files, is not evaluated.
     """
     paths = []
     for path, nodes in workspace.parameters.files.items():
@@ -140,8 +143,9 @@ def _files_of_controllers(workspace: Workspace) -> list[str]:
 
 
 def _plugins(workspace: Workspace) -> Iterator[Fact]:
-    """Yield what lists of plugins name, and plugins that pluginlib does not know as they are
-    written.
+    """Yield what lists of plugins name, and plugins that pluginlib does not know.
+
+    pluginlib does not know them as they are written.
     """
     sections_by_file = {
         path: frozenset(_sections(tree))
@@ -186,8 +190,9 @@ def _is_given_alone(workspace: Workspace, path: str) -> bool:
 def _sections_of_others(
     workspace: Workspace, path: str, nodes: Sequence[StartedNode]
 ) -> Iterator[Mismatch]:
-    """Yield that a parameter file has nothing for a node that is given it, but for a node that
-    is not.
+    """Yield that a parameter file has something only for a node that is not given it.
+
+    It has nothing for a node that is given it.
 
     Nothing is said where a container gets the file, which it gives to its components, or where the
     name of a node that gets it is not known. A section with the name that its program gives the
@@ -227,8 +232,10 @@ def _is_renamed(workspace: Workspace, tree: YamlNode, node: StartedNode) -> bool
 
 
 def _may_read_another(workspace: Workspace, path: str, node: StartedNode) -> bool:
-    """Return whether a section of a file may be that of a node which is not known: of the launch
-    file to which the file is passed, or one inside of a program of another package.
+    """Return whether a section of a file may be that of a node which is not known.
+
+    The node may be of the launch file to which the file is passed, or inside of a program of
+    another package.
     """
     if path in workspace.installed.passed_files:
         return True
@@ -268,8 +275,9 @@ def _unread_sections(
 
 
 def _misplaced_keys(tree: YamlNode) -> Iterator[Mismatch]:
-    """Yield values of a parameter file that are not below ros__parameters, such keys that are
-    misspelt, and those inside of other ros__parameters.
+    """Yield values of a parameter file that are not below ros__parameters.
+
+    Keys ros__parameters that are misspelt, and those inside of others, are yielded too.
     """
     waiting: list[tuple[str, YamlNode, bool]] = [("", tree, False)]
     visits = {True: Visits(), False: Visits()}  # by whether it is below a key ros__parameters
@@ -354,8 +362,9 @@ def _may_declare_more(workspace: Workspace, node: StartedNode, own_node: NodeFac
 
 
 def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Location]:
-    """Yield the places of parameters that a node of another program, or a controller, of the same
-    name gets and may declare.
+    """Yield the places of parameters that another node of the same name may declare.
+
+    The node is of another program, or a controller, and gets the parameters.
     """
     for given in workspace.parameters.owners.get(workspace.code.name_of(node) or "", ()):
         if (given.node.package, given.node.executable) == (node.package, node.executable):
@@ -382,9 +391,10 @@ def _not_given(
     own_node: NodeFacts,
     values: Mapping[str, ParameterValue] | None,
 ) -> Iterator[Mismatch]:
-    """Yield the parameters that a node declares without a value and reads, and is not given: rclpy
-    and rclcpp raise ParameterUninitializedException. Nothing is said where `values` is None: the
-    node may get more than is known.
+    """Yield the parameters that a node declares without a value, reads, and is not given.
+
+    rclpy and rclcpp raise ParameterUninitializedException. Nothing is said where `values` is
+    None: the node may get more than is known.
     """
     read = {
         own_parameter.name
@@ -448,9 +458,7 @@ def _other_type(
 
 
 def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
-    """Yield which values of an input a filter of robot_localization takes, where there are not 15
-    of them.
-    """
+    """Yield which values of an input a filter of robot_localization takes, if not 15."""
     for _, section in sections_in(tree) if isinstance(tree, YamlNode) else ():
         for value in values_in(section):
             count = len(value.node.items)
@@ -477,8 +485,9 @@ def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) ->
 
 
 def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
-    """Yield that a program is given the file of a robot as an argument, which no stated release of
-    it reads.
+    """Yield that a program is given a robot's file as an argument that it does not read.
+
+    No stated release of the program reads it.
     """
     words = [word for word in node.arguments or () if word is not None]
     if not words or not words[0].endswith((".urdf", ".xacro", ".xml")):
@@ -497,8 +506,9 @@ def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode
 
 
 def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Iterator[Fact]:
-    """Yield the entries of lists of plugins that have no section beside them, and none at the same
-    place elsewhere.
+    """Yield the entries of lists of plugins that have no section.
+
+    There is none beside them, and none at the same place elsewhere.
     """
     waiting, visits = [("", tree)], Visits()
     while waiting:
@@ -536,8 +546,9 @@ def _listed(key: str, node: YamlNode) -> Iterator[tuple[str, Location]]:
 
 
 def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Iterator[Fact]:
-    """Yield plugins that are written with other separators than pluginlib knows them by, in every
-    release that the file may be for.
+    """Yield plugins that are written with other separators than pluginlib knows them by.
+
+    pluginlib knows them so in every release that the file may be for.
     """
     values = [value for value in values_in(tree) if value.keys[-1:] == ("plugin",)]
     if not values:

@@ -1,5 +1,6 @@
-"""Rates and ranges that one file asks for and another one cannot give: of controllers, and of the
-lidars that Nav2 reads.
+"""Rates and ranges that one file asks for and another one cannot give.
+
+They are those of controllers, and of the lidars that Nav2 reads.
 """
 
 from collections.abc import Iterable, Iterator

@@ -1,5 +1,7 @@
-"""Messages that arrive, and that their reader cannot use: without a header where a synchroniser
-compares times, or images with an encoding that cannot be converted; and queues of no length.
+"""Messages that arrive, and that their reader cannot use; and queues of no length.
+
+They have no header where a synchroniser compares times, or are images with an encoding that
+cannot be converted.
 """
 
 import re
@@ -124,8 +126,9 @@ def _cannot_convert(topic: str, made: ImageEncoding, asked: ImageEncoding) -> Mi
 
 
 def _is_lost(made: str, asked: str) -> bool:
-    """Return whether cv_bridge certainly raises an error for a conversion: of depths to colours,
-    or to another number of channels.
+    """Return whether cv_bridge certainly raises an error for a conversion.
+
+    It is one of depths to colours, or to another number of channels.
     """
     colours = colour_encodings()
     before, after = _channels(made, colours), _channels(asked, colours)

@@ -23,9 +23,7 @@ _PLUGIN_KEYS = ("plugin", "robot_model_type")
 
 
 def compared_names(workspace: Workspace) -> Iterator[Problem]:
-    """Yield what is wrong with the names of a workspace: those that do not agree, then those of
-    other releases.
-    """
+    """Yield the names of a workspace that do not agree, then those of other releases."""
     agreement = read_agreement(workspace)
     yield from name_problems(workspace)
     try:
@@ -38,8 +36,9 @@ def compared_names(workspace: Workspace) -> Iterator[Problem]:
 
 
 def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Problem]:
-    """Return the names that no stated release has, each once in a file; without those that are said
-    not to agree.
+    """Return the names that no stated release has, each once in a file.
+
+    Those that are said not to agree are left out.
     """
     if not workspace.releases:
         return []

@@ -1,6 +1,4 @@
-"""Descriptions of robots for MoveIt (SRDF): the links, joints and groups that they name, states and
-collisions.
-"""
+"""Descriptions of robots for MoveIt (SRDF): links, joints and groups, states and collisions."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
@@ -55,8 +53,10 @@ def _are_groups_computed(workspace: Workspace) -> bool:
 
 
 def _described_robot(workspace: Workspace, file: XmlFile) -> Robot | None:
-    """Return the robot that a file describes: the one of its name, or the only one if no file has
-    its name; None where it is of another robot.
+    """Return the robot that a file describes.
+
+    It is the one of its name, or the only one if no file has its name. The result is None where
+    the file is of another robot.
     """
     robots = [each.robot for each in workspace.robots.known]
     for robot in robots:
@@ -91,8 +91,9 @@ def _names(file: XmlFile) -> Iterator[Use]:
 
 
 def _other_robot(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
-    """Yield that the description has another name than the only robot, of which MoveIt writes an
-    error and goes on.
+    """Yield that the description has another name than the only robot.
+
+    MoveIt writes an error and goes on.
     """
     name = file.root.get("name", "")
     if name == robot.name:
@@ -137,8 +138,10 @@ def _is_beyond(value: float, limit: Limit) -> bool:
 
 
 def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
-    """Yield links that a joint connects and whose collisions are compared, where most such pairs
-    are disabled. It is wrong only if their shapes touch in some position, which is not computed.
+    """Yield links that a joint connects and whose collisions are compared.
+
+    They are yielded where most such pairs are disabled. It is wrong only if their shapes touch in
+    some position, which is not computed.
     """
     disabled = set()
     for element in file.root.iterchildren("disable_collisions"):

@@ -1,5 +1,7 @@
-"""Topics that connect, and yet no message arrives as it should: two sources of commands, images of
-another transport, displays of RViz that ask for more, and programs that send another type.
+"""Topics that connect, and yet no message arrives as it should.
+
+Two sources send commands, images have another transport, displays of RViz ask for more, or
+programs send another type.
 """
 
 from collections.abc import Iterator, Sequence
@@ -69,8 +71,9 @@ def _other_transport(publishers: Sequence[End], subscriptions: Sequence[End]) ->
 
 
 def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Mismatch]:
-    """Yield displays of RViz that ask for reliable messages, which every publisher sends as best
-    effort.
+    """Yield displays of RViz that ask for reliable messages of best-effort publishers.
+
+    Every publisher of the topic sends as best effort.
     """
     offered: dict[str, set[str | None]] = {}
     for each in publishers:
@@ -91,8 +94,9 @@ def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Misma
 
 
 def _programs(graph: Graph) -> Iterator[Mismatch]:
-    """Yield the well-known programs that send a controller another type than it reads, where a
-    parameter decides the type.
+    """Yield the well-known programs that send a controller another type than it reads.
+
+    A parameter decides the type.
     """
     subscriptions = graph.of_kind("subscription", sources=("controller",))
     publishers = graph.certain("publisher", "program")

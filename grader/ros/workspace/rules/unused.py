@@ -1,5 +1,6 @@
-"""Files that no other file names: parameters that no node gets, parts of a robot that nothing
-includes.
+"""Files that no other file names.
+
+They are parameters that no node gets, and parts of a robot that nothing includes.
 """
 
 import posixpath
@@ -41,8 +42,9 @@ _OF_MAP = frozenset(
 
 
 def unused_files(workspace: Workspace) -> Iterator[Location]:
-    """Yield the installed files whose names no other file of the workspace has, with or without the
-    ending, or makes of variables.
+    """Yield the installed files whose names no other file of the workspace has.
+
+    A name is compared with or without the ending. Other files may also make it of variables.
     """
     unnamed = [*_unnamed(workspace)]
     made = {*_made(workspace)} if unnamed else set()

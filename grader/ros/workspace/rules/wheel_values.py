@@ -1,5 +1,6 @@
-"""Numbers of wheels: what controllers and plugins of Gazebo are told of radii, tracks and
-wheelbases, against the robot's wheels.
+"""Numbers of wheels: radii, tracks and wheelbases, against the robot's wheels.
+
+The numbers are what controllers and plugins of Gazebo are told.
 
 The rows of controllers, in the files of their packages, and of gazebo.toml say which parameter is
 which number.
@@ -244,8 +245,9 @@ def _is_corrected(source: _Source, row: WheelRow) -> bool:
 def _measured(
     source: _Source, robot: Configuration, groups: Sequence[Sequence[_Word]]
 ) -> _Wheels | None:
-    """Return the wheels of groups of joints, in the frame of the robot's base; None where a group
-    is empty, or a wheel cannot be measured.
+    """Return the wheels of groups of joints, in the frame of the robot's base.
+
+    The result is None where a group is empty, or a wheel cannot be measured.
     """
     named = [word.text for group in groups for word in group]
     if not all(groups) or len(named) > _MAX_WHEELS:
@@ -282,8 +284,9 @@ class _PlacedWheels(NamedTuple):
 
     @property
     def are_all_exchanged(self) -> bool:
-        """Whether the left wheels are on the right and the reverse, and all of them turn backward,
-        so that the robot drives backward.
+        """Whether the left wheels are on the right and the reverse, and all turn backward.
+
+        The robot then drives backward.
         """
         if self.kind not in _ROLLING or self.kind not in _SIDED:
             return False
@@ -305,8 +308,9 @@ def _places_of_joints(wheels: _Wheels, groups: list[list[_Word]]) -> Mapping[str
 
 
 def _other_sides(placed: _PlacedWheels) -> Iterator[Mismatch]:
-    """Yield that left wheels are on the right, and the reverse. It is certain unless they turn
-    backward too, as where the front of the robot is its -x.
+    """Yield that left wheels are on the right, and the reverse.
+
+    It is certain unless they turn backward too, as where the front of the robot is its -x.
     """
     wheels, base = placed.wheels, quoted(placed.wheels.base)
     exchanged = _exchanged(wheels) if placed.kind in _SIDED else []
@@ -324,6 +328,7 @@ def _other_sides(placed: _PlacedWheels) -> Iterator[Mismatch]:
 
 def _other_axes(placed: _PlacedWheels) -> Iterator[Mismatch]:
     """Yield wheels that turn about an axis across their axle, and wheels that turn backward.
+
     Nothing is said where left and right are exchanged as well, which is said of the sides.
     """
     wheels, base = placed.wheels, quoted(placed.wheels.base)
@@ -355,9 +360,7 @@ def _toward_left(wheels: _Wheels) -> Vector:
 
 
 def _exchanged(wheels: _Wheels) -> list[WheelSize]:
-    """Return the left wheels that are on the right of the middle between the wheels, and the
-    reverse.
-    """
+    """Return the left wheels that are right of the middle between the wheels, and the reverse."""
     middle = middle_of([wheel.middle for wheel in wheels.all])[1]
     left, right = wheels.groups[:2]
     exchanged = [wheel for wheel in left if wheel.middle[1] < middle]
@@ -392,8 +395,9 @@ def _faults_of_number(number: _WheelNumber, wheels: _Wheels) -> Iterator[Mismatc
 
 
 def _other_distance(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
-    """Yield that the wheels of the robot are not as far apart as a number says, by more than their
-    width and 2 %.
+    """Yield that the wheels of the robot are not as far apart as a number says.
+
+    The distance differs by more than their width and 2 %.
 
     It is certain for a negative number, and for twice or half the track of two wheels. The track of
     more than two wheels, which slip sideways, may be wider.
@@ -422,8 +426,9 @@ def _negative(key: str, value: float) -> str:
 
 
 def _is_other_half(value: float, measured: float, wheels: _Wheels) -> bool:
-    """Return whether a number is twice or half the track of two wheels of known width, which is
-    surely a mistake.
+    """Return whether a number is twice or half the track of two wheels of known width.
+
+    It surely is a mistake.
     """
     if len(wheels.all) != 2 or any(wheel.half_width is None for wheel in wheels.all):
         return False
@@ -435,8 +440,9 @@ def _is_near(value: float, other: float) -> bool:
 
 
 def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
-    """Yield that no wheel has a radius, and that wheels of one radius have several; for certain
-    that a radius is negative.
+    """Yield that no wheel has a radius, and that wheels of one radius have several.
+
+    A negative radius certainly is a mistake.
     """
     key, kind, at = number.key, number.kind, number.word.location
     if value < 0.0:
@@ -456,8 +462,9 @@ def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterato
 
 
 def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:
-    """Return the distance of the left wheels from the right ones along the axles, by how much the
-    width of wheels changes it, and what it is.
+    """Return the distance of the left wheels from the right ones along the axles.
+
+    With it, return by how much the width of wheels changes it, and what it is.
     """
     left, right = wheels.middle_of_group(0), wheels.middle_of_group(1)
     widths = [wheel.half_width for wheel in wheels.all]
