@@ -1,5 +1,6 @@
-"""The types of messages, services and actions that Python code imports, and the fields that it uses
-of values whose type is certain.
+"""The types of messages, services and actions that Python code imports, and used fields.
+
+The fields are those of values whose type is certain.
 
 A value is certain where its name is bound once: what a typed callback is given, T(), and a field of
 these. What is under a condition on its type, or caught, does not count.
@@ -27,8 +28,9 @@ ITEM = "[]"  # in a path: an item of a list
 
 
 class _Typed(NamedTuple):
-    """A value: a field of what has a type, or this itself. The type has the name of its section:
-    chat_msgs.srv.Ask.Request.
+    """A value: a field of what has a type, or this itself.
+
+    The type has the name of its section: chat_msgs.srv.Ask.Request.
     """
 
     type: str
@@ -36,8 +38,9 @@ class _Typed(NamedTuple):
 
 
 class CodePart(NamedTuple):
-    """A function or method, or the module without these: its calls, its scope and the place of its
-    class.
+    """A function or method, or the module without these.
+
+    It has its calls, its scope and the place of its class.
     """
 
     name: str
@@ -51,8 +54,9 @@ _Evaluate = Callable[[ast.expr], Value]
 
 
 def _interface_name(value: Value) -> str | None:
-    """Return the full name of a type of a message, service or action, or of a section of one; None
-    for what is none.
+    """Return the full name of a type of a message, service or action, or of a section of one.
+
+    The result is None for what is none.
     """
     if not isinstance(value, QualifiedName):
         return None
@@ -81,8 +85,9 @@ def type_imports(tree: ast.Module, source: Source) -> Iterator[TypeImport]:
 
 
 class _Callback(NamedTuple):
-    """Which arguments of a function are the type and the callback, and what the callback is given:
-    sections of the type.
+    """Which arguments of a function are the type and the callback, and what that is given.
+
+    The callback is given sections of the type.
     """
 
     type_at: int
@@ -138,8 +143,9 @@ def _types_given(
     nodes: Sequence[ast.AST],
     value_of: Callable[[ast.expr, Scope], Value],
 ) -> dict[tuple[Location | None, str], tuple[str, ...]]:
-    """Return what functions are called with that are named only where they become callbacks, by the
-    places of their classes and their names.
+    """Return what functions are called with that are named only where they become callbacks.
+
+    The keys are the places of their classes and their names.
     """
     named = Counter(
         dotted(node)
@@ -320,8 +326,9 @@ def _asked(nodes: Sequence[ast.AST]) -> Iterator[str]:
 
 
 def certain_nodes(function: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes of a function, or of a module without its functions and classes, but for
-    those of which errors are caught.
+    """Yield the nodes of a function, or of a module without its functions and classes.
+
+    Nodes of which errors are caught are left out.
     """
     pending = [function]
     while pending:

@@ -108,8 +108,9 @@ class _CppSearch:
                 yield CodeFault("destroyed at once", message, node.location)
 
     def _is_lost(self, made: CppNode, function: CppFunction) -> bool:
-        """Return whether an object is not kept: it is a statement of its own, or of a local
-        variable that nothing else names.
+        """Return whether an object is not kept.
+
+        It is a statement of its own, or of a local variable that nothing else names.
         """
         parent = made.parent
         if made.kind == "declaration":
@@ -180,8 +181,9 @@ class _CppSearch:
                     return
 
     def _is_made(self, name: str) -> bool:
-        """Return whether an object of a class may be made: it is named otherwise than as the type
-        of a pointer that is a member.
+        """Return whether an object of a class may be made.
+
+        The class is named otherwise than as the type of a pointer that is a member.
         """
         for file in self._unit.files:
             for node in file.syntax.root.walk():
@@ -194,8 +196,9 @@ class _CppSearch:
         return False
 
     def _is_own_buffer(self, call: CppNode) -> bool:
-        """Return whether a call is a method of a member that is a buffer, which only such methods
-        are called of.
+        """Return whether a call is a method of a member that is a buffer.
+
+        Only such methods are called of the member.
         """
         called = call.child("function")
         owner = called.child("argument") if called is not None else None
@@ -248,8 +251,9 @@ class _CppSearch:
                     yield CodeFault("waits in a callback", message, call.location)
 
     def _is_in_callback(self, node: CppNode, function: CppFunction) -> bool:
-        """Return whether a place is in a function that is given to a timer, a subscription or a
-        service.
+        """Return whether a place is in a function that becomes a callback.
+
+        It is given to a timer, a subscription or a service.
         """
         for around in node.ancestors():
             if around is function.node:
@@ -309,8 +313,9 @@ def _outermost_member(node: CppNode) -> CppNode:
 
 
 def _is_number_set(member: CppNode) -> bool:
-    """Return whether a member of a transform is set that is no rotation as a whole, or is a number
-    of one.
+    """Return whether a member of a transform is set that is no rotation, or is a number of one.
+
+    No rotation means none as a whole.
     """
     parent = member.parent
     if parent is None or parent.kind != "assignment_expression" or member.field != "left":

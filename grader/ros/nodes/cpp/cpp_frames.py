@@ -1,6 +1,4 @@
-"""The frames that the functions of a node in C++ name: those that it publishes, and those that it
-looks up or stamps messages with.
-"""
+"""The frames that functions of a C++ node publish, look up or stamp messages with."""
 
 from collections.abc import Iterator
 

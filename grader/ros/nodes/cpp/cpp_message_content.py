@@ -1,5 +1,7 @@
-"""What C++ code asks of the content of messages: a time in their header that a synchroniser
-compares, and the encoding of images that cv_bridge makes and converts.
+"""What C++ code asks of the content of messages.
+
+A time in their header that a synchroniser compares, and the encoding of images that cv_bridge
+makes and converts.
 """
 
 import re
@@ -99,8 +101,10 @@ class CppContentReader:
         return scopes
 
     def encodings(self) -> Mapping[Location, tuple[ImageEncoding, ...]]:
-        """Return the encodings of images that publishers send, and to which callbacks convert what
-        they get, by the places where these are made; none where one is not known.
+        """Return the encodings that publishers send, and to which callbacks convert images.
+
+        The keys are the places where publishers and subscriptions are made. There are none where
+        one is not known.
         """
         if not any(name in self._unit.uses for name in (_ENCODING, *_CONVERTING, _TO_MESSAGE)):
             return {}
@@ -156,8 +160,9 @@ class CppContentReader:
         return calls
 
     def _encoding_of(self, node: CppNode, depth: int) -> ImageEncoding | None:
-        """Return the encoding of an image, a message or one of cv_bridge; None where it is not
-        known.
+        """Return the encoding of an image, a message or one of cv_bridge.
+
+        The result is None where it is not known.
         """
         node = _unwrapped(node)
         if depth == 0:
@@ -337,8 +342,9 @@ class CppContentReader:
         return methods
 
     def _asked_in(self, body: CppNode, message: CppNode) -> tuple[ImageEncoding, ...]:
-        """Return the encodings to which a function converts a message; none where one is not
-        known, or it reads what the encoding is.
+        """Return the encodings to which a function converts a message.
+
+        There are none where one is not known, or it reads what the encoding is.
         """
         asked = []
         self._budget.charge(1, body.end - body.start)
@@ -406,8 +412,10 @@ def _unwrapped(node: CppNode) -> CppNode:
 
 
 def _encoding_set(member: CppNode) -> list[CppNode] | None:
-    """Return the assignment of an encoding where a member of an image is named; none for another
-    member, None where the encoding may be set in another way.
+    """Return the assignment of an encoding where a member of an image is named.
+
+    There is none for another member. The result has None where the encoding may be set in another
+    way.
     """
     parent, field = member.parent, member.child("field")
     if parent is None or field is None:

@@ -1,5 +1,6 @@
-"""The fields that functions in C++ use of messages, services and actions whose type is certain:
-of parameters and local variables that are declared once with that type.
+"""The fields that functions in C++ use of messages, services and actions of certain type.
+
+The type is certain of parameters and local variables that are declared once with it.
 """
 
 import re
@@ -61,8 +62,9 @@ def _unconditional(function: CppNode) -> Iterator[CppNode]:
 
 
 def _types_in(function: CppFunction, unit: CppUnit) -> dict[str, str]:
-    """Return the types of the parameters and variables of a function that are declared once, as
-    names of classes in Python: geometry_msgs.msg.Twist.
+    """Return the types of the parameters and variables of a function that are declared once.
+
+    They are names of classes in Python: geometry_msgs.msg.Twist.
     """
     declared = Counter[str]()
     types: dict[str, str] = {}
@@ -123,8 +125,9 @@ def _type_made(value: CppNode | None) -> str:
 
 
 def _path_of(node: CppNode) -> tuple[CppNode | None, tuple[str, ...]]:
-    """Return the variable that a chain of members begins with, and the names of the fields; no
-    variable where something else is in between.
+    """Return the variable that a chain of members begins with, and the names of the fields.
+
+    There is no variable where something else is in between.
     """
     path: list[str] = []
     inner: CppNode | None = node

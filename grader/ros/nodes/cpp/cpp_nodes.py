@@ -1,5 +1,6 @@
-"""The nodes of a package that are written in C++: what they declare and open, read from the text
-and never compiled.
+"""The nodes of a package that are written in C++: what they declare and open.
+
+The text is read and never compiled.
 
 Only what is written as a text, number or constant is known. What is opened under a condition is
 listed as well. Macros, templates and code behind `#if` leave open what a node does.
@@ -244,8 +245,10 @@ class _Target:
         return None
 
     def _receiver(self, call: CppNode, function: CppFunction) -> "str | CppNode | None":
-        """Return the node whose method a call is: a class, or where an object of rclcpp's own
-        class is made; None where that is not known.
+        """Return the node whose method a call is.
+
+        It is a class, or where an object of rclcpp's own class is made. The result is None where
+        that is not known.
         """
         called = call.child("function")
         owner = called.child("argument") if called is not None else None
@@ -411,8 +414,9 @@ class _Target:
             self._facts[owner].append(Doubt(f"{name} is given the node", node.location))
 
     def _subscription_of_filter(self, node: CppNode) -> Endpoint | None:
-        """Return the subscription of a filter of message_filters that is given a node; None where
-        something else is.
+        """Return the subscription of a filter of message_filters that is given a node.
+
+        The result is None where something else is.
         """
         given = node.parent
         taker = given.parent if given is not None and given.kind in _LISTS else None
@@ -431,8 +435,10 @@ class _Target:
         return filter_subscription(type_name, values, taker.location)
 
     def _type_given(self, taker: CppNode, scopes: Sequence[str]) -> str:
-        """Return the type, as it is written, of what gets the arguments of a call, of an
-        initializer or of a declaration; empty where it is not known.
+        """Return the type, as it is written, of what gets the given arguments.
+
+        It gets the arguments of a call, of an initializer or of a declaration. The result is
+        empty where it is not known.
         """
         name: CppNode | None = None
         if taker.kind == "call_expression" and called_name(taker) == "subscribe":

@@ -92,8 +92,9 @@ def endpoint_of(
 def filter_subscription(
     type_name: str | None, given: Sequence[CppValue], at: Location
 ) -> Endpoint | None:
-    """Return the subscription of a filter that is given a node, a topic and perhaps a QoS; None
-    where it is given something else.
+    """Return the subscription of a filter that is given a node, a topic and perhaps a QoS.
+
+    The result is None where it is given something else.
     """
     if len(given) not in (2, 3, 4):
         return None
@@ -211,8 +212,9 @@ def _text(value: CppValue) -> str | None:
 
 
 def _converted(value: CppValue, written: str) -> Value:
-    """Return the default of a parameter, as the type of its template argument has it; None where
-    there is none, or a type in its place.
+    """Return the default of a parameter, as the type of its template argument has it.
+
+    The result is None where there is none, or a type in its place.
     """
     if isinstance(value, CppCall) and value.short == "ParameterValue" and len(value.args) == 1:
         value = value.args[0]

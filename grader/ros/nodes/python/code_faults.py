@@ -42,8 +42,9 @@ _ENDING = frozenset({"sys.exit", "exit", "quit", "os._exit"})
 
 
 class ModuleText(NamedTuple):
-    """A module of which faults are searched: its full name, its code and its parts; `imports` are
-    the full names of what it imports.
+    """A module of which faults are searched: its full name, its code and its parts.
+
+    `imports` are the full names of what it imports.
     """
 
     name: str
@@ -54,8 +55,10 @@ class ModuleText(NamedTuple):
 
 
 class _PackageAttributes(NamedTuple):
-    """The attributes that the modules of a package set, and the texts in them, which hasattr() or
-    getattr() may ask for; not all of them if names may be bound in ways that are not seen.
+    """The attributes that modules of a package set, and the texts in them.
+
+    hasattr() or getattr() may ask for the texts. The attributes are not all of them if names may
+    be bound in ways that are not seen.
     """
 
     stored: Collection[str]
@@ -82,8 +85,10 @@ def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
 def code_faults(
     module: ModuleText, others: Mapping[str, ModuleText], attributes: _PackageAttributes
 ) -> Iterator[CodeFault]:
-    """Yield what is wrong in a module; `others` are all modules of the package, by their names,
-    and `attributes` those of all of them.
+    """Yield what is wrong in a module.
+
+    `others` are all modules of the package, by their names, and `attributes` those of all of
+    them.
     """
     search = _Search(module, others)
     yield from _undefined_names(module.code)
@@ -269,8 +274,9 @@ class _Search:
                 yield CodeFault("no response", message, at, self._at(registered.call), is_certain)
 
     def waiting_callbacks(self) -> Iterator[CodeFault]:
-        """Yield what callbacks wait for while nothing else can run: with one thread, and one
-        group of callbacks.
+        """Yield what callbacks wait for while nothing else can run.
+
+        Nothing else can run with one thread, and one group of callbacks.
         """
         if self._is_concurrent():
             return
@@ -309,9 +315,7 @@ class _Search:
             yield CodeFault("sleeps in a callback", message, self._at(call), is_certain=False)
 
     def _reached(self) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
-        """Yield the callbacks of timers, subscriptions and services, and the own methods that they
-        call.
-        """
+        """Yield the callbacks of timers, subscriptions and services, and own methods they call."""
         seen = set[ast.AST]()
         pending = [registered for registered in self._registered if registered.by != "ActionServer"]
         reached = [
@@ -329,8 +333,9 @@ class _Search:
                     reached.append((self._function(call.func, part), part))
 
     def _is_concurrent(self) -> bool:
-        """Return whether this module, one that it imports or one that imports it may run callbacks
-        at the same time.
+        """Return whether some module may run callbacks at the same time.
+
+        It is this module, one that it imports or one that imports it.
         """
         name = self._module.name
         for module in self._others.values():
@@ -352,8 +357,9 @@ class _Search:
     # --- Programs
 
     def of_programs(self) -> Iterator[CodeFault]:
-        """Yield that a module makes a node without rclpy.init(), or, with it, a node with callbacks
-        that never run, because nothing spins it.
+        """Yield that a module makes a node without rclpy.init(), or one that nothing spins.
+
+        The latter is a node with callbacks that never run, with rclpy.init().
         """
         reached = self._reached_modules()
         if reached is None:
@@ -476,6 +482,7 @@ def _ends_without_value(
     function: ast.FunctionDef | ast.AsyncFunctionDef,
 ) -> Iterator[tuple[ast.FunctionDef | ast.AsyncFunctionDef | ast.Return, bool]]:
     """Yield where a function ends without a value: a return, or the function itself for its end.
+
     With each whether it certainly gets there on some path.
     """
     for statement in _own_statements(function.body):
@@ -492,8 +499,9 @@ def _is_none(node: ast.expr | None) -> bool:
 
 
 def _falls_off(body: Sequence[ast.stmt]) -> str:
-    """Return whether statements may come to their end: yes, no, or maybe, where it depends on a
-    condition that may always hold.
+    """Return whether statements may come to their end: yes, no, or maybe.
+
+    Maybe means that it depends on a condition that may always hold.
     """
     last = body[-1]
     match last:

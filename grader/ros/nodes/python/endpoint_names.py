@@ -1,5 +1,7 @@
-"""The names of topics, services and actions that Python code makes of what depends on the node as
-it is started: its name, its namespace, and the values of its parameters.
+"""The names of topics, services and actions that Python code makes of values at the start.
+
+These are what depends on the node as it is started: its name, its namespace, and the values of
+its parameters.
 """
 
 import ast
@@ -51,9 +53,7 @@ class Bindings(NamedTuple):
 
 
 def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
-    """Return what the names in a function are bound to once, or the attributes of self in a
-    class.
-    """
+    """Return what names in a function, or attributes of self in a class, are bound to once."""
     ordered = sorted(nodes, key=offset_of)
     counts = Counter[str]()
     for node in ordered:
@@ -104,8 +104,9 @@ class EndpointNames:
         self._known, self._evaluate = known, evaluate
 
     def read(self, node: ast.expr) -> Iterator[_Parts]:
-        """Yield the parts of a name, once for each item of a list in the code that a loop goes
-        through.
+        """Yield the parts of a name.
+
+        A name in a loop through a list in the code is yielded once for each item.
         """
         names = {name.id for name in ast.walk(node) if isinstance(name, ast.Name)}
         for name in sorted(names):
@@ -263,8 +264,9 @@ class EndpointNames:
         yield NamePart("text", text[start:])
 
     def _parameter(self, node: ast.expr) -> ast.expr | None:
-        """Return the name of the parameter whose value an expression is; None if it is no
-        parameter's.
+        """Return the name of the parameter whose value an expression is.
+
+        The result is None if it is no parameter's.
         """
         match node:
             case ast.Attribute(value=ast.Call(func=made, args=[name, *_]), attr="value"):

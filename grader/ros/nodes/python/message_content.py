@@ -1,5 +1,7 @@
-"""What Python code asks of the content of messages: a time in their header that a synchroniser
-compares, and the encoding of images that cv_bridge converts.
+"""What Python code asks of the content of messages.
+
+A time in their header that a synchroniser compares, and the encoding of images that cv_bridge
+converts.
 """
 
 import ast
@@ -73,8 +75,10 @@ class ContentReader:
                         yield SynchronisedType(type_name.name, by, self._at(made))
 
     def encodings(self) -> Mapping[Location, tuple[ImageEncoding, ...]]:
-        """Return the encodings of images that publishers send, and to which callbacks convert what
-        they get, by the places where these are made; none where one is not known.
+        """Return the encodings that publishers send, and to which callbacks convert images.
+
+        The keys are the places where publishers and subscriptions are made. There are none where
+        one is not known.
         """
         asked = self._encodings_asked()
         encodings_by_place: dict[Location, list[ImageEncoding | None]] = {}
@@ -107,8 +111,9 @@ class ContentReader:
         return None
 
     def _encodings_asked(self) -> Mapping[tuple[Location | None, str], list[ImageEncoding]]:
-        """Return the encodings to which functions convert what they are given, by their class and
-        name.
+        """Return the encodings to which functions convert what they are given.
+
+        The keys are their class and name.
         """
         asked: dict[tuple[Location | None, str], list[ImageEncoding]] = {}
         for function in self._functions:

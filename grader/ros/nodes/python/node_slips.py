@@ -31,8 +31,9 @@ _WAITING = frozenset({"threading", "asyncio", "time", "signal", "multiprocessing
 
 
 class Program(NamedTuple):
-    """A program of a module: its name, and the function that it calls; a script calls none, and
-    runs its body as __main__.
+    """A program of a module: its name, and the function that it calls.
+
+    A script calls none, and runs its body as __main__.
     """
 
     name: str

@@ -1,5 +1,6 @@
-"""The nodes of a package that are written in Python: what they declare and open, read from the text
-and never run.
+"""The nodes of a package that are written in Python: what they declare and open.
+
+The text is read and never run.
 
 Only what is written as a text, number or constant is known.
 What is opened under a condition is listed as well; actions and the topics of tf2 are not.
@@ -244,8 +245,9 @@ def _slips_of(package: Package, program: NodeProgram) -> list[Slip] | None:
 
 
 def _module_paths(package: Package) -> dict[str, str]:
-    """Return the files of the installed modules by their full names; those of installed programs
-    by their paths.
+    """Return the files of the installed modules, and those of installed programs.
+
+    Modules are listed by their full names, programs by their paths.
     """
     setup = package.installation
     if setup is None:
@@ -310,8 +312,10 @@ def _created_by(
     module: str,
     function: str,
 ) -> tuple[NodeFacts, ...]:
-    """Return the nodes that a function creates, also in those that it calls; without a name, the
-    module's body. None are known where too many functions call others.
+    """Return the nodes that a function creates, also in those that it calls.
+
+    Without a name, the function is the module's body. None are known where too many functions
+    call others.
 
     `nodes` are those at a place, and those of a class by its full name.
     """
@@ -346,8 +350,10 @@ def _find_calls(nodes: Sequence[ast.AST]) -> list[ast.Call]:
 
 
 class _Module:
-    """A module: first its scopes and the bases of its classes, then, once all nodes are known,
-    their calls.
+    """A module.
+
+    First its scopes and the bases of its classes are read, then, once all nodes are known, their
+    calls.
     """
 
     def __init__(self, code: Code, name: str, work: Budget, *, is_package: bool) -> None:
@@ -513,9 +519,7 @@ class _Module:
         )
 
     def calls_in(self, function: str) -> Sequence[tuple[str, Location]]:
-        """Return the full name and place of each call in a function of the module, or in its
-        body.
-        """
+        """Return the full name and place of each call in a function of the module, or its body."""
         return self._calls_by_function.get(function, ())
 
     @cached_property
@@ -535,8 +539,9 @@ class _Module:
         return ""
 
     def _argument(self, part: CodePart, call: ast.Call, position: int, name: str) -> Value:
-        """Return an argument of a call; None where it is missing, Unknown where * or ** may give
-        it.
+        """Return an argument of a call.
+
+        The result is None where it is missing, Unknown where * or ** may give it.
         """
         if any(isinstance(argument, ast.Starred) for argument in call.args[: position + 1]):
             return Unknown("it is unpacked", position_of(call))
@@ -718,8 +723,9 @@ class _Module:
 
 
 def _has_alias(tree: ast.Module) -> bool:
-    """Return whether a method that declares parameters is named and not called, so that another
-    name may call it.
+    """Return whether a method that declares parameters is named and not called.
+
+    Another name may then call it.
     """
     called = {node.func for node in every_node(tree) if isinstance(node, ast.Call)}
     return any(
@@ -785,8 +791,9 @@ def _qos(value: Value) -> Qos:
 
 
 def _policy(value: Value) -> str | None:
-    """Return a policy by its name in rclpy.qos, as ReliabilityPolicy.BEST_EFFORT; None where it is
-    not known.
+    """Return a policy by its name in rclpy.qos, as ReliabilityPolicy.BEST_EFFORT.
+
+    The result is None where it is not known.
     """
     if not isinstance(value, QualifiedName):
         return None
