@@ -1,5 +1,7 @@
-"""What searches of a setup.py find in its package, by glob, pathlib, os and setuptools, from the
-list of its files.
+"""What searches of a setup.py find in its package.
+
+The searches are those of glob, pathlib, os and setuptools. They find files in the list of its
+files.
 """
 
 import posixpath
@@ -56,8 +58,9 @@ class EmptyGlob(NamedTuple):
 
 
 class PackageListing:
-    """The folders of a file tree, listed in one of the possible orders. Paths are relative to the
-    tree's root.
+    """The folders of a file tree, listed in one of the possible orders.
+
+    Paths are relative to the tree's root.
     """
 
     def __init__(self, tree: Tree, budget: Budget | None = None, order: str = ORDERS[0]) -> None:
@@ -90,8 +93,9 @@ class PackageListing:
         return values
 
     def record(self, pattern: str, paths: list[Value], at: Position) -> list[Value]:
-        """Keep the position of a search for each path that it found, up to a limit, and return the
-        paths.
+        """Keep the position of a search for each path that it found, and return the paths.
+
+        Positions are kept up to a limit.
         """
         self.positions |= dict.fromkeys(map(str, paths[:_MAX_RECORDED]), at)
         if not paths:
@@ -116,8 +120,9 @@ class PackageListing:
         return self._file_paths[first:last]
 
     def modules(self) -> frozenset[str]:
-        """Return the names of the modules and packages beside setup.py, which are imported before
-        any other.
+        """Return the names of the modules and packages beside setup.py.
+
+        They are imported before any other.
         """
         files = (
             name.removesuffix(".py") for name in self._children.get("", ()) if name.endswith(".py")
@@ -128,8 +133,9 @@ class PackageListing:
         return frozenset((*files, *packages)) - {"setup"}
 
     def real(self, path: str) -> str | None:
-        """Return the file or folder at a path, without dots; None where there is nothing. Raises
-        Undetermined.
+        """Return the file or folder at a path, without dots.
+
+        The result is None where there is nothing. Raises Undetermined.
         """
         if path.startswith("/"):
             raise Undetermined(_OUTSIDE)
@@ -168,8 +174,9 @@ class PackageListing:
         return [start + path for path in paths if start + path]
 
     def path_glob(self, folder: str, pattern: str) -> list[str]:
-        """Return the paths below a folder that pathlib's glob finds in Python 3.12. Raises
-        Undetermined.
+        """Return the paths below a folder that pathlib's glob finds in Python 3.12.
+
+        Raises Undetermined.
         """
         parts = [part for part in pattern.split("/") if part not in ("", ".")]
         parts = [part for part, after in pairwise([*parts, ""]) if (part, after) != ("**", "**")]
@@ -188,8 +195,9 @@ class PackageListing:
     def _search(
         self, parts: list[str], *, recursive: bool = False, hidden: bool = False, folder: str = ""
     ) -> list[str]:
-        """Return the paths below a folder that consist of such names; with an empty one at the end,
-        those of folders.
+        """Return the paths below a folder that consist of such names.
+
+        With an empty name at the end, they are those of folders.
 
         Wildcards match names that begin with a dot only if `hidden`. Raises Undetermined, also for
         what nobody writes.
@@ -259,8 +267,9 @@ def _name_test(part: str, *, hidden: bool) -> Callable[[str], object]:
 
 
 def file_functions(listing: PackageListing, root: str) -> FunctionTable:
-    """Return the functions by full name; `root` is the absolute path that represents the package's
-    folder.
+    """Return the functions by full name.
+
+    `root` is the absolute path that represents the package's folder.
     """
     folder = _PackageFolder(listing, root)
     functions: dict[str, Callable[[Evaluation, Call], Value]] = {
@@ -406,8 +415,9 @@ class _PackageFolder(NamedTuple):
         return Items(self._steps(evaluation, self.real(call.args[0]), str(call.args[0])))
 
     def _steps(self, evaluation: Evaluation, real: str | None, spelled: str) -> Iterator[Value]:
-        """Yield the steps of os.walk: the caller may change the list of folders before the next
-        step.
+        """Yield the steps of os.walk.
+
+        The caller may change the list of folders before the next step.
         """
         if real is None or real not in self.listing.folders:
             return

@@ -16,8 +16,9 @@ _MAX_MISPLACED = 100  # dependencies in <export>
 
 
 class Manifest(NamedTuple):
-    """The content of a package.xml. `name` is None where it cannot be read; `build_type` is by
-    default colcon's.
+    """The content of a package.xml.
+
+    `name` is None where it cannot be read; `build_type` is by default colcon's.
 
     Of a file that is not well-formed XML, both are what can still be read; the build type may then
     be empty.
@@ -115,8 +116,9 @@ def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> 
 
 
 def _read_broken(data: bytes, source: Source, problem: Problem) -> Manifest:
-    """Return what can be read of a package.xml that is not XML: the first name, and the first build
-    type.
+    """Return what can be read of a package.xml that is not XML.
+
+    This is the first name, and the first build type.
     """
     root, start = recover_xml(data), Location(source.path, 1, 1)
     if root is None or tag_of(root) != "package":

@@ -175,8 +175,9 @@ _Finding = str | Unknown
 
 
 def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None) -> Installation:
-    """Evaluate the setup.py of a package with these files; its work is charged to the budget. Never
-    raises.
+    """Evaluate the setup.py of a package with these files; its work is charged to the budget.
+
+    Never raises.
 
     The file system lists a folder in any order. If there are several files, other orders are
     evaluated as well. colcon runs the file twice, with __file__ as "setup.py" and as an absolute
@@ -373,8 +374,9 @@ class _DataFiles:
         self.stops.append(InstallError(path, reason, self._origin(path, at)))
 
     def _entry(self, entry: Value, at: Position) -> None:
-        """Add an entry, which colcon takes as a file, or as a tuple of a folder and a list of
-        files.
+        """Add an entry of data_files.
+
+        colcon takes it as a file, or as a tuple of a folder and a list of files.
         """
         match entry:
             case str():
@@ -425,8 +427,9 @@ class _DataFiles:
             self._files(files, folder, at)
 
     def _files(self, files: Value, folder: str, at: Position) -> None:
-        """Add the files of an entry; what is no list stops the build, and is read as the list that
-        is meant.
+        """Add the files of an entry.
+
+        What is no list stops the build, and is read as the list that is meant.
         """
         if isinstance(files, str) and files:
             self.stop(
@@ -524,8 +527,9 @@ class _DataFiles:
         return True
 
     def _narrower(self, folder: str) -> str:
-        """Return the hint about a pattern that matches the other files next to a folder, but not
-        the folder.
+        """Return the hint about a pattern that matches the other files next to a folder.
+
+        It does not match the folder.
         """
         above = posixpath.dirname(folder)
         names = self.listing.names(above) if above else []
@@ -543,8 +547,9 @@ class _DataFiles:
 def _argument_findings(
     kwargs: Mapping[str, Value], listing: PackageListing, at: Position, is_configured: bool
 ) -> Iterator[_Finding]:
-    """Yield what is wrong with the arguments of setup() besides data_files, and what of them is not
-    evaluated.
+    """Yield what is wrong with the arguments of setup() besides data_files.
+
+    What of them is not evaluated is yielded, too.
     """
     for name, value in kwargs.items():
         if (
@@ -575,8 +580,9 @@ def _argument_findings(
 
 
 def _ignored_arguments(kwargs: Mapping[str, Value]) -> list[IgnoredArgument]:
-    """Return the arguments that setuptools does not know, each with the missing one that it may
-    mean.
+    """Return the arguments that setuptools does not know, with what they may mean.
+
+    Each has the missing argument that it may mean.
     """
     known = {*_USUAL, *_CHECKED, *_OTHERS}
     return [
@@ -735,8 +741,9 @@ def _packages_in(value: Value) -> tuple[str, ...]:
 
 
 def _scripts_folder(listing: PackageListing) -> str:
-    """Return the folder below the prefix that console_scripts are installed to; bin unless
-    setup.cfg names another.
+    """Return the folder below the prefix that console_scripts are installed to.
+
+    It is bin unless setup.cfg names another.
     """
     parser, file = ConfigParser(), listing.files.get("setup.cfg")
     try:

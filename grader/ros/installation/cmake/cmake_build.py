@@ -88,8 +88,9 @@ class Build:
         )
 
     def give_up(self, reason: str, at: Position) -> None:
-        """Note that something is not evaluated that may set variables, install files or stop the
-        build.
+        """Note that something is not evaluated.
+
+        It may set variables, install files or stop the build.
         """
         self.doubts.append(self.values.uncertain or Unknown(reason, at))
         self.values.is_opaque = True
@@ -107,8 +108,9 @@ class Build:
             self.later_stops.append(LaterStop(reason, since, at, instead))
 
     def _guess(self, name: str, known: Collection[str]) -> str:
-        """Return which name may be meant, for the end of a message; of the first missing names
-        only, because comparing names takes long.
+        """Return which name may be meant, for the end of a message.
+
+        This is done for the first missing names only, because comparing names takes long.
         """
         self._guesses += 1
         return did_you_mean(name, known) if self._guesses <= MAX_GUESSES else ""
@@ -124,8 +126,9 @@ class Build:
         return None if path.startswith(("/", "..")) else path
 
     def _has(self, path: str) -> bool | None:
-        """Return whether the package has a file or folder at a path; None where that is not
-        known.
+        """Return whether the package has a file or folder at a path.
+
+        The result is None where that is not known.
         """
         try:
             is_there = not path or self.listing.real(path) is not None
@@ -136,8 +139,10 @@ class Build:
         return is_there
 
     def exists(self, text: str) -> bool | None:
-        """Return whether a file or folder of the package exists; None where that is not known, as
-        below an empty folder, which may be a submodule.
+        """Return whether a file or folder of the package exists.
+
+        The result is None where that is not known, as below an empty folder, which may be a
+        submodule.
         """
         path = self.inside(text)
         if path is None:
@@ -170,8 +175,9 @@ class Build:
         return text
 
     def _matching(self, pattern: str, *, recursive: bool) -> list[str]:
-        """Return the files that a pattern of CMake matches; without `recursive` the folders,
-        too.
+        """Return the files that a pattern of CMake matches.
+
+        Without `recursive`, folders are matched, too.
         """
         if not recursive:
             with suppress(Undetermined):
@@ -251,8 +257,9 @@ class Build:
         )
 
     def register_component(self, command: Command) -> None:
-        """Install the program that rclcpp_components_register_node() makes, which its EXECUTABLE
-        names.
+        """Install the program that rclcpp_components_register_node() makes.
+
+        Its EXECUTABLE names the program.
         """
         texts = self.values.texts(command.arguments)
         after = dict(pairwise(texts))
@@ -326,8 +333,9 @@ class Build:
     # ----------------------------------------------------------------------
 
     def package(self, command: Command) -> None:
-        """End the package, as ament_package() does; the name of the project must be that in
-        package.xml.
+        """End the package, as ament_package() does.
+
+        The name of the project must be that in package.xml.
         """
         if self.values.uncertain is not None:
             self.give_up("it is not known whether ament_package() is called", command.at)
@@ -420,8 +428,9 @@ class Build:
         self.unknown.append(self.values.uncertain or reason)
 
     def _destination(self, options: _Options, command: Command) -> str | None:
-        """Return the path below the prefix where files go; None where it is not known, or there is
-        none.
+        """Return the path below the prefix where files go.
+
+        The result is None where it is not known, or there is none.
         """
         values = options.get("DESTINATION", [])
         if len(values) != 1:
@@ -533,8 +542,9 @@ class Build:
 
 
 class _Patterns:
-    """The options PATTERN of install(DIRECTORY ...): what they match is excluded, or with
-    FILES_MATCHING included.
+    """The options PATTERN of install(DIRECTORY ...).
+
+    What they match is excluded, or with FILES_MATCHING included.
     """
 
     def __init__(self, groups: _Groups) -> None:
@@ -552,8 +562,9 @@ class _Patterns:
                 )
 
     def include(self, folder: str, path: str) -> bool:
-        """Return whether a file at a path below an installed folder is installed; the folder itself
-        may be excluded.
+        """Return whether a file at a path below an installed folder is installed.
+
+        The folder itself may be excluded.
         """
         parts = f"{folder}/{path}".split("/")
         above = len(parts) - path.count("/") - 1

@@ -1,6 +1,4 @@
-"""The slips of a CMakeLists.txt: words for which CMake stops, or for which it installs files
-elsewhere.
-"""
+"""The slips of a CMakeLists.txt: words for which CMake stops or installs files elsewhere."""
 
 import re
 from collections.abc import Collection, Iterable, Iterator
@@ -77,8 +75,9 @@ class _CMakeSlips:
             yield from self._of_command(command)
 
     def _near(self, name: str, known: Collection[str]) -> str | None:
-        """Return the name that surely is meant; of the first misspelt ones only, because comparing
-        names takes long.
+        """Return the name that surely is meant.
+
+        This is done for the first misspelt ones only, because comparing names takes long.
         """
         self._guesses += 1
         return near(name, known) if self._guesses <= MAX_GUESSES else None

@@ -40,8 +40,9 @@ class Values:
         self._reached: tuple[tuple[int, str], set[str] | None] | None = None
 
     def reached_packages(self) -> set[str] | None:
-        """Return the packages that were found, with those that they export; None where it is not
-        known which these are.
+        """Return the packages that were found, with those that they export.
+
+        The result is None where it is not known which these are.
         """
         if self.is_opaque:
             return None

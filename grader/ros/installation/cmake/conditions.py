@@ -33,8 +33,9 @@ _UNARY = (
 
 
 class Condition:
-    """A condition: texts, and whether each is written without quotes, so that it may name a
-    variable.
+    """A condition: texts, and whether each is written without quotes.
+
+    A text without quotes may name a variable.
     """
 
     def __init__(

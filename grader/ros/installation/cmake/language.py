@@ -27,8 +27,9 @@ BLOCK_WORDS = frozenset({*_ENDS, *_ENDS.values(), "elseif", "else"})
 
 
 class CMakeFault(Exception):
-    """What CMake cannot parse, and where; `sure` is False for what only this reader does not
-    parse.
+    """What CMake cannot parse, and where.
+
+    `sure` is False for what only this reader does not parse.
     """
 
     def __init__(self, message: str, at: Position, *, is_certain: bool = True) -> None:
@@ -45,8 +46,9 @@ class Argument(NamedTuple):
 
 
 class Command(NamedTuple):
-    """A command, with the commands in it if it begins a block; of `if`, `elseif` and `else` are in
-    `others`.
+    """A command, with the commands in it if it begins a block.
+
+    Of `if`, `elseif` and `else` are in `others`.
     """
 
     name: str  # in lower case
@@ -84,8 +86,9 @@ def _block(
 
 
 def _opened(commands: list[Command], start: int, depth: int) -> tuple[Command, int]:
-    """Return the command that begins a block, with what is in it, and the index of its end. Raises
-    CMakeFault.
+    """Return the command that begins a block, with what is in it, and the index of its end.
+
+    Raises CMakeFault.
     """
     first, end = commands[start], _ENDS[commands[start].name]
     if depth > _MAX_DEPTH:
