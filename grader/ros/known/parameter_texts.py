@@ -12,9 +12,10 @@ from grader.ros.known.releases import Release
 
 
 def parameter_explanation(name: str) -> str:
-    """Return the explanation of a parameter, such as `ekf_node.frequency`, or what parameters a
-    node has; empty if the name begins with no well-known node. Raises InputError for a parameter
-    that the node does not have.
+    """Return the explanation of a parameter, or what parameters a node has.
+
+    A parameter is named as `ekf_node.frequency`. The result is empty if the name begins with no
+    well-known node. Raises InputError for a parameter that the node does not have.
     """
     written, _, parameter = name.partition(".")
     node = node_called(written)
@@ -46,8 +47,9 @@ def _summary(row: ParameterRow) -> str:
 
 
 def row_text(row: ParameterRow, read: Release) -> str:
-    """Return what is known of a parameter, one fact a line; `read` is the last release in which it
-    was read.
+    """Return what is known of a parameter, one fact a line.
+
+    `read` is the last release in which it was read.
     """
     return "\n".join(_row_lines(row, read))
 

@@ -27,8 +27,9 @@ _FILE = Path(__file__).with_name("releases.toml")
 
 
 class StatedReleases(NamedTuple):
-    """The releases that a workspace is for, and the files or the option that say so; names of any
-    release are right if there are none.
+    """The releases that a workspace is for, and the files or the option that say so.
+
+    Names of any release are right if there are none.
     """
 
     releases: tuple[Release, ...] = ()
@@ -47,8 +48,9 @@ NOT_STATED = StatedReleases()
 
 
 class _ReleaseName(NamedTuple):
-    """A name in the releases from one on, up to another one. A star at its end stands for the
-    rest.
+    """A name in the releases from one on, up to another one.
+
+    A star at its end stands for the rest.
     """
 
     name: str
@@ -92,8 +94,9 @@ class _OtherName(NamedTuple):
 def other_name(
     kind: NameKind, name: str, releases: Collection[Release], *, shown: str = ""
 ) -> _OtherName | None:
-    """Return what a name is called in the given releases; None if one of them has it, or if none is
-    given.
+    """Return what a name is called in the given releases.
+
+    The result is None if one of them has it, or if none is given.
 
     Args:
         kind: What has the name.
