@@ -1,5 +1,6 @@
-"""Reads .msg, .srv and .action files as rosidl_adapter does: rosidl_adapter/parser.py of
-ros2/rosidl, branch jazzy.
+"""Reads .msg, .srv and .action files as rosidl_adapter does.
+
+The source is rosidl_adapter/parser.py of ros2/rosidl, branch jazzy.
 """
 
 import posixpath
@@ -71,8 +72,9 @@ class _Line(NamedTuple):
 
 
 def read_interface(data: bytes, path: str, package: str) -> Interface:
-    """Read the file of a message, service or action of a package. Never raises: what rosidl does
-    not accept is among the faults.
+    """Read the file of a message, service or action of a package.
+
+    Never raises: what rosidl does not accept is among the faults.
     """
     kind = cast("InterfaceKind", posixpath.splitext(path)[1].removeprefix("."))
     try:

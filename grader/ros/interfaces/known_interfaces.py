@@ -1,5 +1,6 @@
-"""The messages, services and actions of well-known packages, by release: the tables of
-known/packages, each of which is read when it is needed.
+"""The messages, services and actions of well-known packages, by release.
+
+They are the tables of known/packages, each of which is read when it is needed.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -28,8 +29,10 @@ _OF_SEVERAL = FieldType("", "")  # of a field that has other types in other rele
 def known_interfaces(
     package: str, releases: Collection[Release] = ()
 ) -> Mapping[str, Interface] | None:
-    """Return the interfaces of a package by their names, msg.Twist, with the fields that they have
-    in any of some releases, or of all; None for a package that is not known.
+    """Return the interfaces of a package by their names, msg.Twist.
+
+    Their fields are those that they have in any of some releases, or of all. The result is None
+    for a package that is not known.
     """
     table = interface_table(package)
     if table is None:
@@ -49,8 +52,10 @@ def is_open_in(releases: Collection[Release]) -> bool:
 
 
 def find_change(package: str, name: str, releases: Collection[Release]) -> str:
-    """Return since or until when there is a type that none of some releases has, in words: `before
-    Lyrical`; empty for one that one of them has, and one that no release has.
+    """Return since or until when there is a type, in words: `before Lyrical`.
+
+    It is a type that none of some releases has. The result is empty for one that one of them has,
+    and one that no release has.
     """
     kind, _, short = name.partition(".")
     row = (interface_table(package) or {}).get(kind, {}).get(short, _ABSENT)
