@@ -155,20 +155,35 @@ def _types_given(
     types_by_name: dict[tuple[Location | None, str], list[tuple[str, ...]]] = {}
     for part in parts:
         for call in part.calls:
-            row = _CALLBACKS.get(last_name(call.func))
-            callback = given_argument(call, row.callback_at, row.callback_name) if row else None
-            made = given_argument(call, row.type_at, row.type_name) if row else None
-            if row is None or callback is None or made is None:
-                continue
-            name, kind = dotted(callback), _interface_name(value_of(made, part.scope))
-            types = tuple(f"{kind}{section}" for section in row.sections) if kind else ()
-            of = part.of if name.startswith("self.") else None
-            types_by_name.setdefault((of, name), []).append(types)
+            callback = _typed_callback(call, part.scope, value_of)
+            if callback is not None:
+                name, types = callback
+                of = part.of if name.startswith("self.") else None
+                types_by_name.setdefault((of, name), []).append(types)
     given = {}
     for key, types_of_each in types_by_name.items():
         if len({*types_of_each}) == 1 and named[key[1]] == len(types_of_each):
             given[key] = types_of_each[0]
     return given
+
+
+def _typed_callback(
+    call: ast.Call, scope: Scope, value_of: Callable[[ast.expr, Scope], Value]
+) -> tuple[str, tuple[str, ...]] | None:
+    """Return the name of the callback that a call registers, and the types that it is given.
+
+    There are no types where the type of the call is not known.
+    """
+    row = _CALLBACKS.get(last_name(call.func))
+    if row is None:
+        return None
+    callback = given_argument(call, row.callback_at, row.callback_name)
+    made = given_argument(call, row.type_at, row.type_name)
+    if callback is None or made is None:
+        return None
+    kind = _interface_name(value_of(made, scope))
+    types = tuple(f"{kind}{section}" for section in row.sections) if kind else ()
+    return dotted(callback), types
 
 
 def given_argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
@@ -291,22 +306,35 @@ class _FunctionUses:
             match node:
                 case ast.Assign(targets=[ast.Attribute() as target], value=value):
                     literals[target] = self._literal(value)
-                case ast.Attribute(value=owner):
-                    typed = self._type_of(owner)
-                    if typed is None and node.attr.isupper() and dotted(owner):
-                        kind = _interface_name(self._evaluate(owner))  # a constant of a type
-                        typed = _Typed(kind) if kind is not None else None
-                    if typed is not None:
-                        end = (node.end_col_offset or 0) - len(node.attr) + 1
-                        at = Position(node.end_lineno or node.lineno, end)
-                        path = (*typed.path, node.attr)
-                        yield _PlacedUse(typed.type, path, at, literals.get(node, ()))
-                case ast.Call(func=made, keywords=keywords) if keywords and dotted(made):
-                    kind = _interface_name(self._evaluate(made))
-                    for keyword in keywords if kind is not None else ():
-                        if keyword.arg not in (None, "check_fields"):
-                            at, literal = position_of(keyword), self._literal(keyword.value)
-                            yield _PlacedUse(kind or "", (keyword.arg or "",), at, literal)
+                case ast.Attribute():
+                    yield from self._uses_of_attribute(node, literals.get(node, ()))
+                case ast.Call():
+                    yield from self._uses_in_call(node)
+
+    def _uses_of_attribute(
+        self, node: ast.Attribute, literal: tuple[Value, ...]
+    ) -> Iterator[_PlacedUse]:
+        """Yield the use of a field, or of a constant, that an attribute is."""
+        typed = self._type_of(node.value)
+        if typed is None and node.attr.isupper() and dotted(node.value):
+            kind = _interface_name(self._evaluate(node.value))  # a constant of a type
+            typed = _Typed(kind) if kind is not None else None
+        if typed is not None:
+            end = (node.end_col_offset or 0) - len(node.attr) + 1
+            at = Position(node.end_lineno or node.lineno, end)
+            yield _PlacedUse(typed.type, (*typed.path, node.attr), at, literal)
+
+    def _uses_in_call(self, call: ast.Call) -> Iterator[_PlacedUse]:
+        """Yield the fields that the keywords of a constructor set."""
+        if not call.keywords or not dotted(call.func):
+            return
+        kind = _interface_name(self._evaluate(call.func))
+        if kind is None:
+            return
+        for keyword in call.keywords:
+            if keyword.arg not in (None, "check_fields"):
+                at, literal = position_of(keyword), self._literal(keyword.value)
+                yield _PlacedUse(kind, (keyword.arg or "",), at, literal)
 
     def _literal(self, node: ast.expr) -> tuple[Value, ...]:
         value = self._evaluate(node)

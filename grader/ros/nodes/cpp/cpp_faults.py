@@ -4,7 +4,7 @@ Each rule is about what certainly fails once it runs.
 """
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from grader.ros.cpp.declarations import CppFunction, declared_in, plain
 from grader.ros.cpp.objects import class_written
@@ -133,23 +133,11 @@ class _CppSearch:
         for function in self._unit.functions:
             if function.body is None or not any(self._calls(function, "sendTransform")):
                 continue
-            assigned: dict[str, dict[str, list[CppNode]]] = {}
-            for node in function.node.walk():
-                if node.kind != "assignment_expression":
-                    continue
-                left, right = node.child("left"), node.child("right")
-                match = _ROTATION.fullmatch(left.text) if left is not None else None
-                if match is not None and right is not None:
-                    parts = assigned.setdefault(match[1], {})
-                    parts.setdefault(match[2], []).append(right)
-            for path, parts in assigned.items():
-                written = [value for values in parts.values() for value in values]
-                numbers = [value for value in written if value.kind == "number_literal"]
-                zeros = [number for number in numbers if _ZERO.fullmatch(number.text)]
-                is_zero = len(parts) == len(zeros) == len(written) == 4
-                if is_zero and self._is_only_sent(path, function):
+            for path, parts in _assigned_rotations(function).items():
+                zero = _last_zero(parts)
+                if zero is not None and self._is_only_sent(path, function):
                     message = "the rotation 0 0 0 0 turns nothing: tf2 ignores the transform"
-                    yield CodeFault("no rotation", message, zeros[-1].location)
+                    yield CodeFault("no rotation", message, zero.location)
 
     def _is_only_sent(self, path: str, function: CppFunction) -> bool:
         """Return whether nothing but the statements that are read can set a transform."""
@@ -354,3 +342,26 @@ def _is_callback_argument(node: CppNode) -> bool:
     if call is None or call.kind != "call_expression":
         return False
     return called_name(call).rpartition("::")[2] in _GIVEN_CALLBACKS
+
+
+def _assigned_rotations(function: CppFunction) -> dict[str, dict[str, list[CppNode]]]:
+    """Return what a function assigns to the numbers of rotations, by paths and numbers."""
+    rotations: dict[str, dict[str, list[CppNode]]] = {}
+    for node in function.node.walk():
+        if node.kind != "assignment_expression":
+            continue
+        left, right = node.child("left"), node.child("right")
+        match = _ROTATION.fullmatch(left.text) if left is not None else None
+        if match is not None and right is not None:
+            parts = rotations.setdefault(match[1], {})
+            parts.setdefault(match[2], []).append(right)
+    return rotations
+
+
+def _last_zero(parts: Mapping[str, Sequence[CppNode]]) -> CppNode | None:
+    """Return the last number of a rotation of four zeros, each of which is assigned once."""
+    written = [value for values in parts.values() for value in values]
+    numbers = [value for value in written if value.kind == "number_literal"]
+    zeros = [number for number in numbers if _ZERO.fullmatch(number.text)]
+    is_zero = len(parts) == len(zeros) == len(written) == 4
+    return zeros[-1] if is_zero else None

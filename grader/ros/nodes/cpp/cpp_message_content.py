@@ -70,22 +70,25 @@ class CppContentReader:
         said: set[tuple[str | None, ...]] = set()
         for file in self._unit.files:
             for node in file.of_kind("template_type"):
-                scopes = self._scopes_at(node)
-                names = {*self._unit.meanings(_full_name(node), scopes)} & _SYNCHRONISERS
                 given = node.child("arguments")
-                if len(names) != 1 or given is None or is_conditional(node, file.syntax.root):
+                scopes = self._scopes_at(node)
+                synchroniser = self._synchroniser(node, scopes)
+                if synchroniser is None or given is None:
                     continue
-                [by] = names
+                if is_conditional(node, file.syntax.root):
+                    continue
                 written = [child for child in given.children if child.kind == "type_descriptor"]
                 types = [
                     message_type(descriptor.text, self._unit, scopes) for descriptor in written
                 ]
-                if (by, *types) not in said:
-                    said.add((by, *types))
-                    others = tuple(type_name for type_name in types if type_name is not None)
-                    for each, at in zip(types, written, strict=True):
-                        if each is not None:
-                            yield SynchronisedType(each, by, at.location, others)
+                if (synchroniser, *types) not in said:
+                    said.add((synchroniser, *types))
+                    yield from _compared_types(synchroniser, types, written)
+
+    def _synchroniser(self, node: CppNode, scopes: Sequence[str]) -> str | None:
+        """Return the policy of message_filters that a template surely is."""
+        names = {*self._unit.meanings(_full_name(node), scopes)} & _SYNCHRONISERS
+        return names.pop() if len(names) == 1 else None
 
     def _scopes_at(self, node: CppNode) -> Sequence[str]:
         """Return the namespaces and classes around a place."""
@@ -136,27 +139,12 @@ class CppContentReader:
 
     def _published(self, variable: CppNode, made: CppNode) -> Sequence[CppNode] | None:
         """Return the calls of publish() of a publisher; None where it may publish elsewhere."""
-        calls = []
+        calls: list[CppNode] = []
         for use in self._evaluation.uses_of(variable) or ():
-            node = _whole(use)
-            parent = node.parent
-            if parent is None:
+            of_use = _publishing_calls(_whole(use), made)
+            if of_use is None:
                 return None
-            call, field = parent.parent, parent.child("field")
-            is_method = parent.kind == "field_expression" and node.field == "argument"
-            if is_method and field is not None and call is not None:
-                if call.kind != "call_expression":
-                    return None
-                if field.text == "publish":
-                    calls.append(call)
-                elif field.text not in _HARMLESS_METHODS:
-                    return None
-            elif node.field in ("declarator", "left") or parent.kind == "field_initializer":
-                is_here = parent.start <= made.start < parent.end
-                if not is_here and parent.kind not in ("declaration", "field_declaration"):
-                    return None
-            elif parent.kind not in _READING:
-                return None
+            calls += of_use
         return calls
 
     def _encoding_of(self, node: CppNode, depth: int) -> ImageEncoding | None:
@@ -223,14 +211,7 @@ class CppContentReader:
         if writes is None:
             return None
         if writes.encodings:
-            [assignment, *more] = writes.encodings
-            value = assignment.child("right")
-            is_last = not more and all(
-                write.file is assignment.file and write.start < assignment.start
-                for write in writes.values
-            )
-            is_set = value is not None and is_last and self._reaches(assignment, node)
-            return self._encoding_in([value], 0) if is_set and value is not None else None
+            return self._encoding_assigned(writes, node)
         if len(writes.values) != 1:
             return None
         [value] = writes.values
@@ -240,16 +221,29 @@ class CppContentReader:
             )
         return self._encoding_of(value, depth - 1)
 
+    def _encoding_assigned(self, writes: _Writes, node: CppNode) -> ImageEncoding | None:
+        """Return the encoding that is assigned to a variable after everything else."""
+        [assignment, *more] = writes.encodings
+        value = assignment.child("right")
+        if more or value is None:
+            return None
+        is_last = all(
+            write.file is assignment.file and write.start < assignment.start
+            for write in writes.values
+        )
+        if is_last and self._reaches(assignment, node):
+            return self._encoding_in([value], 0)
+        return None
+
     def _writes_of(self, name: CppNode) -> _Writes | None:
         """Return what sets an image; None where something that is not known may set it."""
         uses = self._evaluation.uses_of(name)
         if uses is None:
             return None
-        values, encodings = [], []
+        values: list[CppNode] = []
+        encodings: list[CppNode] = []
         for use in uses:
-            node = _whole(use)
-            while node.parent is not None and _is_same(node.parent):
-                node = node.parent
+            node = _wrapped(use)
             parent = node.parent
             if parent is None:
                 return None
@@ -258,14 +252,16 @@ class CppContentReader:
                 if encoding is None:
                     return None
                 encodings += encoding
-            elif node.field == "declarator":
+                continue
+            value = None
+            if node.field == "declarator":
                 value = _value_declared(use)
-                values += [value] if value is not None else []
             elif parent.kind == "assignment_expression" and node.field == "left":
                 value = parent.child("right")
-                values += [value] if value is not None else []
             elif not _is_given_to(node, _TAKERS) and parent.kind not in _READING:
                 return None
+            if value is not None:
+                values.append(value)
         return _Writes(values, encodings)
 
     def _reaches(self, assignment: CppNode, use: CppNode) -> bool:
@@ -303,12 +299,7 @@ class CppContentReader:
     ) -> tuple[CppNode | None, CppNode | None]:
         """Return the body of a callback and the name of what it is given, as far as known."""
         if callback.kind == "identifier":
-            declared = [
-                use for use in self._evaluation.uses_of(callback) or () if use is not callback
-            ]
-            values = [_value_declared(use) for use in declared if use.field == "declarator"]
-            if len(declared) == 1 and len(values) == 1 and values[0] is not None:
-                callback = values[0]
+            callback = self._declared_callback(callback)
         if callback.kind == "lambda_expression":
             declarator = callback.child("declarator")
             parameters = declarator.child("parameters") if declarator is not None else None
@@ -320,6 +311,14 @@ class CppContentReader:
             if method is not None:
                 return self._method(plain(method.text), function)
         return None, None
+
+    def _declared_callback(self, name: CppNode) -> CppNode:
+        """Return the value of the only declaration of a variable; else its name."""
+        declared = [use for use in self._evaluation.uses_of(name) or () if use is not name]
+        values = [_value_declared(use) for use in declared if use.field == "declarator"]
+        if len(declared) == 1 and len(values) == 1 and values[0] is not None:
+            return values[0]
+        return name
 
     def _method(self, name: str, function: CppFunction) -> tuple[CppNode | None, CppNode | None]:
         """Return the body and the first parameter of a method of the class of a function."""
@@ -399,6 +398,14 @@ def _is_same(node: CppNode) -> bool:
     return node.kind == "parenthesized_expression"
 
 
+def _wrapped(use: CppNode) -> CppNode:
+    """Return the largest expression that is what a name means, with `*` and parentheses."""
+    node = _whole(use)
+    while node.parent is not None and _is_same(node.parent):
+        node = node.parent
+    return node
+
+
 def _unwrapped(node: CppNode) -> CppNode:
     """Return an expression without `*`, parentheses and std::move()."""
     while True:
@@ -467,3 +474,43 @@ def _only_call(body: CppNode, message: CppNode | None) -> CppNode | None:
     owner = function.child("argument") if function is not None else None
     is_own = owner is None or owner.kind == "this"
     return call if is_own and "::" not in called_name(call) else None
+
+
+def _compared_types(
+    synchroniser: str, types: Sequence[str | None], written: Sequence[CppNode]
+) -> Iterator[SynchronisedType]:
+    """Yield the known types of the messages that a synchroniser compares, with the others."""
+    known = tuple(type_name for type_name in types if type_name is not None)
+    for type_name, at in zip(types, written, strict=True):
+        if type_name is not None:
+            yield SynchronisedType(type_name, synchroniser, at.location, known)
+
+
+def _publishing_calls(node: CppNode, made: CppNode) -> list[CppNode] | None:
+    """Return the call of publish() that a use of a publisher is.
+
+    There is none where it is another harmless use. The result is None where the publisher may
+    publish elsewhere.
+    """
+    parent = node.parent
+    if parent is None:
+        return None
+    call, field = parent.parent, parent.child("field")
+    is_method = parent.kind == "field_expression" and node.field == "argument"
+    if is_method and field is not None and call is not None:
+        return _calls_of_method(call, field.text)
+    if node.field in ("declarator", "left") or parent.kind == "field_initializer":
+        is_here = parent.start <= made.start < parent.end
+        is_harmless = is_here or parent.kind in ("declaration", "field_declaration")
+    else:
+        is_harmless = parent.kind in _READING
+    return [] if is_harmless else None
+
+
+def _calls_of_method(call: CppNode, method: str) -> list[CppNode] | None:
+    """Return the call of a publisher's method if it is publish(); None where it may publish."""
+    if call.kind != "call_expression":
+        return None
+    if method == "publish":
+        return [call]
+    return [] if method in _HARMLESS_METHODS else None

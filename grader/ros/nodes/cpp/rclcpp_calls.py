@@ -220,21 +220,26 @@ def _converted(value: CppValue, written: str) -> Value:
         value = value.args[0]
     if isinstance(value, CppName) and "PARAMETER_" in value.name:
         return None
-    kind = plain(written).rpartition("::")[2]
     if isinstance(value, CppCall) and value.short == "vector":
-        items = [*value.args]
-        if len(items) == 1 and isinstance(items[0], list):
-            items = items[0]
-        value = [_scalar(item, plain(value.types[0]) if value.types else "") for item in items]
+        converted: Value = _items_of_vector(value)
     elif isinstance(value, list):
         inner = written.partition("<")[2].rpartition(">")[0]
-        value = [_scalar(item, plain(inner)) for item in value]
+        converted = [_scalar(item, plain(inner)) for item in value]
     else:
-        value = _scalar(value, kind)
-    items = value if isinstance(value, list) else [value]
+        converted = _scalar(value, plain(written).rpartition("::")[2])
+    items = converted if isinstance(converted, list) else [converted]
     if all(isinstance(item, SCALARS) or item is None for item in items):
-        return value
+        return converted
     return not_known("the default is computed")
+
+
+def _items_of_vector(vector: CppCall) -> list[Value]:
+    """Return the items that a vector is made of, of the type of its template argument."""
+    items = [*vector.args]
+    if len(items) == 1 and isinstance(items[0], list):
+        items = items[0]
+    kind = plain(vector.types[0]) if vector.types else ""
+    return [_scalar(item, kind) for item in items]
 
 
 def _scalar(value: CppValue, kind: str) -> CppValue:

@@ -364,16 +364,10 @@ class _Search:
         reached = self._reached_modules()
         if reached is None:
             return
-        names, loops = set[str](), 0
-        for module in reached:
-            for node in ast.walk(module.code.tree):
-                names.add(getattr(node, "attr", "") or getattr(node, "id", ""))
-                loops += isinstance(node, ast.While)
+        names, loops = _names_and_loops(reached)
         calls = [call for part in self._module.parts if part.of is None for call in part.calls]
         by_name = {dotted(call.func): call for call in reversed(calls)}
-        has_spin = any("spin" in name or "WaitSet" in name or "wait_for" in name for name in names)
-        has_spin |= "AsyncNode" in names  # of rclpy.experimental: its run() is awaited
-        if "rclpy.init" in by_name and self._registered and not has_spin:
+        if "rclpy.init" in by_name and self._registered and not _may_spin(names):
             message = (
                 "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
             )
@@ -546,3 +540,20 @@ def _either(one: str, other: str) -> str:
         if answer in (one, other):
             return answer
     return "no"
+
+
+def _names_and_loops(modules: Iterable[ModuleText]) -> tuple[set[str], int]:
+    """Return the names and attributes in modules, and how many while loops these have."""
+    names, loops = set[str](), 0
+    for module in modules:
+        for node in ast.walk(module.code.tree):
+            names.add(getattr(node, "attr", "") or getattr(node, "id", ""))
+            loops += isinstance(node, ast.While)
+    return names, loops
+
+
+def _may_spin(names: Collection[str]) -> bool:
+    """Return whether one of the names in a program may spin a node."""
+    if "AsyncNode" in names:  # of rclpy.experimental: its run() is awaited
+        return True
+    return any("spin" in name or "WaitSet" in name or "wait_for" in name for name in names)

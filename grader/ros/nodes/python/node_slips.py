@@ -8,7 +8,7 @@ is assumed for the grade; `code_faults` lists what is wrong in any code of a mod
 import ast
 import builtins
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from grader.base.names import near
@@ -233,6 +233,19 @@ class _NodeSlips:
 
     def _wrong_fields(self, function: _Function, statements: Sequence[ast.stmt]) -> Iterator[Slip]:
         """Yield the fields that a message does not have."""
+        types = self._types_bound_once(function, statements)
+        for statement in statements:
+            for node in _certain_parts(statement):
+                if not isinstance(node, ast.Attribute) or not isinstance(node.value, ast.Name):
+                    continue
+                name = node.value.id
+                if name in types:
+                    yield from self._wrong_field(node, types[name])
+
+    def _types_bound_once(
+        self, function: _Function, statements: Sequence[ast.stmt]
+    ) -> dict[str, str]:
+        """Return the types of the messages in variables that a function binds once."""
         counts = Counter(
             node.id
             for node in ast.walk(function.node)
@@ -247,13 +260,7 @@ class _NodeSlips:
             match statement:
                 case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=made, args=[])):
                     types[name] = self._full_name(made)
-        for statement in statements:
-            for node in _certain_parts(statement):
-                if not isinstance(node, ast.Attribute) or not isinstance(node.value, ast.Name):
-                    continue
-                name = node.value.id
-                if counts[name] == 1 and name in types:
-                    yield from self._wrong_field(node, types[name])
+        return {name: full for name, full in types.items() if counts[name] == 1}
 
     def _wrong_field(self, node: ast.Attribute, kind: str) -> Iterator[Slip]:
         messages = python_table().messages
@@ -274,12 +281,7 @@ class _NodeSlips:
         """Yield the attributes of self that are like one that the class has, and not defined."""
         if owner.decorator_list:
             return
-        own_names = {node.name for node in owner.body if isinstance(node, ast.FunctionDef)}
-        for node in self._nodes:
-            match node:
-                case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Name(id=name, ctx=ast.Store()):
-                    own_names.add(name)
-        own_names |= python_table().node_attributes
+        own_names = self._attributes_of(owner)
         seen = {*own_names}
         for statement in statements:
             for node in _certain_parts(statement):
@@ -291,11 +293,19 @@ class _NodeSlips:
                 if dotted(node) != f"self.{name}" or name in seen or name.startswith("_"):
                     continue
                 seen.add(name)
-                alike = [other for other in own_names if other.strip("_") == name.strip("_")]
-                meant = alike[0] if len(alike) == 1 else near(name, own_names)
+                meant = _meant_attribute(name, own_names)
                 if meant is not None:
                     reaction = f"{owner.name} has no attribute {name}"
                     yield self._replaced(node, name, meant, reaction)
+
+    def _attributes_of(self, owner: ast.ClassDef) -> set[str]:
+        """Return the attributes that a class of a node may have, as far as names say."""
+        names = {node.name for node in owner.body if isinstance(node, ast.FunctionDef)}
+        for node in self._nodes:
+            match node:
+                case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Name(id=name, ctx=ast.Store()):
+                    names.add(name)
+        return names | python_table().node_attributes
 
     def _called_callbacks(
         self, owner: ast.ClassDef, statements: Sequence[ast.stmt]
@@ -342,12 +352,21 @@ class _NodeSlips:
             reaction = "rclpy.init() is missing, so that rclpy makes no node"
             code = "rclpy.init()"
             yield from self._before(function.node.body, f"{code}; ", statement, reaction, code)
+        if not self._may_run_on(self._classes[name]):
+            yield from self._without_spin(statement, name)
+
+    def _may_run_on(self, node_class: ast.ClassDef) -> bool:
+        """Return whether a program may spin or wait, or its node has no callbacks."""
         waits = any(isinstance(node, ast.While | ast.For | ast.AsyncFor) for node in self._nodes)
         modules = {full.partition(".")[0] for full in self._imports.values()}
-        inside = ast.walk(self._classes[name])
+        if "spin" in self._code.source.text or waits or modules & _WAITING:
+            return True
+        inside = ast.walk(node_class)
         called = {getattr(node, "attr", getattr(node, "id", "")) for node in inside}
-        if "spin" in text or waits or modules & _WAITING or called.isdisjoint(CALLBACKS):
-            return
+        return called.isdisjoint(CALLBACKS)
+
+    def _without_spin(self, statement: ast.stmt, name: str) -> Iterator[Slip]:
+        """Yield that the statement that makes a node of a class does not spin it."""
         reaction = "rclpy.spin() is missing, so that the program ends at once"
         match statement:
             case ast.Expr(value=ast.Call() as call) if dotted(call.func) == name:
@@ -507,3 +526,9 @@ def _package_of_message(name: str) -> str | None:
     if len(matches) == 1:
         return matches[0].rpartition(".")[0]
     return None
+
+
+def _meant_attribute(name: str, own_names: Collection[str]) -> str | None:
+    """Return the attribute that a name surely means: but for underscores, else a similar one."""
+    alike = [other for other in own_names if other.strip("_") == name.strip("_")]
+    return alike[0] if len(alike) == 1 else near(name, own_names)

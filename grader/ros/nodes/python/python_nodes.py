@@ -150,29 +150,9 @@ _Fact = Endpoint | NodeParameter | NodeFrame | Timer | Doubt | _Name
 
 def read_nodes(package: Package) -> PackageNodes:
     """Return the nodes in the Python modules that a build of a package installs. Never raises."""
-    modules: dict[str, _Module] = {}
-    doubts: list[Doubt] = []
-    unread: set[str] = set()
-    for name, path in _module_paths(package).items():
-        code = read_module(package, path)
-        if code is None:
-            unread.add(path)
-            doubts.append(Doubt("the file is not read", Location(package.path(path), 1, 1)))
-        else:
-            is_package = path.endswith("/__init__.py")
-            modules[name] = _Module(code, name, package.work, is_package=is_package)
-    bases = {
-        full: own_bases for module in modules.values() for full, own_bases in module.bases.items()
-    }
-    derived: dict[str | None, list[str]] = {}  # classes by each of their bases
-    for full, own_bases in bases.items():
-        for base in own_bases:
-            derived.setdefault(base, []).append(full)
-    kinds, reached = set(NODE_CLASSES), [*NODE_CLASSES]
-    while reached:
-        more = [full for full in derived.get(reached.pop(), ()) if full not in kinds]
-        kinds.update(more)
-        reached += more
+    modules, unread = _read_modules(package)
+    doubts = [Doubt("the file is not read", Location(package.path(path), 1, 1)) for path in unread]
+    kinds = _derived_classes(modules)
     nodes = [node for module in modules.values() for node in module.read_nodes(kinds)]
     doubts += (doubt for module in modules.values() for doubt in module.doubts)
     programs = []
@@ -185,15 +165,54 @@ def read_nodes(package: Package) -> PackageNodes:
         doubts += [Doubt(slip.reaction, slip.location) for slip in slips]
         syntax = unreadable_module(package, program.path) if program.path in unread else None
         programs.append(program._replace(nodes=() if slips else program.nodes, syntax=syntax))
-    is_loose = any(module.has_loose_declarations for module in modules.values())
-    imports = [type_import for module in modules.values() for type_import in module.type_imports()]
-    uses = [use for module in modules.values() for use in module.field_uses()]
-    synchronised = [
-        synchronised_type
-        for module in modules.values()
-        for synchronised_type in module.synchronised_types()
-    ]
-    faults, is_searched = _faults_of([module.text() for module in modules.values()])
+    return _joined_nodes(modules.values(), nodes, programs, doubts)
+
+
+def _read_modules(package: Package) -> tuple[dict[str, "_Module"], list[str]]:
+    """Return the modules that a build installs, by their names, and the files that are not read."""
+    modules: dict[str, _Module] = {}
+    unread: list[str] = []
+    for name, path in _module_paths(package).items():
+        code = read_module(package, path)
+        if code is None:
+            unread.append(path)
+        else:
+            is_package = path.endswith("/__init__.py")
+            modules[name] = _Module(code, name, package.work, is_package=is_package)
+    return modules, unread
+
+
+def _derived_classes(modules: Mapping[str, "_Module"]) -> set[str]:
+    """Return the full names of the classes of nodes, rclpy's own ones and those of modules."""
+    bases: dict[str, Sequence[str | None]] = {}
+    for module in modules.values():
+        bases |= module.bases
+    derived: dict[str | None, list[str]] = {}  # classes by each of their bases
+    for full, own_bases in bases.items():
+        for base in own_bases:
+            derived.setdefault(base, []).append(full)
+    kinds, reached = set(NODE_CLASSES), [*NODE_CLASSES]
+    while reached:
+        more = [full for full in derived.get(reached.pop(), ()) if full not in kinds]
+        kinds.update(more)
+        reached += more
+    return kinds
+
+
+def _joined_nodes(
+    modules: Collection["_Module"],
+    nodes: Sequence[NodeFacts],
+    programs: Sequence[NodeProgram],
+    doubts: Sequence[Doubt],
+) -> PackageNodes:
+    """Return the nodes of a package with what its modules import and use, and their faults."""
+    is_loose = any(module.has_loose_declarations for module in modules)
+    imports = [type_import for module in modules for type_import in module.type_imports()]
+    uses = [use for module in modules for use in module.field_uses()]
+    synchronised: list[SynchronisedType] = []
+    for module in modules:
+        synchronised += module.synchronised_types()
+    faults, is_searched = _faults_of([module.text() for module in modules])
     return PackageNodes(
         nodes=tuple(nodes),
         programs=tuple(programs),
@@ -428,6 +447,16 @@ class _Module:
                 self._facts[at] = (
                     [] if is_own else [Doubt("what another base class does is not added", at)]
                 )
+        self._read_calls()
+        if self._constants.budget.is_spent:
+            self.doubts.append(
+                Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
+            )
+        encodings = self._content.encodings() if self._uses("cv_bridge") else {}
+        return [self._node(at, facts, encodings) for at, facts in self._facts.items()]
+
+    def _read_calls(self) -> None:
+        """Add the nodes that calls make, then the facts that calls add to nodes."""
         calls = [(part, call) for part in self._parts for call in part.calls]
         for part, call in calls:
             if self._called(part, call) in _CREATES:
@@ -441,12 +470,6 @@ class _Module:
                     facts.append(
                         Doubt("another node takes the parameters of the process", self._at(call))
                     )
-        if self._constants.budget.is_spent:
-            self.doubts.append(
-                Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
-            )
-        encodings = self._content.encodings() if self._uses("cv_bridge") else {}
-        return [self._node(at, facts, encodings) for at, facts in self._facts.items()]
 
     def synchronised_types(self) -> Iterator[SynchronisedType]:
         """Yield the types of the messages that synchronisers compare."""
