@@ -57,6 +57,16 @@ class EmptyGlob(NamedTuple):
     at: Position
 
 
+def _parts_of_pattern(pattern: str) -> list[str]:
+    """Return the parts of a pattern of pathlib. Raises Undetermined for one that nobody writes."""
+    parts = [part for part in pattern.split("/") if part not in ("", ".")]
+    parts = [part for part, after in pairwise([*parts, ""]) if (part, after) != ("**", "**")]
+    is_odd = any("**" in part and part != "**" for part in parts)
+    if is_odd or not parts or pattern.startswith("/") or pattern.endswith(("/", "/.")):
+        raise Undetermined(_UNUSUAL)
+    return parts
+
+
 class PackageListing:
     """The folders of a file tree, listed in one of the possible orders.
 
@@ -178,11 +188,7 @@ class PackageListing:
 
         Raises Undetermined.
         """
-        parts = [part for part in pattern.split("/") if part not in ("", ".")]
-        parts = [part for part, after in pairwise([*parts, ""]) if (part, after) != ("**", "**")]
-        odd = any("**" in part and part != "**" for part in parts) or pattern.startswith("/")
-        if odd or not parts or pattern.endswith(("/", "/.")):
-            raise Undetermined(_UNUSUAL)
+        parts = _parts_of_pattern(pattern)
         start = self.real(folder)
         if start not in self.folders:
             return []

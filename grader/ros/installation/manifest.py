@@ -90,28 +90,27 @@ def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> 
     exports = _exports(root)
     build_types = [element for element in exports if _is_used_build_type(element)]
     exported = [element for element in exports if tag_of(element).endswith("depend")]
-    name: Element | None = None
+    names: list[Element] = []
     dependencies, groups = set[str](), set[str]()
-    for element in reversed([*root.iterchildren("*")]):
+    for element in root.iterchildren("*"):
         tag = tag_of(element)
         if tag == "name":
-            name = element
+            names.append(element)
         elif tag == "member_of_group":
             groups.add(text_of(element))
         elif tag.endswith("depend"):
             dependencies.add(text_of(element))
+    misplaced = {text_of(element): file.location(element) for element in exported[:_MAX_MISPLACED]}
     return Manifest(
         source,
-        (text_of(name) or None) if name is not None else None,
+        (text_of(names[0]) or None) if names else None,
         " and ".join(map(text_of, build_types)) if build_types else "catkin",
         (*problems, *_condition_problems(file, exports)),
-        file.location(name if name is not None else root),
-        file.location(build_types[0] if build_types else root),
+        file.location([*names, root][0]),
+        file.location([*build_types, root][0]),
         dependencies=frozenset(dependencies),
         groups=frozenset(groups),
-        misplaced={
-            text_of(element): file.location(element) for element in exported[:_MAX_MISPLACED]
-        },
+        misplaced=misplaced,
     )
 
 

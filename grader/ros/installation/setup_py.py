@@ -9,7 +9,7 @@ import posixpath
 import re
 import tomllib
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from configparser import ConfigParser, Error
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
@@ -208,6 +208,11 @@ def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None)
         _evaluate_setup(code, PackageListing(tree, budget, order), written, "setup.py")
         for order in orders
     ]
+    return _common_result(setups)
+
+
+def _common_result(setups: Sequence[Installation]) -> Installation:
+    """Return the first of several results; what differs between them is unknown."""
     results = {
         (setup.name, frozenset(setup.copies), setup.is_called, bool(setup.faults))
         for setup in setups
@@ -507,14 +512,19 @@ class _DataFiles:
         elif is_absolute and self.is_first:
             self.stop("the path is absolute, and colcon takes paths in the package only", at, text)
             self._copy(path, folder, at)
-        elif path is not None and not self._copy(path, folder, at):
+        elif path is None:
+            self._missing_path(text, at)
+        elif not self._copy(path, folder, at):
             reason = f"it is a folder, and only files can be installed{self._narrower(path)}"
             self.stops.append(InstallError(text, reason, at))
-        elif path is None and str(PurePosixPath(text)) in self.listing.files:
+
+    def _missing_path(self, text: str, at: Position) -> None:
+        """Note that there is no file at a path, or that it is ignored."""
+        if str(PurePosixPath(text)) in self.listing.files:
             self.stop("there is no such file: a path of a file does not end in /", at, text)
-        elif path is None and ignored_part(posixpath.normpath(text)):
+        elif ignored_part(posixpath.normpath(text)):
             self._give_up(None, f"{text} is an ignored file", at)
-        elif path is None:
+        else:
             guess = did_you_mean(text, self.listing.files) if len(self.stops) < _MAX_GUESSES else ""
             self.stops.append(InstallError(text, "there is no such file", at, guess))
 
@@ -551,32 +561,37 @@ def _argument_findings(
 
     What of them is not evaluated is yielded, too.
     """
+    yield from _unusual_values(kwargs, at)
+    yield from _version_findings(kwargs, at)
+    yield from _switch_findings(kwargs, at)
+    yield from _entry_point_findings(kwargs, at)
+    yield from _package_findings(kwargs, listing, at)
+    if not _is_list(kwargs.get("py_modules") or []):  # one that is not there is a warning
+        yield Unknown("this value of py_modules is not evaluated", at)
+    names_packages = any(kwargs.get(name) is not None for name in _PACKAGES)
+    if not is_configured and not names_packages and "src" not in listing.folders:
+        yield from _discovery_findings(listing)
+
+
+def _unusual_values(kwargs: Mapping[str, Value], at: Position) -> Iterator[Unknown]:
+    """Yield that arguments which are not checked further have values that are not evaluated."""
     for name, value in kwargs.items():
-        if (
-            name not in _CHECKED
-            and value is not None
-            and not (name in _USUAL and _USUAL[name](value))
-        ):
+        if name in _CHECKED or value is None:
+            continue
+        if name not in _USUAL or not _USUAL[name](value):
             yield unknown_in(value) or Unknown(
                 f"this value of {name} in setup() is not evaluated", at
             )
-    yield from _version_findings(kwargs, at)
+
+
+def _switch_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator[_Finding]:
+    """Yield what is wrong with the arguments that are True or False."""
     for name in _SWITCHES:
         value = kwargs.get(name)
         if not isinstance(value, (*SCALARS, type(None))):
             yield unknown_in(value) or Unknown(f"this value of {name} is not evaluated", at)
         elif value not in (True, False, None):
             yield f"{name} is True or False, not {value!r}"
-    yield from _entry_point_findings(kwargs, at)
-    yield from _package_findings(kwargs, listing, at)
-    if not _is_list(kwargs.get("py_modules") or []):  # one that is not there is a warning
-        yield Unknown("this value of py_modules is not evaluated", at)
-    if (
-        not is_configured
-        and all(kwargs.get(name) is None for name in _PACKAGES)
-        and "src" not in listing.folders
-    ):
-        yield from _discovery_findings(listing)
 
 
 def _ignored_arguments(kwargs: Mapping[str, Value]) -> list[IgnoredArgument]:

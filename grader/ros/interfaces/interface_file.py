@@ -258,17 +258,25 @@ def _read_element(text: str, package: str) -> FieldType:
     if is_foreign and not _PACKAGE.match(owner):
         raise _Wrong(f"{owner!r} is no name of a package", owner)
     if not _is_message_name(name):
-        meant = _MEANT.get(text) or near(text, PRIMITIVES) if not is_foreign else None
-        word = text.rstrip("0123456789")
-        sizes = [
-            primitive for primitive in sorted(PRIMITIVES) if primitive.rstrip("0123456789") == word
-        ]
-        if meant is not None:
-            hint = f"; did you mean {meant!r}?"
-        else:
-            hint = f"; there are {enumerated(sizes)}" if len(sizes) > 1 else ""
-        raise _Wrong(f"there is no type {text!r}{hint}", text, meant)
+        raise _no_type(text, is_foreign=bool(is_foreign))
     return FieldType(owner, name)
+
+
+def _no_type(text: str, *, is_foreign: bool) -> _Wrong:
+    """Return that there is no type of a name, with the primitive type that may be meant."""
+    meant = None
+    if not is_foreign:
+        meant = _MEANT.get(text) or near(text, PRIMITIVES)
+    word = text.rstrip("0123456789")
+    sizes = [
+        primitive for primitive in sorted(PRIMITIVES) if primitive.rstrip("0123456789") == word
+    ]
+    hint = ""
+    if meant is not None:
+        hint = f"; did you mean {meant!r}?"
+    elif len(sizes) > 1:
+        hint = f"; there are {enumerated(sizes)}"
+    return _Wrong(f"there is no type {text!r}{hint}", text, meant)
 
 
 def _positive(text: str) -> int | None:

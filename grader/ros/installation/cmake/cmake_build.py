@@ -227,7 +227,8 @@ class Build:
         name, *rest = self.values.texts(command.arguments) or [""]
         if isinstance(name, Unknown):
             return
-        if command.name == "ament_target_dependencies":
+        names_packages = command.name == "ament_target_dependencies"
+        if names_packages:
             self.made.depend(name, rest)
         else:
             self.made.link(name, rest)
@@ -235,9 +236,13 @@ class Build:
             return
         if name not in self.targets:
             self._stop_target(command, name)
+        self._use_packages(command, rest if names_packages else ())
+
+    def _use_packages(self, command: Command, texts: Sequence[Text]) -> None:
+        """Note a package that a target depends on, and that was not found."""
         packages = self.values.packages
         reached = self.values.reached_packages()
-        for text in rest if command.name == "ament_target_dependencies" else ():
+        for text in texts:
             if not isinstance(text, str) or not text.islower() or text in (reached or packages):
                 continue
             self.listing.budget.charge(len(packages))
@@ -302,19 +307,10 @@ class Build:
         self.targets[name] = "interfaces"
         made = []
         for text in files:
-            path = self.inside(text.replace(f"{ROOT}:", f"{ROOT}/"))
-            if path is None:
-                self.give_up(f"{text} is not in the package", command.at)
-                continue
-            if self._has(path) is False:
-                self._stop_missing(command, path)
-                self.listing.budget.charge(len(self.listing.files))
-                meant = closest(path, self.listing.files)
-                if meant is None or not meant.endswith(posixpath.splitext(path)[1]):
-                    continue
-                path = meant  # as which the rest is read
-            made.append(path)
-            self._copy(path, f"{self._share()}/{'/'.join(path.split('/')[-2:])}", command.at)
+            path = self._interface_file(text, command)
+            if path is not None:
+                made.append(path)
+                self._copy(path, f"{self._share()}/{'/'.join(path.split('/')[-2:])}", command.at)
         rest = texts[len(words) :]
         groups: dict[str, list[str]] = {}
         for keyword, items in _groups([str(text) for text in rest], keywords):
@@ -328,6 +324,24 @@ class Build:
             needs_group=groups.keys().isdisjoint(("SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK")),
         )
         self.interfaces.append(interfaces)
+
+    def _interface_file(self, text: str, command: Command) -> str | None:
+        """Return the file of an interface; of a missing one, the one that is surely meant.
+
+        The result is None where no file is known.
+        """
+        path = self.inside(text.replace(f"{ROOT}:", f"{ROOT}/"))
+        if path is None:
+            self.give_up(f"{text} is not in the package", command.at)
+            return None
+        if self._has(path) is not False:
+            return path
+        self._stop_missing(command, path)
+        self.listing.budget.charge(len(self.listing.files))
+        meant = closest(path, self.listing.files)
+        if meant is None or not meant.endswith(posixpath.splitext(path)[1]):
+            return None
+        return meant  # as which the rest is read
 
     # --- Installed files
     # ----------------------------------------------------------------------
@@ -395,31 +409,35 @@ class Build:
     def install(self, command: Command) -> None:
         """Install files, folders, programs or targets."""
         texts = self.values.texts(command.arguments)
-        kind = (texts or [""])[0]
-        words = [text for text in texts[1:] if isinstance(text, str)]
-        unknown = next((text for text in texts if isinstance(text, Unknown)), None)
-        if kind in ("EXPORT", "RUNTIME_DEPENDENCY_SET"):
-            return
         if not texts:
             self.stop("install() has no arguments", command.at)
             return
+        kind = texts[0]
+        if kind in ("EXPORT", "RUNTIME_DEPENDENCY_SET"):
+            return
+        unknown = next((text for text in texts if isinstance(text, Unknown)), None)
         if unknown is not None or kind not in ("DIRECTORY", "FILES", "PROGRAMS", "TARGETS"):
             self._leave_open(
                 unknown or Unknown(f"install({kind} ...) is not evaluated", command.at)
             )
             return
+        words = [text for text in texts[1:] if isinstance(text, str)]
         groups = _groups(words, cmake_words().install_keywords)
         if kind == "TARGETS":
             self._install_targets(groups, command)
-            return
+        elif groups[0][1]:  # without paths, CMake does not look at the rest
+            self._install_paths(str(kind), groups, command)
+
+    def _install_paths(self, kind: str, groups: _Groups, command: Command) -> None:
+        """Install files, programs, or what is in folders."""
         options = dict(groups[1:])
-        if not groups[0][1]:
-            return  # CMake does not look at the rest then
+        texts = groups[0][1]
         target, before = self._destination(options, command), set(self.copies)
-        for text in groups[0][1] if target is not None and kind == "DIRECTORY" else ():
-            self._copy_folder(text, target or "", command, groups)
-        if target is not None and kind != "DIRECTORY":
-            self._copy_files(groups[0][1], target, command, options)
+        if target is not None and kind == "DIRECTORY":
+            for text in texts:
+                self._copy_folder(text, target, command, groups)
+        elif target is not None:
+            self._copy_files(texts, target, command, options)
         if kind == "PROGRAMS" or any("PERMISSIONS" in key for key in options):
             self.scripts.update(self.copies.keys() - before)
 
@@ -479,13 +497,12 @@ class Build:
                 self._copy(path or "", posixpath.normpath(posixpath.join(target, name)), command.at)
             elif state is None:
                 self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
-            elif state or "OPTIONAL" not in options:
-                if state:
-                    reason = "it is a folder: write install(DIRECTORY ...)"
-                else:
-                    reason = "there is no such file"
-                hint = "" if state else self._guess(path or "", self.listing.files)
-                self.stop(reason, command.at, path or text, hint)
+            elif state:
+                reason = "it is a folder: write install(DIRECTORY ...)"
+                self.stop(reason, command.at, path or text)
+            elif "OPTIONAL" not in options:
+                hint = self._guess(path or "", self.listing.files)
+                self.stop("there is no such file", command.at, path or text, hint)
 
     def _copy_folder(self, text: str, target: str, command: Command, groups: _Groups) -> None:
         """Install the files of a folder; with a slash at its end without its own name."""

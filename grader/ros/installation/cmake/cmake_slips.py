@@ -95,23 +95,31 @@ class _CMakeSlips:
             command = command._replace(name=meant)
         for argument in command.arguments:
             yield from self._of_variables(argument)
-        first = command.arguments[0] if command.arguments else None
-        if first is None:
+        if not command.arguments:
             return
-        if command.name == "project" and self._name and "$" not in first.text:
-            if first.text != self._name:
-                reaction = (
-                    f"project() names the package {quoted(first.text)}, package.xml names it "
-                    f"{quoted(self._name)}"
-                )
-                yield self._of_argument(first, self._name, reaction)
+        first = command.arguments[0]
+        if command.name == "project":
+            yield from self._of_project(first)
         elif command.name == "find_package":
-            known = {*self._dependencies, "ament_cmake"}
-            meant = near(first.text, known) if first.text not in known else None
-            if meant is not None:
-                yield self._of_argument(first, meant, f"there is no package {quoted(first.text)}")
+            yield from self._of_package(first)
         elif command.name == "install":
             yield from self._of_install(command)
+
+    def _of_project(self, argument: Argument) -> Iterator[Slip]:
+        """Yield that project() has another name than package.xml."""
+        if self._name and "$" not in argument.text and argument.text != self._name:
+            reaction = (
+                f"project() names the package {quoted(argument.text)}, package.xml names it "
+                f"{quoted(self._name)}"
+            )
+            yield self._of_argument(argument, self._name, reaction)
+
+    def _of_package(self, argument: Argument) -> Iterator[Slip]:
+        """Yield that find_package() names a misspelt package."""
+        known = {*self._dependencies, "ament_cmake"}
+        meant = near(argument.text, known) if argument.text not in known else None
+        if meant is not None:
+            yield self._of_argument(argument, meant, f"there is no package {quoted(argument.text)}")
 
     def _of_install(self, command: Command) -> Iterator[Slip]:
         """Yield misspelt words of install(), and the paths that it lists."""

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 
 from grader.ros.installation.cmake.language import Argument, Command
 from grader.ros.installation.places import PREFIX
@@ -105,11 +106,14 @@ class Values:
                 stack[-1].append(Unknown(f"{piece[0]} is not known", at))
             else:
                 stack[-1].append(piece[0])
-        text_value = joined(part for parts in stack for part in parts)
-        self.budget.charge(1, len(text) if isinstance(text_value, Unknown) else len(text_value))
-        if isinstance(text_value, str) and len(text_value) > _MAX_TEXT:
+        return self._bounded(joined(chain.from_iterable(stack)), len(text), at)
+
+    def _bounded(self, value: Text, length: int, at: Position) -> Text:
+        """Return a value unless it is too long; its length, or that of its text, is charged."""
+        self.budget.charge(1, length if isinstance(value, Unknown) else len(value))
+        if isinstance(value, str) and len(value) > _MAX_TEXT:
             return Unknown("a value is too long", at)
-        return text_value
+        return value
 
     def lookup(self, name: str, at: Position) -> Text:
         """Return the value of a variable: an empty text if it is certainly not set."""
