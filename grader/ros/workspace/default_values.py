@@ -1,10 +1,11 @@
 """The defaults of parameters that nodes do not get: of own and known nodes and controllers."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from grader.ros.known.parameter_rows import COVERED, row_for
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
+from grader.ros.nodes.node_facts import NodeParameter
 from grader.ros.python.parse import START
 from grader.ros.python.values import SCALARS, Unknown, Value
 from grader.ros.workspace.graph.started_controllers import defined_controllers
@@ -78,8 +79,17 @@ def _own_default(workspace: Workspace, node: StartedNode, parameter: str) -> Par
     nodes = workspace.code.by_package[node.package]
     if not same_name and not own_node.doubts and not nodes.has_loose_declarations:
         return None
+    return _declared_default(same_name, unknown)
+
+
+def _declared_default(
+    parameters: Sequence[NodeParameter], unknown: ParameterValue
+) -> ParameterValue | None:
+    """Return the default of parameters, if all declarations agree in it; else an unknown one."""
     declarations = [
-        candidate for candidate in same_name if candidate.is_declared and candidate.name is not None
+        parameter
+        for parameter in parameters
+        if parameter.is_declared and parameter.name is not None
     ]
     if len({repr(declaration.default) for declaration in declarations}) != 1:
         return unknown

@@ -4,7 +4,7 @@ They are those of arguments, properties, and macros with their parameters.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -93,20 +93,36 @@ def _names_of_owner(documents: Sequence[_Document], owner: str) -> Iterator[Writ
             defined.name for defined in document.names if defined.kind == "xacro property"
         }
     for document in documents:
-        source = document.source
-        for used in document.names:
-            scope = used.scope
-            if used.called is not None:
-                scope = scopes.get(used.called, "")
-                if not scope:
-                    continue  # no file of this owner has the macro
-            yield written_name(source, used.span, used.kind, used.name, used.role, scope or owner)
-        for used in document.loose:
-            scope = _scope_at(document.macros, used.span[0], used.name)
-            if scope:
-                yield written_name(source, used.span, "xacro parameter", used.name, "use", scope)
-            elif used.name in properties:
-                yield written_name(source, used.span, "xacro property", used.name, "use", owner)
+        yield from _names_of_tags(document, owner, scopes)
+        yield from _names_in_expressions(document, owner, properties)
+
+
+def _names_of_tags(
+    document: _Document, owner: str, scopes: Mapping[str, str]
+) -> Iterator[WrittenName]:
+    """Yield the names of a file whose kind is known; `scopes` are those of macros."""
+    for used in document.names:
+        scope = used.scope
+        if used.called is not None:
+            scope = scopes.get(used.called, "")
+            if not scope:
+                continue  # no file of this owner has the macro
+        yield written_name(
+            document.source, used.span, used.kind, used.name, used.role, scope or owner
+        )
+
+
+def _names_in_expressions(
+    document: _Document, owner: str, properties: Collection[str]
+) -> Iterator[WrittenName]:
+    """Yield the names in expressions of a file: parameters of the macro around, or properties."""
+    source = document.source
+    for used in document.loose:
+        scope = _scope_at(document.macros, used.span[0], used.name)
+        if scope:
+            yield written_name(source, used.span, "xacro parameter", used.name, "use", scope)
+        elif used.name in properties:
+            yield written_name(source, used.span, "xacro property", used.name, "use", owner)
 
 
 def _read_document(root: XacroNode) -> _Document:
@@ -160,16 +176,20 @@ def _names_in_tag(node: XacroNode, macros: Sequence[_Macro]) -> Iterator[_XacroN
     elif node.tag.startswith(_PREFIX) and node.tag not in HANDLERS:
         yield from _names_in_call(text, start, node.tag, written)
     elif "name" in written:
-        name_span = written["name"]
-        name = text[slice(*name_span)]
+        name = text[slice(*written["name"])]
         scope = "" if "scope" in written else _scope_at(macros, start, name)
-        if node.tag == "xacro:arg":
-            yield _XacroName("xacro argument", name, "definition", name_span)
-        elif node.tag == "xacro:property":
-            kind = "xacro parameter" if scope else "xacro property"
-            yield _XacroName(kind, name, "definition", name_span, scope)
-        elif node.tag == "xacro:insert_block" and scope:
-            yield _XacroName("xacro parameter", name, "use", name_span, scope)
+        yield from _name_of_tag(node.tag, name, written["name"], scope)
+
+
+def _name_of_tag(tag: str, name: str, span: Span, scope: str) -> Iterator[_XacroName]:
+    """Yield the name in the attribute of an argument, a property or an inserted block."""
+    if tag == "xacro:arg":
+        yield _XacroName("xacro argument", name, "definition", span)
+    elif tag == "xacro:property":
+        kind = "xacro parameter" if scope else "xacro property"
+        yield _XacroName(kind, name, "definition", span, scope)
+    elif tag == "xacro:insert_block" and scope:
+        yield _XacroName("xacro parameter", name, "use", span, scope)
 
 
 def _names_of_macro(source: Source, written: Mapping[str, Span]) -> Iterator[_XacroName]:

@@ -130,15 +130,7 @@ def _in_tag(text: str, start: int, kind: str, name: str) -> Span | None:
 
     It is in an attribute, in its text, or in an argument that an include passes.
     """
-    spans = {attribute.name: attribute.value for attribute in markup.attributes(text, start)}
-    order = [key for key in (*_USUAL.get(kind, ()), *_IN_XML) if key in spans]
-    values = [spans[key] for key in dict.fromkeys([*order, *spans])]
-    if kind == _STARTED:
-        values = [spans["name"]] if "name" in spans else []
-    head, is_empty = markup.head_end(text, start)
-    if not is_empty:
-        content = re.compile(r"\s*([^<]*?)\s*(?=<)").match(text, head)
-        values += [content.span(1)] if content is not None and content[1] else []
+    values = _values_in_tag(text, start, kind)
     for span in values:
         if text[slice(*span)] == name:
             return span
@@ -149,6 +141,22 @@ def _in_tag(text: str, start: int, kind: str, name: str) -> Span | None:
         if part is not None:
             return part
     return None
+
+
+def _values_in_tag(text: str, start: int, kind: str) -> list[Span]:
+    """Return the values of an element in which a name may be, the usual attributes first."""
+    spans = {attribute.name: attribute.value for attribute in markup.attributes(text, start)}
+    if kind == _STARTED:
+        values = [spans["name"]] if "name" in spans else []
+    else:
+        order = [key for key in (*_USUAL.get(kind, ()), *_IN_XML) if key in spans]
+        values = [spans[key] for key in dict.fromkeys([*order, *spans])]
+    head, is_empty = markup.head_end(text, start)
+    if not is_empty:
+        content = re.compile(r"\s*([^<]*?)\s*(?=<)").match(text, head)
+        if content is not None and content[1]:
+            values.append(content.span(1))
+    return values
 
 
 def _passed_in_element(text: str, start: int, name: str) -> Span | None:

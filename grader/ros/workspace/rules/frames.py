@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from itertools import pairwise, product
 from typing import NamedTuple
 
@@ -12,7 +13,7 @@ from grader.ros.known.gazebo_rows import gazebo
 from grader.ros.known.package_rows import frame_parameters, package_row
 from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.nodes.node_facts import NodeFacts, NodeFrame, NodeProgram
+from grader.ros.nodes.node_facts import NodeFacts, NodeFrame, NodeProgram, PackageNodes
 from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
@@ -139,15 +140,19 @@ def _may_publish(workspace: Workspace, package: Package) -> bool:
     if not package.is_cmake or setup is None or not setup.programs:
         return False
     nodes = workspace.code.by_package[package.name]
-    read = {program.name for program in nodes.programs if program.nodes}
     programs = {path.rpartition("/")[2] for path in setup.programs}
-    if nodes.doubts or nodes.loose_frames or not programs <= read:
-        return True
-    if any(map(_may_open_transforms, nodes.nodes)):
+    if not _are_read(nodes, programs) or any(map(_may_open_transforms, nodes.nodes)):
         return True
     started = {(node.package, node.executable) for _, node in workspace.launches.nodes}
     others = [each for each in nodes.programs if (package.name, each.name) not in started]
     return any(map(_publishes_frame, others))
+
+
+def _are_read(nodes: PackageNodes, programs: AbstractSet[str]) -> bool:
+    """Return whether the nodes of programs, and all frames that these name, are known."""
+    if nodes.doubts or nodes.loose_frames:
+        return False
+    return programs <= {program.name for program in nodes.programs if program.nodes}
 
 
 def _publishes_frame(program: NodeProgram) -> bool:

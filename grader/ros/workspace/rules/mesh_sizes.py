@@ -60,19 +60,29 @@ def _problems_of(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Proble
     origins = [joint.origin for joint in robot.joints if joint.origin is not None]
     reach = max((hypot(*origin.xyz) for origin in origins), default=0.0)
     for link in robot.links:
-        of_link = _meshes_of(link)
-        for mesh in of_link:
+        for mesh in _meshes_of(link):
             about = meshes.length(urdf, mesh, is_exact=False)
             if about is None or mesh.location is None:
                 continue
-            reference = _of_primitives(link) or meshes.reference(urdf, of_link)
-            if reference is None and about > _HUGE and reach > 0.0:
-                reference = _Reference(reach, "the longest <origin> of a joint")
+            reference = _reference_of(meshes, urdf, link, about, reach)
             if reference is None or not _is_off(about, reference.length, _SUSPECT, inf):
                 continue
             length = meshes.length(urdf, mesh, is_exact=True)
             if length is not None and _is_off(length, reference.length, _LEAST, _MOST):
                 yield _other_unit(urdf, link, mesh, mesh.location, length, reference)
+
+
+def _reference_of(
+    meshes: "_Meshes", urdf: Read, link: Link, about: float, reach: float
+) -> _Reference | None:
+    """Return what a mesh of a link is compared with.
+
+    For a huge mesh without anything beside it, this is `reach`, the longest origin of a joint.
+    """
+    reference = _of_primitives(link) or meshes.reference(urdf, _meshes_of(link))
+    if reference is None and about > _HUGE and reach > 0.0:
+        return _Reference(reach, "the longest <origin> of a joint")
+    return reference
 
 
 def _meshes_of(link: Link) -> list[Mesh]:

@@ -142,10 +142,9 @@ def _without_subscription(
     subscribed = {end.name for end in subscriptions}
     published = {end.name for end in of_code}
     unheard = [end for end in of_code if end.name not in subscribed]
-    of_controllers = [end for end in subscriptions if end.source == "controller"]
     named: set[Location] = set()
-    for waiting in of_controllers:
-        if waiting.name in published:
+    for waiting in subscriptions:
+        if waiting.source != "controller" or waiting.name in published:
             continue
         fitting = graph.alike(waiting, unheard)
         for publisher in fitting:

@@ -3,7 +3,7 @@
 A name that is used has to be defined somewhere.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from itertools import chain
 from typing import NamedTuple
@@ -181,14 +181,21 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
         charge(1 + len(names.patterns))
         if names.holds(use) or names.may_hold(use):
             continue
-        known = names.like(use)
-        charge(cost_of_guess(len(known)))
-        mismatch = _mismatch(use, known, is_open=names.are_open(use))
-        if mismatch is not None:
-            mismatches.append(mismatch)
+        mismatches += _undefined(names, use, charge)
         if names.why_open(use):
             undecided.setdefault(family, names.why_open(use))
     return Agreement(_in_order(mismatches), undecided, frozenset(compared), files, counts)
+
+
+def _undefined(
+    names: "_DefinedNames", use: Use, charge: Callable[[int], None]
+) -> Iterator[Mismatch]:
+    """Yield that a name is not defined, unless what is not known may define it."""
+    known = names.like(use)
+    charge(cost_of_guess(len(known)))
+    mismatch = _mismatch(use, known, is_open=names.are_open(use))
+    if mismatch is not None:
+        yield mismatch
 
 
 def _compared(facts: Iterable[Fact]) -> tuple[set[AnyFamily], frozenset[str]]:

@@ -400,9 +400,7 @@ class _NodeReader:
                 f"loads {enumerated(twice, _MAX_LIBRARIES)} itself, and stops where {name} has "
                 "the same: list only other libraries"
             )
-        others: set[str] = set()  # of other releases
-        for other in rows_of(self._given.node):
-            others.update(other.libraries if other.name == row.name else ())
+        others = self._libraries_of_releases(row)
         for item in listed:
             if item in row.libraries:
                 continue
@@ -411,6 +409,14 @@ class _NodeReader:
                 guess = f"; did you mean {quoted(meant)}?" if meant is not None else ""
                 return f"stops: {self._release.title()} has no library {quoted(item)}{guess}"
         return ""
+
+    def _libraries_of_releases(self, row: ParameterRow) -> set[str]:
+        """Return the libraries that a parameter may list in any release."""
+        libraries: set[str] = set()
+        for other in rows_of(self._given.node):
+            if other.name == row.name:
+                libraries.update(other.libraries)
+        return libraries
 
     def _certain(self, rule: Rule, name: str, message: str, at: Location) -> _RowFinding:
         return _RowFinding(name, Mismatch(rule, message, at))

@@ -207,7 +207,9 @@ def _sections_of_others(
     unread = _unread_sections(workspace, sections, names)
     lacking = _without_section(workspace, sections, names)
     is_only_pair = len(unread) == len(lacking) == 1
-    for node, name in zip(nodes, names, strict=True) if unread else ():
+    if not unread:
+        return
+    for node, name in zip(nodes, names, strict=True):
         if name not in lacking or _is_renamed(workspace, tree, node):
             continue
         workspace.charge(cost_of_guess(len(unread)))
@@ -216,12 +218,19 @@ def _sections_of_others(
             continue
         key = meant or unread[0]
         at = tree.key_location(*sections[key])
-        message = (
-            f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
-        )
         renamed = name if meant is not None or is_only_pair else None
-        either = corrections(key, at, renamed, node.location)
-        yield Mismatch(PARAMETER_NODE, message, at, node.location, corrections=either)
+        yield _section_of_other(key, at, name, renamed, node.location)
+
+
+def _section_of_other(
+    key: str, at: Location, name: str, renamed: str | None, started_at: Location
+) -> Mismatch:
+    """Return that a section is not of a node that gets the file; `renamed` is its right key."""
+    message = (
+        f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
+    )
+    either = corrections(key, at, renamed, started_at)
+    return Mismatch(PARAMETER_NODE, message, at, started_at, corrections=either)
 
 
 def _is_renamed(workspace: Workspace, tree: YamlNode, node: StartedNode) -> bool:
@@ -342,15 +351,25 @@ def _given(
     given = workspace.parameters.read_given(package, node, name_of_node or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
-    # What a file gives to every node, or to another of the same name, need not be declared by this.
-    shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
     said = f"the node {name_of_node or node.executable!r}"
-    for name, value in given.values.items():
-        if value.location not in shared and not name.startswith("qos_overrides."):
-            yield Use("parameter", name, value.named_at or value.location, said, owner)
+    yield from _parameter_uses(workspace, node, given.values, said)
     yield from _types_given(own_node, given.values)
     is_all = not given.unknown and node.arguments == () and name_of_node is not None
     yield from _not_given(workspace, node, own_node, given.values if is_all else None)
+
+
+def _parameter_uses(
+    workspace: Workspace, node: StartedNode, values: Mapping[str, ParameterValue], said: str
+) -> Iterator[Use]:
+    """Yield the names of values that are for a node alone.
+
+    What a file gives to every node, or to another of the same name, need not be declared by it.
+    """
+    owner = f"{node.package}/{node.executable}"
+    shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
+    for name, value in values.items():
+        if value.location not in shared and not name.startswith("qos_overrides."):
+            yield Use("parameter", name, value.named_at or value.location, said, owner)
 
 
 def _may_declare_more(workspace: Workspace, node: StartedNode, own_node: NodeFacts) -> bool:

@@ -14,7 +14,7 @@ from grader.ros.workspace.rules.rule_table import (
     STATE_LIMITS,
     DefinedKind,
 )
-from grader.ros.xml.parsing import XmlFile
+from grader.ros.xml.parsing import Element, XmlFile
 
 _LINKS = ("link1", "link2", "parent_link", "child_link", "base_link", "tip_link")
 _KINDS: Mapping[str, DefinedKind] = {
@@ -83,11 +83,17 @@ def _names(file: XmlFile) -> Iterator[Use]:
         for key in ("group", "parent_group"):
             if element.get(key):
                 yield Use("group", element.get(key, ""), at, f"{said} {key}")
-        name = element.get("name", "")
-        is_group = element.tag == "group" and element.getparent() is not root
-        kind: DefinedKind | None = "group" if is_group else _KINDS.get(element.tag)
-        if kind is not None and name and not (kind == "joint" and name in virtual):
+        name, kind = element.get("name", ""), _kind_of_name(element, root)
+        is_virtual = kind == "joint" and name in virtual
+        if kind is not None and name and not is_virtual:
             yield Use(kind, name, at, said)
+
+
+def _kind_of_name(element: Element, root: Element) -> DefinedKind | None:
+    """Return what the attribute `name` of an element names; a group where it is used."""
+    if element.tag == "group" and element.getparent() is not root:
+        return "group"
+    return _KINDS.get(element.tag)
 
 
 def _other_robot(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
