@@ -158,7 +158,7 @@ WEIGHTS = {
     "ros.config": 5_500,
     "ros.cpp": 12_300,
     "ros.installation": 30_200,  # what stops a build from a release on; functions for what was branches of long ones
-    "ros.interfaces": 4_300,  # since and until when there is a type
+    "ros.interfaces": 4_400,  # since and until when there is a type; functions for the checks of one default
     "ros.known": 8_000,  # when each table was read, and the last release that was read for it
     "ros.launch": 43_700,  # the words of Lyrical, and which release has each
     "ros.mesh": 4_300,

@@ -57,12 +57,22 @@ class EmptyGlob(NamedTuple):
     at: Position
 
 
+def _below(folder: str, name: str) -> str:
+    """Return the path of a name in a folder. Raises Undetermined for one outside of the tree."""
+    if name != "..":
+        return posixpath.join(folder, name)
+    if not folder:
+        raise Undetermined(_OUTSIDE)
+    return folder.rpartition("/")[0]
+
+
 def _parts_of_pattern(pattern: str) -> list[str]:
     """Return the parts of a pattern of pathlib. Raises Undetermined for one that nobody writes."""
+    if pattern.startswith("/") or pattern.endswith(("/", "/.")):
+        raise Undetermined(_UNUSUAL)
     parts = [part for part in pattern.split("/") if part not in ("", ".")]
     parts = [part for part, after in pairwise([*parts, ""]) if (part, after) != ("**", "**")]
-    is_odd = any("**" in part and part != "**" for part in parts)
-    if is_odd or not parts or pattern.startswith("/") or pattern.endswith(("/", "/.")):
+    if not parts or any("**" in part and part != "**" for part in parts):
         raise Undetermined(_UNUSUAL)
     return parts
 
@@ -154,12 +164,8 @@ class PackageListing:
         for index, part in enumerate(path.split("/")):
             if here not in self.folders or not path:
                 return None
-            if part == "..":
-                if not here:
-                    raise Undetermined(_OUTSIDE)
-                here = here.rpartition("/")[0]
-            elif part not in ("", "."):
-                here = posixpath.join(here, part)
+            if part not in ("", "."):
+                here = _below(here, part)
             elif index and here not in self.folders:
                 return None
             if here in self._links:
@@ -473,10 +479,13 @@ class _PackageFolder(NamedTuple):
 
 def _find_packages(listing: PackageListing, _: Evaluation, call: Call) -> Value:
     """Return the folders with an __init__.py; those without need other rules."""
-    where, exclude, include = (
-        call.argument(place, name) for place, name in enumerate(("where", "exclude", "include"))
-    )
-    exclude, include = () if exclude is None else exclude, ["*"] if include is None else include
+    where = call.argument(0, "where")
+    exclude = call.argument(1, "exclude")
+    include = call.argument(2, "include")
+    if exclude is None:
+        exclude = ()
+    if include is None:
+        include = ["*"]
     is_known = where in (None, ".", "./") and call.kwargs.keys() <= {"where", "exclude", "include"}
     is_listed = isinstance(exclude, list | tuple) and isinstance(include, list | tuple)
     if not is_known or "namespace" in call.name or not is_listed:

@@ -189,20 +189,14 @@ class Installation(NamedTuple):
         endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
         for glob in self.empty:
             folder = posixpath.dirname(glob.pattern)
-            if (
-                folder in folders
-                or (folder and closest(folder, folders))
-                or (endings and glob.pattern.endswith(endings))
-            ):
+            if folder in folders or (folder and closest(folder, folders)):
                 return glob
-        return next(
-            (
-                empty_glob
-                for empty_glob in self.empty
-                if word is not None and word in empty_glob.pattern.lower()
-            ),
-            None,
-        )
+            if endings and glob.pattern.endswith(endings):
+                return glob
+        for glob in self.empty:
+            if word is not None and word in glob.pattern.lower():
+                return glob
+        return None
 
     def has_program(self, name: str, package: str, programs: KnownPrograms) -> bool | None:
         """Return whether a build installs a program where `ros2 run` looks for it.

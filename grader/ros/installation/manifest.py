@@ -89,7 +89,6 @@ def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> 
     root = file.root
     exports = _exports(root)
     build_types = [element for element in exports if _is_used_build_type(element)]
-    exported = [element for element in exports if tag_of(element).endswith("depend")]
     names: list[Element] = []
     dependencies, groups = set[str](), set[str]()
     for element in root.iterchildren("*"):
@@ -100,7 +99,6 @@ def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> 
             groups.add(text_of(element))
         elif tag.endswith("depend"):
             dependencies.add(text_of(element))
-    misplaced = {text_of(element): file.location(element) for element in exported[:_MAX_MISPLACED]}
     return Manifest(
         source,
         (text_of(names[0]) or None) if names else None,
@@ -110,7 +108,7 @@ def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> 
         file.location([*build_types, root][0]),
         dependencies=frozenset(dependencies),
         groups=frozenset(groups),
-        misplaced=misplaced,
+        misplaced=_misplaced_dependencies(file, exports),
     )
 
 
@@ -127,6 +125,12 @@ def _read_broken(data: bytes, source: Source, problem: Problem) -> Manifest:
     return Manifest(
         source, name.strip() or None, build_type.strip(), (problem,), location, location
     )
+
+
+def _misplaced_dependencies(file: XmlFile, exports: Sequence[Element]) -> dict[str, Location]:
+    """Return the dependencies that stand in <export>, where no tool reads them."""
+    exported = [element for element in exports if tag_of(element).endswith("depend")]
+    return {text_of(element): file.location(element) for element in exported[:_MAX_MISPLACED]}
 
 
 def _exports(root: Element) -> list[Element]:

@@ -12,6 +12,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from configparser import ConfigParser, Error
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import PurePosixPath
 
 from grader.base.errors import InputError
@@ -679,13 +680,14 @@ def _entry_point_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator
     groups = kwargs.get("entry_points")
     if groups is None:
         return
-    is_plain = isinstance(groups, dict) and all(
-        isinstance(group, list | tuple) for group in groups.values()
-    )
-    if not is_plain or unknown_in(groups) is not None:
-        yield unknown_in(groups) or Unknown("these entry points are not evaluated", at)
+    unknown = unknown_in(groups)
+    if unknown is not None or not isinstance(groups, dict):
+        yield unknown or Unknown("these entry points are not evaluated", at)
         return
-    for line in (line for group in groups.values() for line in group):
+    if not all(isinstance(group, list | tuple) for group in groups.values()):
+        yield Unknown("these entry points are not evaluated", at)
+        return
+    for line in chain.from_iterable(groups.values()):
         if not isinstance(line, str):
             yield Unknown("an entry point that is no string is not evaluated", at)
         elif "=" not in line or not _ENTRY_POINT.fullmatch(line):

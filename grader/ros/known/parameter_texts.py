@@ -64,6 +64,16 @@ def _row_lines(row: ParameterRow, read: Release) -> Iterator[str]:
         yield f"only with: {row.only_with}"
     for switch, value in row.unless.items():
         yield f"without effect unless: {switch} is {_value(value)}"
+    yield from _accepted_values(row)
+    if row.entries:
+        yield f"entries: {enumerated(row.entries, len(row.entries))}"
+    if row.size is not None:
+        yield f"values: {row.size}"
+    yield f"releases: {_releases(row, read)}"
+
+
+def _accepted_values(row: ParameterRow) -> Iterator[str]:
+    """Yield the limits of a parameter's value, and the values that it may have."""
     bounds = (
         ("more than", row.above),
         ("less than", row.below),
@@ -75,11 +85,6 @@ def _row_lines(row: ParameterRow, read: Release) -> Iterator[str]:
         yield f"value: {enumerated(limits)}"
     if row.one_of:
         yield f"value: {enumerated([*map(_value, row.one_of)], word='or')}"
-    if row.entries:
-        yield f"entries: {enumerated(row.entries, len(row.entries))}"
-    if row.size is not None:
-        yield f"values: {row.size}"
-    yield f"releases: {_releases(row, read)}"
 
 
 def _releases(row: ParameterRow, read: Release) -> str:

@@ -110,14 +110,21 @@ def other_name(
         return None
     release = min(releases, key=RELEASES.index)
     is_later = RELEASES.index(release) > named_row.last
-    meant = next((other for other in row if other.is_in(release)), None)
     here = name.removeprefix(shown)
-    if meant is None and is_later:
+    for meant in row:
+        if meant.is_in(release):
+            there = meant.in_place_of(named_row, name).removeprefix(shown)
+            return _renamed(named_row, meant, here, there, is_later=is_later)
+    if is_later:
         next_one = RELEASES[named_row.last + 1].title()
         return _OtherName(f"there is no {kind} {here!r} from {next_one} on")
-    if meant is None:
-        return _OtherName(f"there is no {kind} {here!r} before {named_row.since.title()}")
-    there = meant.in_place_of(named_row, name).removeprefix(shown)
+    return _OtherName(f"there is no {kind} {here!r} before {named_row.since.title()}")
+
+
+def _renamed(
+    named_row: _ReleaseName, meant: _ReleaseName, here: str, there: str, *, is_later: bool
+) -> _OtherName:
+    """Return that a name is another one from a release on, or until one."""
     if is_later:
         first = RELEASES[max(named_row.last + 1, meant.first)]
         return _OtherName(f"{here!r} is {there!r} from {first.title()} on", there)

@@ -305,12 +305,7 @@ class Build:
             return
         name, *files = known
         self.targets[name] = "interfaces"
-        made = []
-        for text in files:
-            path = self._interface_file(text, command)
-            if path is not None:
-                made.append(path)
-                self._copy(path, f"{self._share()}/{'/'.join(path.split('/')[-2:])}", command.at)
+        made = self._copy_interfaces(files, command)
         rest = texts[len(words) :]
         groups: dict[str, list[str]] = {}
         for keyword, items in _groups([str(text) for text in rest], keywords):
@@ -324,6 +319,16 @@ class Build:
             needs_group=groups.keys().isdisjoint(("SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK")),
         )
         self.interfaces.append(interfaces)
+
+    def _copy_interfaces(self, texts: Sequence[str], command: Command) -> list[str]:
+        """Install the files of interfaces, and return those that are known."""
+        paths = []
+        for text in texts:
+            path = self._interface_file(text, command)
+            if path is not None:
+                paths.append(path)
+                self._copy(path, f"{self._share()}/{'/'.join(path.split('/')[-2:])}", command.at)
+        return paths
 
     def _interface_file(self, text: str, command: Command) -> str | None:
         """Return the file of an interface; of a missing one, the one that is surely meant.
@@ -416,17 +421,20 @@ class Build:
         if kind in ("EXPORT", "RUNTIME_DEPENDENCY_SET"):
             return
         unknown = next((text for text in texts if isinstance(text, Unknown)), None)
-        if unknown is not None or kind not in ("DIRECTORY", "FILES", "PROGRAMS", "TARGETS"):
-            self._leave_open(
-                unknown or Unknown(f"install({kind} ...) is not evaluated", command.at)
-            )
-            return
-        words = [text for text in texts[1:] if isinstance(text, str)]
+        if unknown is not None:
+            self._leave_open(unknown)
+        elif kind not in ("DIRECTORY", "FILES", "PROGRAMS", "TARGETS"):
+            self._leave_open(Unknown(f"install({kind} ...) is not evaluated", command.at))
+        else:
+            self._install_known(str(kind), [*map(str, texts[1:])], command)
+
+    def _install_known(self, kind: str, words: Sequence[str], command: Command) -> None:
+        """Install what the known arguments of install() list."""
         groups = _groups(words, cmake_words().install_keywords)
         if kind == "TARGETS":
             self._install_targets(groups, command)
         elif groups[0][1]:  # without paths, CMake does not look at the rest
-            self._install_paths(str(kind), groups, command)
+            self._install_paths(kind, groups, command)
 
     def _install_paths(self, kind: str, groups: _Groups, command: Command) -> None:
         """Install files, programs, or what is in folders."""
@@ -465,13 +473,7 @@ class Build:
 
     def _install_targets(self, groups: _Groups, command: Command) -> None:
         """Install executables; where libraries go is not needed."""
-        kind, places = "", dict[str, str]()
-        for keyword, values in groups[1:]:
-            if keyword in cmake_words().artifacts:
-                kind = keyword
-            elif keyword == "DESTINATION" and values:
-                places.setdefault(kind, posixpath.normpath(values[0].removeprefix(f"{PREFIX}/")))
-        target = places.get("RUNTIME") or places.get("") or "bin"
+        target = _folder_of_programs(groups)
         for name in groups[0][1]:
             known = self.targets.get(name)
             self.made.install(name)
@@ -485,24 +487,29 @@ class Build:
     def _copy_files(
         self, texts: Sequence[str], target: str, command: Command, options: _Options
     ) -> None:
-        names = options.get("RENAME", [])
-        if names and len(texts) > 1:
+        if options.get("RENAME") and len(texts) > 1:
             self.stop("install() gives several files one name with RENAME", command.at)
             return
         for text in texts:
-            path = self.inside(text)
-            state = self._has(path) if path is not None else None
-            if path in self.listing.files:
-                name = names[0] if names else posixpath.basename(path or "")
-                self._copy(path or "", posixpath.normpath(posixpath.join(target, name)), command.at)
-            elif state is None:
-                self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
-            elif state:
-                reason = "it is a folder: write install(DIRECTORY ...)"
-                self.stop(reason, command.at, path or text)
-            elif "OPTIONAL" not in options:
-                hint = self._guess(path or "", self.listing.files)
-                self.stop("there is no such file", command.at, path or text, hint)
+            self._copy_file(text, target, command, options)
+
+    def _copy_file(self, text: str, target: str, command: Command, options: _Options) -> None:
+        path = self.inside(text)
+        if path is None:
+            self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
+            return
+        state = self._has(path)
+        if path in self.listing.files:
+            name = [*options.get("RENAME", ()), posixpath.basename(path)][0]
+            self._copy(path, posixpath.normpath(posixpath.join(target, name)), command.at)
+        elif state is None:
+            self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
+        elif state:
+            reason = "it is a folder: write install(DIRECTORY ...)"
+            self.stop(reason, command.at, path or text)
+        elif "OPTIONAL" not in options:
+            hint = self._guess(path, self.listing.files)
+            self.stop("there is no such file", command.at, path or text, hint)
 
     def _copy_folder(self, text: str, target: str, command: Command, groups: _Groups) -> None:
         """Install the files of a folder; with a slash at its end without its own name."""
@@ -518,23 +525,20 @@ class Build:
         elif not state and patterns.is_limited:
             pass  # CMake takes it for a file that no pattern matches
         elif not state and "OPTIONAL" not in options:
-            self.stop(
-                "there is no such folder",
-                command.at,
-                path,
-                self._guess(path, self.listing.folders),
-            )
+            guess = self._guess(path, self.listing.folders)
+            self.stop("there is no such folder", command.at, path, guess)
         else:
             if text.endswith("/"):
                 above = target
             else:
                 above = posixpath.join(target, posixpath.basename(path))
-            for file in self._below(path, patterns):
-                self._copy(
-                    posixpath.join(path, file),
-                    posixpath.normpath(posixpath.join(above, file)),
-                    command.at,
-                )
+            self._copy_below(path, above, patterns, command)
+
+    def _copy_below(self, path: str, above: str, patterns: "_Patterns", command: Command) -> None:
+        """Install the files below a folder that patterns include."""
+        for file in self._below(path, patterns):
+            target = posixpath.normpath(posixpath.join(above, file))
+            self._copy(posixpath.join(path, file), target, command.at)
 
     def _below(self, folder: str, patterns: "_Patterns") -> Iterator[str]:
         """Yield the paths of the files below a folder, as seen from it."""
@@ -619,3 +623,14 @@ BUILD_COMMANDS: dict[str, Callable[[Build, Command], None]] = {
     "pluginlib_export_plugin_description_file": Build.plugin_description,
     "install": Build.install,
 }
+
+
+def _folder_of_programs(groups: _Groups) -> str:
+    """Return the folder below the prefix to which install(TARGETS ...) copies executables."""
+    kind, places = "", dict[str, str]()
+    for keyword, values in groups[1:]:
+        if keyword in cmake_words().artifacts:
+            kind = keyword
+        elif keyword == "DESTINATION" and values:
+            places.setdefault(kind, posixpath.normpath(values[0].removeprefix(f"{PREFIX}/")))
+    return places.get("RUNTIME") or places.get("") or "bin"

@@ -133,12 +133,13 @@ class _CMakeSlips:
         is_listed = first.text != "TARGETS"  # whether the arguments are what is installed
         for argument in others:
             text = argument.text
+            is_word = text.isupper() and argument.kind == "unquoted"
+            keyword = near(text, keywords) if is_word and text not in keywords else None
             if text in keywords:
                 is_listed = False
-            elif text.isupper() and argument.kind == "unquoted" and near(text, keywords):
+            elif keyword:
                 is_listed = False
-                meant = near(text, keywords) or ""
-                yield self._of_argument(argument, meant, f"install() knows no word {text}")
+                yield self._of_argument(argument, keyword, f"install() knows no word {text}")
             elif is_listed and "$" not in text:
                 yield from self._of_path(argument, is_folder=first.text == "DIRECTORY")
 

@@ -169,10 +169,10 @@ class Condition:
         if word == "IN_LIST":
             items = self._values.lookup(right, self._at)
             return None if isinstance(items, Unknown) else left in split_list(items)
+        if word == "MATCHES":
+            return right in left if right.isidentifier() else None
         if word in _COMPARE and _NUMBER.fullmatch(left) and _NUMBER.fullmatch(right):
             return _COMPARE[word](float(left), float(right))
-        if word == "MATCHES" and right.isidentifier():
-            return right in left
         return None
 
 
