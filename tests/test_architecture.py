@@ -162,7 +162,7 @@ WEIGHTS = {
     "ros.known": 8_000,  # when each table was read, and the last release that was read for it
     "ros.launch": 43_700,  # the words of Lyrical, and which release has each
     "ros.mesh": 4_300,
-    "ros.nodes": 42_900,  # functions of their own for what was branches of long ones
+    "ros.nodes": 43_400,  # functions of their own for what was branches of long ones
     "ros.package": 24_900,  # the release that reads a robot, and the fixes of files that cannot be read
     "ros.python": 27_700,
     "ros.urdf": 48_700,  # the versions of URDF that Lyrical reads, and the fixes of words, which were in lab.hints

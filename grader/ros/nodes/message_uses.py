@@ -8,7 +8,7 @@ these. What is under a condition on its type, or caught, does not count.
 
 import ast
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -109,13 +109,7 @@ def field_uses(
 ) -> Iterator[FieldUse]:
     """Yield the fields that the functions of a module use."""
     nodes = every_node(code.tree)
-    stored = Counter[str]()  # names and attributes that are bound, wherever it is
-    for node in nodes:
-        match node:
-            case ast.Attribute(attr=name, ctx=ast.Store() | ast.Del()):
-                stored[name] += 1
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
-                stored[name] += 1
+    stored = _count_bindings(nodes)
     given = _types_given(parts, nodes, value_of)
     functions = []
     for part in parts:
@@ -134,6 +128,18 @@ def field_uses(
             yield use.placed(code.source)
 
 
+def _count_bindings(nodes: Iterable[ast.AST]) -> Counter[str]:
+    """Return how often names and attributes are bound, wherever it is."""
+    stored = Counter[str]()
+    for node in nodes:
+        match node:
+            case ast.Attribute(attr=name, ctx=ast.Store() | ast.Del()):
+                stored[name] += 1
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+                stored[name] += 1
+    return stored
+
+
 def _value_in(scope: Scope, value_of: Callable[[ast.expr, Scope], Value], node: ast.expr) -> Value:
     return value_of(node, scope)
 
@@ -147,11 +153,7 @@ def _types_given(
 
     The keys are the places of their classes and their names.
     """
-    named = Counter(
-        dotted(node)
-        for node in nodes
-        if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
-    )
+    named = _count_uses(nodes)
     types_by_name: dict[tuple[Location | None, str], list[tuple[str, ...]]] = {}
     for part in parts:
         for call in part.calls:
@@ -160,11 +162,20 @@ def _types_given(
                 name, types = callback
                 of = part.of if name.startswith("self.") else None
                 types_by_name.setdefault((of, name), []).append(types)
-    given = {}
-    for key, types_of_each in types_by_name.items():
-        if len({*types_of_each}) == 1 and named[key[1]] == len(types_of_each):
-            given[key] = types_of_each[0]
-    return given
+    return {
+        key: types_of_each[0]
+        for key, types_of_each in types_by_name.items()
+        if {*types_of_each} == {types_of_each[0]} and named[key[1]] == len(types_of_each)
+    }
+
+
+def _count_uses(nodes: Iterable[ast.AST]) -> Counter[str]:
+    """Return how often names and attributes are read."""
+    return Counter(
+        dotted(node)
+        for node in nodes
+        if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
+    )
 
 
 def _typed_callback(

@@ -4,7 +4,7 @@ Each rule is about what certainly fails once it runs.
 """
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from grader.ros.cpp.declarations import CppFunction, declared_in, plain
 from grader.ros.cpp.objects import class_written
@@ -112,20 +112,19 @@ class _CppSearch:
 
         It is a statement of its own, or of a local variable that nothing else names.
         """
-        parent = made.parent
-        if made.kind == "declaration":
-            names = [name for name, _ in declared_in(made)]
-        elif parent is None or is_conditional(made, function.node):
+        declaration = made
+        if made.kind != "declaration":
+            parent = made.parent
+            if parent is None or is_conditional(made, function.node):
+                return False
+            if parent.kind == "expression_statement":
+                return True
+            if parent.kind != "init_declarator" or parent.parent is None:
+                return False
+            declaration = parent.parent
+        if "static" in declaration.text.split("(")[0].split():
             return False
-        elif parent.kind == "expression_statement":
-            return True
-        elif parent.kind == "init_declarator" and parent.parent is not None:
-            names = [name for name, _ in declared_in(parent.parent)]
-        else:
-            return False
-        declaration = made if made.kind == "declaration" else (parent and parent.parent)
-        if declaration is None or "static" in declaration.text.split("(")[0].split():
-            return False
+        names = [name for name, _ in declared_in(declaration)]
         return len(names) == 1 and len(self._uses(names[0].text, function)) == 1
 
     def without_rotation(self) -> Iterator[CodeFault]:
@@ -209,8 +208,7 @@ class _CppSearch:
             for function in self._unit.functions
             if function.name == "main" and not function.owner
         ]
-        words = {word for file in self._unit.files for word in file.words}
-        if len(mains) != 1 or any(_SPINNING.search(word) for word in words):
+        if len(mains) != 1 or any(_SPINNING.search(word) for word in self._words()):
             return
         callbacks = any(
             any(self._calls(function, *_KEPT)) for function in (*self._methods, mains[0])
@@ -223,20 +221,26 @@ class _CppSearch:
         """Yield callbacks that wait for a response, which the same thread would have to receive."""
         if any(name in self._unit.uses for name in _CONCURRENT):
             return
-        words = {word for file in self._unit.files for word in file.words}
-        if not words.isdisjoint(_CONCURRENT):
-            return
-        for function in self._methods:
-            for call in self._calls(function, "spin_until_future_complete"):
-                if self._is_in_callback(call, function) and _is_given_itself(call):
-                    message = "a callback must not spin its own node: rclcpp throws an error"
-                    yield CodeFault("waits in a callback", message, call.location)
-            for call in self._calls(function, *_WAITING):
-                if self._is_in_callback(call, function) and self._is_of_request(call, function):
-                    message = (
-                        "this callback waits for a response that only the next callback can receive"
-                    )
-                    yield CodeFault("waits in a callback", message, call.location)
+        if self._words().isdisjoint(_CONCURRENT):
+            for function in self._methods:
+                yield from self._waiting_in(function)
+
+    def _waiting_in(self, function: CppFunction) -> Iterator[CodeFault]:
+        """Yield where a method waits in a callback."""
+        for call in self._calls(function, "spin_until_future_complete"):
+            if self._is_in_callback(call, function) and _is_given_itself(call):
+                message = "a callback must not spin its own node: rclcpp throws an error"
+                yield CodeFault("waits in a callback", message, call.location)
+        for call in self._calls(function, *_WAITING):
+            if self._is_in_callback(call, function) and self._is_of_request(call, function):
+                message = (
+                    "this callback waits for a response that only the next callback can receive"
+                )
+                yield CodeFault("waits in a callback", message, call.location)
+
+    def _words(self) -> set[str]:
+        """Return the words in the files of the unit."""
+        return {word for file in self._unit.files for word in file.words}
 
     def _is_in_callback(self, node: CppNode, function: CppFunction) -> bool:
         """Return whether a place is in a function that becomes a callback.
@@ -249,21 +253,9 @@ class _CppSearch:
             if around.kind == "lambda_expression":
                 return _is_callback_argument(around)
         for use in self._unit.uses.get(function.name, ()):
-            pointed = next(
-                (ancestor for ancestor in use.ancestors() if ancestor.kind == "pointer_expression"),
-                None,
-            )
-            if pointed is not None and pointed.text.startswith("&"):
-                bound = next(
-                    (
-                        ancestor
-                        for ancestor in pointed.ancestors()
-                        if ancestor.kind == "call_expression"
-                    ),
-                    None,
-                )
-                if bound is not None and called_name(bound) == "std::bind":
-                    return _is_callback_argument(bound)
+            bound = _binding_of(use)
+            if bound is not None:
+                return _is_callback_argument(bound)
         return False
 
     def _is_of_request(self, call: CppNode, function: CppFunction) -> bool:
@@ -276,14 +268,10 @@ class _CppSearch:
             return called_name(owner) == "async_send_request"
         if owner.kind != "identifier":
             return False
-        for use in self._uses(owner.text, function):
-            made = use.parent
-            if use.field == "declarator" and made is not None and made.kind == "init_declarator":
-                value = made.child("value")
-                if value is not None and value.kind == "call_expression":
-                    is_request = called_name(value) == "async_send_request"
-                    return is_request and len(arguments_of(value)) == 1
-        return False
+        made = _call_declared(self._uses(owner.text, function))
+        if made is None or called_name(made) != "async_send_request":
+            return False
+        return len(arguments_of(made)) == 1
 
 
 def _may_wait(function: CppFunction, unit: CppUnit) -> bool:
@@ -365,3 +353,28 @@ def _last_zero(parts: Mapping[str, Sequence[CppNode]]) -> CppNode | None:
     zeros = [number for number in numbers if _ZERO.fullmatch(number.text)]
     is_zero = len(parts) == len(zeros) == len(written) == 4
     return zeros[-1] if is_zero else None
+
+
+def _call_declared(uses: Iterable[CppNode]) -> CppNode | None:
+    """Return the first call that the declaration of a variable has as its value."""
+    for use in uses:
+        made = use.parent
+        if use.field == "declarator" and made is not None and made.kind == "init_declarator":
+            value = made.child("value")
+            if value is not None and value.kind == "call_expression":
+                return value
+    return None
+
+
+def _binding_of(use: CppNode) -> CppNode | None:
+    """Return the call of std::bind() that is given a pointer to a method where it is named."""
+    pointed = _first_around(use, "pointer_expression")
+    if pointed is None or not pointed.text.startswith("&"):
+        return None
+    bound = _first_around(pointed, "call_expression")
+    return bound if bound is not None and called_name(bound) == "std::bind" else None
+
+
+def _first_around(node: CppNode, kind: str) -> CppNode | None:
+    """Return the nearest node of a kind around another one."""
+    return next((ancestor for ancestor in node.ancestors() if ancestor.kind == kind), None)

@@ -70,25 +70,30 @@ class CppContentReader:
         said: set[tuple[str | None, ...]] = set()
         for file in self._unit.files:
             for node in file.of_kind("template_type"):
-                given = node.child("arguments")
-                scopes = self._scopes_at(node)
-                synchroniser = self._synchroniser(node, scopes)
-                if synchroniser is None or given is None:
+                compared = self._compared_by(node, file.syntax.root)
+                if compared is None:
                     continue
-                if is_conditional(node, file.syntax.root):
-                    continue
-                written = [child for child in given.children if child.kind == "type_descriptor"]
-                types = [
-                    message_type(descriptor.text, self._unit, scopes) for descriptor in written
-                ]
+                synchroniser, types, written = compared
                 if (synchroniser, *types) not in said:
                     said.add((synchroniser, *types))
                     yield from _compared_types(synchroniser, types, written)
 
-    def _synchroniser(self, node: CppNode, scopes: Sequence[str]) -> str | None:
-        """Return the policy of message_filters that a template surely is."""
+    def _compared_by(
+        self, node: CppNode, root: CppNode
+    ) -> tuple[str, list[str | None], list[CppNode]] | None:
+        """Return the policy of message_filters that a template is, with the types of messages.
+
+        The last are where these types are written. The result is None for another template, and
+        for one under a condition.
+        """
+        scopes = self._scopes_at(node)
         names = {*self._unit.meanings(_full_name(node), scopes)} & _SYNCHRONISERS
-        return names.pop() if len(names) == 1 else None
+        given = node.child("arguments")
+        if len(names) != 1 or given is None or is_conditional(node, root):
+            return None
+        written = [child for child in given.children if child.kind == "type_descriptor"]
+        types = [message_type(descriptor.text, self._unit, scopes) for descriptor in written]
+        return names.pop(), types, written
 
     def _scopes_at(self, node: CppNode) -> Sequence[str]:
         """Return the namespaces and classes around a place."""
@@ -244,24 +249,15 @@ class CppContentReader:
         encodings: list[CppNode] = []
         for use in uses:
             node = _wrapped(use)
-            parent = node.parent
-            if parent is None:
+            if node.parent is None:
                 return None
-            if parent.kind == "field_expression" and node.field == "argument":
-                encoding = _encoding_set(parent)
-                if encoding is None:
-                    return None
-                encodings += encoding
-                continue
-            value = None
-            if node.field == "declarator":
-                value = _value_declared(use)
-            elif parent.kind == "assignment_expression" and node.field == "left":
-                value = parent.child("right")
-            elif not _is_given_to(node, _TAKERS) and parent.kind not in _READING:
+            if node.parent.kind == "field_expression" and node.field == "argument":
+                written, place = _encoding_set(node.parent), encodings
+            else:
+                written, place = _value_set(use, node, node.parent), values
+            if written is None:
                 return None
-            if value is not None:
-                values.append(value)
+            place += written
         return _Writes(values, encodings)
 
     def _reaches(self, assignment: CppNode, use: CppNode) -> bool:
@@ -354,11 +350,7 @@ class CppContentReader:
                     return ()
             if node.kind in _LEAVING:
                 break  # what follows may never be executed
-            if node.kind != "call_expression":
-                continue
-            given = arguments_of(node)
-            is_converted = called_name(node).rpartition("::")[2] in _CONVERTING[:2] and given
-            if not is_converted or _unwrapped(given[0]).text != message.text:
+            if not _is_conversion(node, message):
                 continue
             encoding = self._converted_to(node)
             if encoding is None or is_conditional(node, body):
@@ -470,10 +462,15 @@ def _only_call(body: CppNode, message: CppNode | None) -> CppNode | None:
     given = arguments_of(call) if call.kind == "call_expression" else []
     if not given or _unwrapped(given[0]).text != message.text:
         return None
+    return call if _is_own_method(call) else None
+
+
+def _is_own_method(call: CppNode) -> bool:
+    """Return whether a call is a method of the same object, or a function without a scope."""
     function = call.child("function")
     owner = function.child("argument") if function is not None else None
     is_own = owner is None or owner.kind == "this"
-    return call if is_own and "::" not in called_name(call) else None
+    return is_own and "::" not in called_name(call)
 
 
 def _compared_types(
@@ -514,3 +511,28 @@ def _calls_of_method(call: CppNode, method: str) -> list[CppNode] | None:
     if method == "publish":
         return [call]
     return [] if method in _HARMLESS_METHODS else None
+
+
+def _value_set(use: CppNode, node: CppNode, parent: CppNode) -> list[CppNode] | None:
+    """Return the value that a use of an image sets it to, if it sets it.
+
+    The result is None where the use may set it to something that is not known.
+    """
+    value = None
+    if node.field == "declarator":
+        value = _value_declared(use)
+    elif parent.kind == "assignment_expression" and node.field == "left":
+        value = parent.child("right")
+    elif not _is_given_to(node, _TAKERS) and parent.kind not in _READING:
+        return None
+    return [value] if value is not None else []
+
+
+def _is_conversion(node: CppNode, message: CppNode) -> bool:
+    """Return whether a node is a call of cv_bridge that converts a message."""
+    if node.kind != "call_expression":
+        return False
+    given = arguments_of(node)
+    if called_name(node).rpartition("::")[2] not in _CONVERTING[:2] or not given:
+        return False
+    return _unwrapped(given[0]).text == message.text

@@ -29,6 +29,7 @@ from grader.ros.cpp.unit import (
     called_name,
     is_conditional,
 )
+from grader.ros.installation.installation import Installation
 from grader.ros.known.package_tables import cpp_table
 from grader.ros.nodes.cpp.cpp_faults import cpp_faults
 from grader.ros.nodes.cpp.cpp_files import CompiledTarget, CppFiles
@@ -251,30 +252,21 @@ class _Target:
         that is not known.
         """
         called = call.child("function")
-        owner = called.child("argument") if called is not None else None
-        if called is None or called.kind != "field_expression" or owner is None:
-            name = self._unit.owner_of(function)
-            return name if name in self._facts else None
-        if owner.kind == "this":
+        is_member = called is not None and called.kind == "field_expression"
+        owner = called.child("argument") if called is not None and is_member else None
+        if owner is None or owner.kind == "this":
             name = self._unit.owner_of(function)
             return name if name in self._facts else None
         made = self._object_of(owner, function)
-        created = self._created_at.get(made) if made is not None else None
-        if made is None or created is None:
+        if made is None or made not in self._created_at:
             return None
-        return made if made in self._facts else created.class_name
+        return made if made in self._facts else self._created_at[made].class_name
 
     def _object_of(self, node: CppNode, function: CppFunction) -> CppNode | None:
         """Return what makes the object that a local variable, which is set once, has."""
         if node.kind != "identifier":
             return None
-        inside = function.node
-        uses = [
-            same_name
-            for same_name in self._unit.uses.get(node.text, ())
-            if same_name.file is node.file
-        ]
-        uses = [same_name for same_name in uses if inside.start <= same_name.start < inside.end]
+        uses = self._uses_in(function, node.text)
         self._budget.charge(1 + len(uses))
         made: list[CppNode] = []
         for use in uses:
@@ -286,17 +278,22 @@ class _Target:
                 made.append(made_in(parent))
         return made[0] if len(made) == 1 else None
 
+    def _uses_in(self, function: CppFunction, name: str) -> list[CppNode]:
+        """Return where a function has a name."""
+        inside = function.node
+        uses = [use for use in self._unit.uses.get(name, ()) if use.file is inside.file]
+        return [use for use in uses if inside.start <= use.start < inside.end]
+
     def _doubts_of_object(self, created: _Created) -> Iterator[Doubt]:
         """Yield that something is given a node that is made, which may declare or open more."""
         function = self._unit.function_around(created.node)
         variable = variable_of(created.node)
         uses = [created.node]
         if variable is not None and function is not None:
-            uses = [*self._unit.uses.get(variable.text, ())]
             if variable.kind == "identifier" and variable.field == "declarator":
-                inside = [same_name for same_name in uses if same_name.file is function.node.file]
-                start, end = function.node.start, function.node.end
-                uses = [same_name for same_name in inside if start <= same_name.start < end]
+                uses = self._uses_in(function, variable.text)
+            else:
+                uses = [*self._unit.uses.get(variable.text, ())]
         self._budget.charge(1 + len(uses))
         for use in uses:
             taker = taker_of(self_of(use, _SELF))
@@ -334,11 +331,15 @@ class _Target:
         elif short in METHODS:
             self._read_function_of_library(call, owner)
         elif owner in self._facts and short.isupper() and len(short) > 3:
-            if not short.startswith(tuple(cpp_table().macros)):
-                reason = f"the macro {short} is not evaluated"
-                self._facts[owner].append(Doubt(reason, call.location))
+            self._read_macro(call, short, owner)
         elif owner in self._facts and short in _SELF:
             self._read_this(call, owner)
+
+    def _read_macro(self, call: CppNode, name: str, owner: str) -> None:
+        """Doubt what a class does with a macro that is not known to be harmless."""
+        if not name.startswith(tuple(cpp_table().macros)):
+            reason = f"the macro {name} is not evaluated"
+            self._facts[owner].append(Doubt(reason, call.location))
 
     def _read_method(self, call: CppNode, function: CppFunction, scopes: Sequence[str]) -> None:
         key = self._receiver(call, function)
@@ -442,10 +443,7 @@ class _Target:
         """
         name: CppNode | None = None
         if taker.kind == "call_expression" and called_name(taker) == "subscribe":
-            called = taker.child("function")
-            owner = called.child("argument") if called is not None else None
-            is_member = owner is not None and owner.kind == "field_expression"
-            name = owner.child("field") if owner is not None and is_member else owner
+            name = _owner_called(taker)
         elif taker.kind == "field_initializer":
             name = taker.children[0]
         elif taker.kind == "init_declarator" and taker.parent is not None:
@@ -601,7 +599,6 @@ class _Target:
     def programs(self, package: Package) -> Iterator[NodeProgram]:
         """Yield the programs that the target is, and those of its components."""
         target = self._compiled.target
-        setup = package.installation
         if target.kind == "executable":
             mains = [
                 function
@@ -612,8 +609,13 @@ class _Target:
             at = mains[0].node.location if mains else self._start
             path = at.path.removeprefix(package.path(""))
             yield NodeProgram(target.name, nodes if mains else (), at, path, "main")
-        for component in target.components:
-            if component.executable and setup is not None:
+        if package.installation is not None:
+            yield from self._programs_of_components(package.installation)
+
+    def _programs_of_components(self, setup: Installation) -> Iterator[NodeProgram]:
+        """Yield the programs that rclcpp_components makes of the target's components."""
+        for component in self._compiled.target.components:
+            if component.executable:
                 name = component.plugin.removeprefix("::")
                 component_nodes = [self._node(name)] if name in self._facts else []
                 at = setup.location(component.at)
@@ -636,3 +638,12 @@ def _is_harmless(taker: str) -> bool:
     """Return whether what is given a node declares and opens nothing that is not listed."""
     short = taker.rpartition("::")[2]
     return taker in ACTIONS or short in METHODS or short in cpp_table().harmless
+
+
+def _owner_called(call: CppNode) -> CppNode | None:
+    """Return the variable or member whose method is called."""
+    called = call.child("function")
+    owner = called.child("argument") if called is not None else None
+    if owner is not None and owner.kind == "field_expression":
+        return owner.child("field")
+    return owner

@@ -220,17 +220,21 @@ def _converted(value: CppValue, written: str) -> Value:
         value = value.args[0]
     if isinstance(value, CppName) and "PARAMETER_" in value.name:
         return None
-    if isinstance(value, CppCall) and value.short == "vector":
-        converted: Value = _items_of_vector(value)
-    elif isinstance(value, list):
-        inner = written.partition("<")[2].rpartition(">")[0]
-        converted = [_scalar(item, plain(inner)) for item in value]
-    else:
-        converted = _scalar(value, plain(written).rpartition("::")[2])
+    converted = _of_type(value, written)
     items = converted if isinstance(converted, list) else [converted]
     if all(isinstance(item, SCALARS) or item is None for item in items):
         return converted
     return not_known("the default is computed")
+
+
+def _of_type(value: CppValue, written: str) -> Value:
+    """Return a value, or the items of a list, as the type of a template argument has it."""
+    if isinstance(value, CppCall) and value.short == "vector":
+        return _items_of_vector(value)
+    if isinstance(value, list):
+        inner = written.partition("<")[2].rpartition(">")[0]
+        return [_scalar(item, plain(inner)) for item in value]
+    return _scalar(value, plain(written).rpartition("::")[2])
 
 
 def _items_of_vector(vector: CppCall) -> list[Value]:

@@ -35,6 +35,7 @@ _CERTAIN = frozenset(
 )
 # Names that newer versions of Python define, so that each version finds the same.
 _LATER_BUILTINS = ("PythonFinalizationError", "EncodingWarning", "WindowsError")
+_SPINNING = "rclpy.spin_until_future_complete"
 # Names of groups and executors with which a callback may wait for another one.
 _CONCURRENT = ("MultiThreadedExecutor", "ReentrantCallbackGroup", "MutuallyExclusiveCallbackGroup")
 _CONCURRENT_MODULES = frozenset({"threading", "multiprocessing", "concurrent", "asyncio"})
@@ -220,14 +221,20 @@ class _Search:
             asked.add(name)
             sure = near(name, own_names.union(known))
             meant = sure or closest(name, own_names)
-            hint = f"; did you mean {meant}?" if meant is not None else ""
-            message = f"{owner.name} has no attribute {name}{hint}"
-            end = self._end(node)
-            at = self._code.source.at(end - len(name))
-            fixes = NO_FIXES
-            if sure is not None:
-                fixes = self._rewrite(end - len(name), end, sure)
-            yield CodeFault("undefined name", message, at, fixes=fixes)
+            yield self._undefined_attribute(node, owner.name, meant, is_sure=sure is not None)
+
+    def _undefined_attribute(
+        self, node: ast.Attribute, owner: str, meant: str | None, *, is_sure: bool
+    ) -> CodeFault:
+        """Return that a class has no attribute of a name, with the one that may be meant."""
+        hint = f"; did you mean {meant}?" if meant is not None else ""
+        message = f"{owner} has no attribute {node.attr}{hint}"
+        end = self._end(node)
+        start = end - len(node.attr)
+        fixes = NO_FIXES
+        if is_sure and meant is not None:
+            fixes = self._rewrite(start, end, meant)
+        return CodeFault("undefined name", message, self._code.source.at(start), fixes=fixes)
 
     # --- Callbacks
 
@@ -293,26 +300,28 @@ class _Search:
 
     def _waiting(self, call: ast.Call, name: str, clients: Collection[str]) -> Iterator[CodeFault]:
         called = dotted(call.func)
+        if called == "time.sleep":
+            if "time" in self._module.imports:
+                message = (
+                    f"while time.sleep() in the callback {name}() waits, no other callback runs"
+                )
+                yield CodeFault("sleeps in a callback", message, self._at(call), is_certain=False)
+            return
         owner, _, method = called.rpartition(".")
-        has_timeout = (
-            any(keyword.arg == "timeout_sec" for keyword in call.keywords) or len(call.args) > 2
-        )
-        if method == "call" and owner in clients and not has_timeout:
+        if any(keyword.arg == "timeout_sec" for keyword in call.keywords) or len(call.args) > 2:
+            return
+        if method == "call" and owner in clients:
             message = (
                 f"{called}() in the callback {name}() waits for ever: the answer is only read "
                 "when the callback has ended; use call_async()"
             )
             yield CodeFault("waits in a callback", message, self._at(call))
-        elif method == "spin_until_future_complete" and owner == "rclpy" and not has_timeout:
-            if call.args and dotted(call.args[0]) == "self":
-                message = (
-                    f"spin_until_future_complete() in the callback {name}() waits for ever: the "
-                    "answer is only read when the callback has ended; use add_done_callback()"
-                )
-                yield CodeFault("waits in a callback", message, self._at(call))
-        elif called == "time.sleep" and "time" in self._module.imports:
-            message = f"while time.sleep() in the callback {name}() waits, no other callback runs"
-            yield CodeFault("sleeps in a callback", message, self._at(call), is_certain=False)
+        elif called == _SPINNING and [*map(dotted, call.args[:1])] == ["self"]:
+            message = (
+                f"spin_until_future_complete() in the callback {name}() waits for ever: the "
+                "answer is only read when the callback has ended; use add_done_callback()"
+            )
+            yield CodeFault("waits in a callback", message, self._at(call))
 
     def _reached(self) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
         """Yield the callbacks of timers, subscriptions and services, and own methods they call."""
@@ -367,16 +376,21 @@ class _Search:
         names, loops = _names_and_loops(reached)
         calls = [call for part in self._module.parts if part.of is None for call in part.calls]
         by_name = {dotted(call.func): call for call in reversed(calls)}
-        if "rclpy.init" in by_name and self._registered and not _may_spin(names):
+        init, spin = by_name.get("rclpy.init"), by_name.get("rclpy.spin")
+        if init is not None and self._registered and not _may_spin(names):
             message = (
                 "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
             )
-            at = self._at(by_name["rclpy.init"])
-            yield CodeFault("nothing spins", message, at, is_certain=not loops)
-        is_initialised = "init" in names or "context" in self._code.source.text.lower()
-        if "rclpy.spin" in by_name and not is_initialised and not self._is_imported():
+            yield CodeFault("nothing spins", message, self._at(init), is_certain=not loops)
+        if spin is not None and not self._is_initialised(names):
             message = "rclpy.init() is missing, so rclpy makes no node"
-            yield CodeFault("no rclpy.init", message, self._at(by_name["rclpy.spin"]))
+            yield CodeFault("no rclpy.init", message, self._at(spin))
+
+    def _is_initialised(self, names: Collection[str]) -> bool:
+        """Return whether the module, or one that imports it, may initialise rclpy."""
+        if "init" in names or "context" in self._code.source.text.lower():
+            return True
+        return self._is_imported()
 
     def _is_imported(self) -> bool:
         name = self._module.name

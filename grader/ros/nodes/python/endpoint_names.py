@@ -55,13 +55,6 @@ class Bindings(NamedTuple):
 def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
     """Return what names in a function, or attributes of self in a class, are bound to once."""
     ordered = sorted(nodes, key=offset_of)
-    counts = Counter[str]()
-    for node in ordered:
-        match node:
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
-                counts[name] += 1
-            case ast.Attribute(ctx=ast.Store() | ast.Del()):
-                counts[dotted(node)] += 1
     values, loops = dict[str, ast.expr](), dict[str, _Loop]()
     for node in ordered:
         match node:
@@ -73,10 +66,22 @@ def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
             case ast.For() | ast.comprehension():
                 name, loop = _looped(node)
                 loops[name] = loop
-    once = {name for name, count in counts.items() if count == 1}
+    once = _bound_once(ordered)
     if of_self:
         once = {name for name in once if name.startswith("self.")}
     return Bindings(_only(values, once), _only(loops, once))
+
+
+def _bound_once(nodes: Iterable[ast.AST]) -> set[str]:
+    """Return the names and attributes that are bound once."""
+    counts = Counter[str]()
+    for node in nodes:
+        match node:
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+                counts[name] += 1
+            case ast.Attribute(ctx=ast.Store() | ast.Del()):
+                counts[dotted(node)] += 1
+    return {name for name, count in counts.items() if count == 1}
 
 
 def _only(constants: Mapping[str, _Found], names: Collection[str]) -> dict[str, _Found]:

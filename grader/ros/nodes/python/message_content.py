@@ -97,11 +97,7 @@ class ContentReader:
                         encodings_by_place.setdefault(self._at(call), []).extend(
                             asked.get((of, name), ())
                         )
-        known = {}
-        for at, encodings in encodings_by_place.items():
-            if None not in encodings:
-                known[at] = tuple(each for each in encodings if each is not None)
-        return known
+        return _all_known(encodings_by_place)
 
     def _sent(self, function: _BoundFunction, call: ast.Call) -> ImageEncoding | None:
         """Return the encoding of the image that is published."""
@@ -169,3 +165,14 @@ def _first_argument(part: CodePart) -> str:
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id in names:
             return ""
     return names[0] if names else ""
+
+
+def _all_known(
+    encodings_by_place: Mapping[Location, Sequence[ImageEncoding | None]],
+) -> dict[Location, tuple[ImageEncoding, ...]]:
+    """Return the encodings of the places at which all of them are known."""
+    known = {}
+    for at, encodings in encodings_by_place.items():
+        if None not in encodings:
+            known[at] = tuple(encoding for encoding in encodings if encoding is not None)
+    return known

@@ -189,7 +189,7 @@ class _NodeSlips:
 
     def _methods(self, owner: ast.ClassDef, statements: Sequence[ast.stmt]) -> Iterator[_Function]:
         """Yield the methods that statements of a method call, or let be called."""
-        methods = {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
+        methods = _methods_of(owner)
         for statement in statements:
             for call in _calls(statement):
                 name = dotted(call.func)
@@ -204,24 +204,30 @@ class _NodeSlips:
 
     def _undefined(self, statements: Sequence[ast.AST]) -> Iterator[Slip]:
         """Yield the names that are not defined, where it is sure what is meant."""
-        for statement in statements if not self._has_star else ():
+        if self._has_star:
+            return
+        for statement in statements:
             for node in _certain_parts(statement):
                 if not isinstance(node, ast.Name) or not isinstance(node.ctx, ast.Load):
                     continue
-                name = node.id
-                if name in self._known or name in _GLOBAL or self._names_left == 0:
+                if node.id in self._known or node.id in _GLOBAL or self._names_left == 0:
                     continue
-                self._known.add(name)
+                self._known.add(node.id)
                 self._names_left -= 1
-                reaction = f"the name {name} is not defined"
-                module = _IMPORTED.get(name) or _package_of_message(name)
-                meant = near(name, self._bound | self._imports.keys())
-                if name in _MODULES:
-                    yield from self._with_import(node, f"import {name}", reaction)
-                elif module is not None:
-                    yield from self._with_import(node, f"from {module} import {name}", reaction)
-                elif meant is not None:
-                    yield self._replaced(node, name, meant, reaction)
+                yield from self._undefined_name(node)
+
+    def _undefined_name(self, node: ast.Name) -> Iterator[Slip]:
+        """Yield that a name is not defined, if it is sure what is meant."""
+        name = node.id
+        reaction = f"the name {name} is not defined"
+        module = _IMPORTED.get(name) or _package_of_message(name)
+        meant = near(name, self._bound | self._imports.keys())
+        if name in _MODULES:
+            yield from self._with_import(node, f"import {name}", reaction)
+        elif module is not None:
+            yield from self._with_import(node, f"from {module} import {name}", reaction)
+        elif meant is not None:
+            yield self._replaced(node, name, meant, reaction)
 
     def _with_import(self, node: ast.Name, code: str, reaction: str) -> Iterator[Slip]:
         for first in self._code.tree.body:
@@ -246,20 +252,18 @@ class _NodeSlips:
         self, function: _Function, statements: Sequence[ast.stmt]
     ) -> dict[str, str]:
         """Return the types of the messages in variables that a function binds once."""
-        counts = Counter(
-            node.id
-            for node in ast.walk(function.node)
-            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store | ast.Del)
-        )
         types: dict[str, str] = {}
         parameters = [node.arg for node in ast.walk(function.node) if isinstance(node, ast.arg)]
-        counts.update(parameters)
         if function.message and len(parameters) == 2:
             types[parameters[1]] = function.message
         for statement in statements:
             match statement:
                 case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=made, args=[])):
                     types[name] = self._full_name(made)
+        counts = Counter(parameters)
+        for node in ast.walk(function.node):
+            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store | ast.Del):
+                counts[node.id] += 1
         return {name: full for name, full in types.items() if counts[name] == 1}
 
     def _wrong_field(self, node: ast.Attribute, kind: str) -> Iterator[Slip]:
@@ -300,7 +304,7 @@ class _NodeSlips:
 
     def _attributes_of(self, owner: ast.ClassDef) -> set[str]:
         """Return the attributes that a class of a node may have, as far as names say."""
-        names = {node.name for node in owner.body if isinstance(node, ast.FunctionDef)}
+        names = {*_methods_of(owner)}
         for node in self._nodes:
             match node:
                 case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Name(id=name, ctx=ast.Store()):
@@ -311,7 +315,7 @@ class _NodeSlips:
         self, owner: ast.ClassDef, statements: Sequence[ast.stmt]
     ) -> Iterator[Slip]:
         """Yield callbacks that are called where they should be given."""
-        methods = {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
+        methods = _methods_of(owner)
         for statement in statements:
             for call in _calls(statement):
                 given = _callback(call)
@@ -532,3 +536,8 @@ def _meant_attribute(name: str, own_names: Collection[str]) -> str | None:
     """Return the attribute that a name surely means: but for underscores, else a similar one."""
     alike = [other for other in own_names if other.strip("_") == name.strip("_")]
     return alike[0] if len(alike) == 1 else near(name, own_names)
+
+
+def _methods_of(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:
+    """Return the methods of a class by their names."""
+    return {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}

@@ -157,15 +157,23 @@ def read_nodes(package: Package) -> PackageNodes:
     doubts += (doubt for module in modules.values() for doubt in module.doubts)
     programs = []
     for program in _programs(package, modules, nodes):
-        slips = _slips_of(package, program)
-        if slips is None:
-            doubts.append(Doubt("not all programs are read", program.location))
-            programs.append(program._replace(nodes=()))
-            continue
-        doubts += [Doubt(slip.reaction, slip.location) for slip in slips]
-        syntax = unreadable_module(package, program.path) if program.path in unread else None
-        programs.append(program._replace(nodes=() if slips else program.nodes, syntax=syntax))
+        read, doubts_of_program = _without_stopped(package, program, unread)
+        programs.append(read)
+        doubts += doubts_of_program
     return _joined_nodes(modules.values(), nodes, programs, doubts)
+
+
+def _without_stopped(
+    package: Package, program: NodeProgram, unread: Collection[str]
+) -> tuple[NodeProgram, list[Doubt]]:
+    """Return a program, without its nodes if it stops before it makes them; and why it stops."""
+    slips = _slips_of(package, program)
+    if slips is None:
+        doubt = Doubt("not all programs are read", program.location)
+        return program._replace(nodes=()), [doubt]
+    syntax = unreadable_module(package, program.path) if program.path in unread else None
+    read = program._replace(nodes=() if slips else program.nodes, syntax=syntax)
+    return read, [Doubt(slip.reaction, slip.location) for slip in slips]
 
 
 def _read_modules(package: Package) -> tuple[dict[str, "_Module"], list[str]]:
@@ -443,10 +451,10 @@ class _Module:
         """Return the nodes, once the full names of all classes of nodes are known."""
         for at, full in self._classes.items():
             if full in kinds:
-                is_own = NODE_CLASSES.issuperset(self.bases[full])
-                self._facts[at] = (
-                    [] if is_own else [Doubt("what another base class does is not added", at)]
-                )
+                self._facts[at] = []
+                if not NODE_CLASSES.issuperset(self.bases[full]):
+                    doubt = Doubt("what another base class does is not added", at)
+                    self._facts[at].append(doubt)
         self._read_calls()
         if self._constants.budget.is_spent:
             self.doubts.append(
@@ -731,18 +739,23 @@ class _Module:
         elif method == "declare_parameters":
             yield from _declared(argument(0, "namespace"), argument(1, "parameters"), at)
         else:
-            is_declared = method == "declare_parameter"
-            default = argument(1, "value") if is_declared else None
-            is_plain = argument(2, "descriptor") is None
-            yield NodeParameter(
-                _text(argument(0, "name")),
-                _default(default),
-                at,
-                is_declared,
-                is_plain,
-                is_needed=method not in _READS_IF_DECLARED,
-                is_unset=isinstance(default, QualifiedName) and _default(default) is None,
-            )
+            yield self._parameter(part, call, method)
+
+    def _parameter(self, part: CodePart, call: ast.Call, method: str) -> NodeParameter:
+        """Return the parameter that a method declares or reads."""
+        argument = partial(self._argument, part, call)
+        is_declared = method == "declare_parameter"
+        default = argument(1, "value") if is_declared else None
+        is_plain = argument(2, "descriptor") is None
+        return NodeParameter(
+            _text(argument(0, "name")),
+            _default(default),
+            self._at(call),
+            is_declared,
+            is_plain,
+            is_needed=method not in _READS_IF_DECLARED,
+            is_unset=isinstance(default, QualifiedName) and _default(default) is None,
+        )
 
 
 def _has_alias(tree: ast.Module) -> bool:
