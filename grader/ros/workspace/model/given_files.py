@@ -70,16 +70,21 @@ class GivenFiles:
                     shared += node.parameters or ()
             shared += self.robots.given_in_gazebo
             for node in launch.nodes:
-                name = self.code.name_of(node)
-                if name == MANAGER or (name is not None and node.package != MANAGER):
-                    given = self.read_given(package, node, name)
+                for name, given in self._given_by(package, node, shared):
                     owners.setdefault(name, []).append(given)
-                for controller in _spawned_by(node):
-                    files = (*shared, *(controller.parameters or ()))
-                    started = controller._replace(parameters=files)
-                    given = self.read_given(package, started, "")
-                    owners.setdefault(controller.node_name or "", []).append(given)
         return owners
+
+    def _given_by(
+        self, package: Package, node: StartedNode, shared: Sequence[GivenParameters]
+    ) -> Iterator[tuple[str, NodeParameters]]:
+        """Yield the parameters of a node, and of the controllers that it spawns, by names."""
+        name = self.code.name_of(node)
+        if name == MANAGER or (name is not None and node.package != MANAGER):
+            yield name, self.read_given(package, node, name)
+        for controller in _spawned_by(node):
+            files = (*shared, *(controller.parameters or ()))
+            started = controller._replace(parameters=files)
+            yield controller.node_name or "", self.read_given(package, started, "")
 
     @cached_property
     def controller_files(self) -> frozenset[str]:

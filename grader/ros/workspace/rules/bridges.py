@@ -379,11 +379,7 @@ def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]
     Nothing is said where a bridge, or an included launch file, may have more rows.
     """
     used = [row for row in rows if row.is_used]
-    has_bridge = any(node.package == BRIDGE for _, node in workspace.launches.nodes)
-    has_clock = any(row.ros == "clock" for row in rows)
-    if not has_bridge or not used or has_clock or _is_open(workspace):
-        return
-    if _may_include_bridge(workspace):
+    if _is_clock_bridged(workspace, rows, used):
         return
     for node, sim_time in graph_of(workspace).given("use_sim_time"):
         # A launch file may give a text of which ROS makes a boolean.
@@ -394,6 +390,17 @@ def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]
             )
             yield Mismatch(BRIDGE_CLOCK, message, sim_time.location, used[0].location)
             return
+
+
+def _is_clock_bridged(
+    workspace: Workspace, rows: Sequence[BridgeRow], used: Sequence[BridgeRow]
+) -> bool:
+    """Return whether a bridge may take the clock from Gazebo, or no bridge is started."""
+    has_bridge = any(node.package == BRIDGE for _, node in workspace.launches.nodes)
+    has_clock = any(row.ros == "clock" for row in rows)
+    if not has_bridge or not used or has_clock:
+        return True
+    return _is_open(workspace) or _may_include_bridge(workspace)
 
 
 def _may_include_bridge(workspace: Workspace) -> bool:

@@ -114,15 +114,7 @@ def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
     These are the faults that its caller may correct, and those of arguments that a stated release
     has. Who starts the file gives it values, and a file that may include it declares arguments.
     """
-    name = path.rpartition("/")[2]
-    try:
-        count = sum(name in text for text in workspace.texts.searched_launch_texts())
-        is_named = count > (name in launch.source.text)
-    except NotDecided:
-        is_named = True
-    is_closed = not is_named and not any(
-        any_launch.unknown for _, _, any_launch in workspace.launches.files
-    )
+    is_closed = not _may_be_included(workspace, path.rpartition("/")[2], launch)
     faults = []
     for fault in launch.in_releases(workspace.releases).faults:
         having = releases_with("argument", fault.argument) if fault.argument else ()
@@ -131,6 +123,17 @@ def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
         if fault.lacks == "" or (fault.lacks == "declaration" and is_closed):
             faults.append(fault)
     return launch._replace(faults=tuple(faults), syntax=None)
+
+
+def _may_be_included(workspace: Workspace, name: str, launch: Launch) -> bool:
+    """Return whether a text names a launch file, or a launch file is not known as a whole."""
+    try:
+        count = sum(name in text for text in workspace.texts.searched_launch_texts())
+    except NotDecided:
+        return True
+    if count > (name in launch.source.text):
+        return True
+    return any(any_launch.unknown for _, _, any_launch in workspace.launches.files)
 
 
 def _rviz_problems(package: Package, path: str) -> Iterator[Problem]:

@@ -1,7 +1,7 @@
 """Frames and joints of the robot and of static transforms, and where files name them."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from itertools import pairwise, product
 from typing import NamedTuple
@@ -114,6 +114,13 @@ def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
         yield Open("frame")
 
 
+def _named_in_code(named: Sequence["_NamedFrame"], above: Collection[str]) -> Iterator[Fact]:
+    """Yield frames of code, but for those that are looked up above a static transform."""
+    for each in named:
+        if each.frame.use != "looks up" or each.name not in above:
+            yield _definition_or_use(each)
+
+
 def _may_be_published(workspace: Workspace) -> bool:
     """Return whether a program, code or a system of Gazebo may publish unknown frames."""
     packages = {package.name for package in workspace.packages}
@@ -125,10 +132,15 @@ def _may_be_published(workspace: Workspace) -> bool:
     for text in workspace.texts.python_texts:
         if any(word in text for word in _BROADCASTING):
             return True
+    return _POSES in _systems_of_gazebo(workspace)
+
+
+def _systems_of_gazebo(workspace: Workspace) -> set[str]:
+    """Return the systems that robots, models and worlds load."""
     systems: set[str] = set()
     for root, _ in roots(workspace):
         systems |= {system_of(plugin) for plugin in root.iter("plugin")}
-    return _POSES in systems
+    return systems
 
 
 def _may_publish(workspace: Workspace, package: Package) -> bool:
@@ -183,9 +195,7 @@ def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[F
     if named:
         yield from _prefixed_frames(workspace)
         yield from _frames_of_others(workspace)
-    for each in named:
-        if each.frame.use != "looks up" or each.name not in above:
-            yield _definition_or_use(each)
+    yield from _named_in_code(named, above)
     yield from _misspelt_roots(named, robots)
     yield from _frames_in_fields(workspace)
 

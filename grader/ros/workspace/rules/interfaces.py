@@ -210,9 +210,17 @@ def _no_type(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
     change = find_change(package, own_name, workspace.releases) if interfaces is None else ""
     if change:
         return Mismatch(INTERFACE_TYPE, f"{shown} {change}", at)
+    return _no_type_among(names, shown, f"{package}/", own_name, at)
+
+
+def _no_type_among(
+    names: Sequence[str], shown: str, folder: str, own_name: str, at: Location
+) -> Mismatch:
+    """Return that a package has no type of a name, with one of another kind or a similar one."""
+    kind, _, short = own_name.partition(".")
     for other in names:
         if other.partition(".")[2] == short:
-            hint = f"there is {package}/{other.replace('.', '/')}"
+            hint = f"there is {folder}{other.replace('.', '/')}"
             return Mismatch(INTERFACE_TYPE, f"{shown}; {hint}", at)
     of_kind = [each.partition(".")[2] for each in names if each.startswith(f"{kind}.")]
     return _no_type_of_kind(shown, short, of_kind, at)

@@ -57,8 +57,7 @@ def _problems_of(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Proble
 
     The lengths are compared. A sample of each mesh is read first, and whole only one that may be.
     """
-    origins = [joint.origin for joint in robot.joints if joint.origin is not None]
-    reach = max((hypot(*origin.xyz) for origin in origins), default=0.0)
+    reach = _longest_origin(robot)
     for link in robot.links:
         for mesh in _meshes_of(link):
             about = meshes.length(urdf, mesh, is_exact=False)
@@ -70,6 +69,12 @@ def _problems_of(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Proble
             length = meshes.length(urdf, mesh, is_exact=True)
             if length is not None and _is_off(length, reference.length, _LEAST, _MOST):
                 yield _other_unit(urdf, link, mesh, mesh.location, length, reference)
+
+
+def _longest_origin(robot: Robot) -> float:
+    """Return how far the origin of a joint is from its parent at most, in metres."""
+    origins = [joint.origin for joint in robot.joints if joint.origin is not None]
+    return max((hypot(*origin.xyz) for origin in origins), default=0.0)
 
 
 def _reference_of(

@@ -144,16 +144,22 @@ def _without_subscription(
     unheard = [end for end in of_code if end.name not in subscribed]
     named: set[Location] = set()
     for waiting in subscriptions:
-        if waiting.source != "controller" or waiting.name in published:
+        if waiting.source == "controller" and waiting.name not in published:
+            yield from _meant_for(graph, waiting, unheard, named)
+
+
+def _meant_for(
+    graph: Graph, waiting: End, unheard: Sequence[End], named: set[Location]
+) -> Iterator[Mismatch]:
+    """Yield the publishers that mean the topic of a controller; `named` are those of others."""
+    fitting = graph.alike(waiting, unheard)
+    for publisher in fitting:
+        if publisher.location in named:
             continue
-        fitting = graph.alike(waiting, unheard)
-        for publisher in fitting:
-            if publisher.location in named:
-                continue
-            mismatch = _unheard(graph.workspace, publisher, waiting, is_only=len(fitting) == 1)
-            if mismatch is not None:
-                named.add(publisher.location)
-                yield mismatch
+        mismatch = _unheard(graph.workspace, publisher, waiting, is_only=len(fitting) == 1)
+        if mismatch is not None:
+            named.add(publisher.location)
+            yield mismatch
 
 
 def _unheard(

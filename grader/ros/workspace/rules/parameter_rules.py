@@ -197,8 +197,7 @@ class _NodeReader:
         """Return the default of a parameter; Unknown where it is not known, None without one."""
         match = self._match(name)
         if match is None:
-            may_have_more = self._unread or any(table.is_open for table in self._tables)
-            return _NOT_KNOWN if may_have_more or not self._is_complete else None
+            return _NOT_KNOWN if self._may_have_more() else None
         row = match.row
         if row.is_required:
             return None
@@ -208,6 +207,12 @@ class _NodeReader:
             self._items(match.table, place) for place in row.places
         )
         return row.default if is_read and row.default is not None else _NOT_KNOWN
+
+    def _may_have_more(self) -> bool:
+        """Return whether the node may have parameters that no row is of."""
+        if self._unread or not self._is_complete:
+            return True
+        return any(table.is_open for table in self._tables)
 
     def findings(self) -> Iterator[_RowFinding]:
         """Yield what is wrong."""
@@ -400,14 +405,16 @@ class _NodeReader:
                 f"loads {enumerated(twice, _MAX_LIBRARIES)} itself, and stops where {name} has "
                 "the same: list only other libraries"
             )
+        return self._missing_library(row, [item for item in listed if item not in row.libraries])
+
+    def _missing_library(self, row: ParameterRow, unknown: Sequence[str]) -> str:
+        """Return that a library is misspelt or of another release; empty if none surely is."""
         others = self._libraries_of_releases(row)
-        for item in listed:
-            if item in row.libraries:
-                continue
-            meant = near(item, row.libraries)
-            if item in others or meant is not None:
+        for name in unknown:
+            meant = near(name, row.libraries)
+            if name in others or meant is not None:
                 guess = f"; did you mean {quoted(meant)}?" if meant is not None else ""
-                return f"stops: {self._release.title()} has no library {quoted(item)}{guess}"
+                return f"stops: {self._release.title()} has no library {quoted(name)}{guess}"
         return ""
 
     def _libraries_of_releases(self, row: ParameterRow) -> set[str]:
@@ -449,19 +456,7 @@ class _NodeReader:
             return None
         at = value.named_at or value.location
         if near_name is not None:
-            old, new = name.rpartition(".")[2], near_name.rpartition(".")[2]
-            message = (
-                f"{self._given.said} has no parameter {quoted(self._given.shown(name))}; did you "
-                f"mean {quoted(self._given.shown(near_name))}?"
-            )
-            mismatch = Mismatch(
-                PARAMETER_NAME,
-                message,
-                at,
-                is_certain=False,
-                corrections=corrections(old, at, new),
-            )
-            return _RowFinding(name, mismatch)
+            return self._misspelt(name, at, near_name)
         table = next(
             candidate for candidate in reversed(self._tables) if name.startswith(candidate.prefix)
         )
@@ -475,6 +470,22 @@ class _NodeReader:
         message = f"{self._given.said} has no parameter {quoted(section)}{guess}"
         mismatch = warning(PARAMETER_NAME, message, at)
         return _RowFinding(section, mismatch)
+
+    def _misspelt(self, name: str, at: Location, near_name: str) -> _RowFinding:
+        """Return that a name surely stands for another parameter."""
+        old, new = name.rpartition(".")[2], near_name.rpartition(".")[2]
+        message = (
+            f"{self._given.said} has no parameter {quoted(self._given.shown(name))}; did you "
+            f"mean {quoted(self._given.shown(near_name))}?"
+        )
+        mismatch = Mismatch(
+            PARAMETER_NAME,
+            message,
+            at,
+            is_certain=False,
+            corrections=corrections(old, at, new),
+        )
+        return _RowFinding(name, mismatch)
 
     def _first_unknown(self, name: str, table: _RowTable) -> str:
         """Return a name up to the first part with which no parameter begins."""

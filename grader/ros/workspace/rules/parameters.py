@@ -415,20 +415,22 @@ def _not_given(
     rclpy and rclcpp raise ParameterUninitializedException. Nothing is said where `values` is
     None: the node may get more than is known.
     """
+    if values is None:
+        return
     read = {
         own_parameter.name
         for own_parameter in own_node.parameters
         if not own_parameter.is_declared and own_parameter.is_needed
     }
-    for parameter in own_node.parameters if values is not None else ():
+    is_certain = node.when is True and not own_node.doubts
+    for parameter in own_node.parameters:
         name = parameter.name
-        if parameter.is_unset and name in read and name not in (values or ()):
+        if parameter.is_unset and name in read and name not in values:
             named = workspace.code.name_of(node) or node.executable
             message = (
                 f"the node {named!r} stops without a value of the parameter {name!r}, which it "
                 f"declares without one ({parameter.location.file_and_line})"
             )
-            is_certain = node.when is True and not own_node.doubts
             yield Mismatch(
                 PARAMETER_REQUIRED, message, node.location, parameter.location, is_certain
             )

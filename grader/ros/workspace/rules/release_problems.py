@@ -1,13 +1,16 @@
 """Names of other releases of ROS 2 than those that a workspace is for."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from grader.base.errors import NotDecided
 from grader.base.problems import Problem
 from grader.base.source import Location
+from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.releases import NameKind, names_without, other_name
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.workspace.graph.started_controllers import defined_controllers
 from grader.ros.workspace.model.stated_releases import deciding_launch_files, releases_in_path
 from grader.ros.workspace.model.workspace import Workspace
@@ -91,11 +94,16 @@ def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
         for value in values_in(tree):
             if value.keys and value.keys[-1] in _PLUGIN_KEYS:
                 yield "plugin", value.node.text or "", value.node.location, ""
-        for keys, section in sections_in(tree):
-            name = keys[-1].rpartition("/")[2] if keys else ""
-            owner = f"{types.get(name, name)}/"
-            for value in values_in(section):
-                yield "parameter", owner + ".".join(value.keys), value.node.location, owner
+        yield from _parameters_in(tree, types)
+
+
+def _parameters_in(tree: YamlNode, types: Mapping[str, str]) -> Iterator[_Use]:
+    """Yield the parameters in a YAML file, of the types that controllers have by their names."""
+    for keys, section in sections_in(tree):
+        name = keys[-1].rpartition("/")[2] if keys else ""
+        owner = f"{types.get(name, name)}/"
+        for value in values_in(section):
+            yield "parameter", owner + ".".join(value.keys), value.node.location, owner
 
 
 def _uses_in_launch_files(workspace: Workspace) -> Iterator[_Use]:
@@ -133,8 +141,14 @@ def _topics(workspace: Workspace) -> Iterator[tuple[str, Location]]:
         for names in node.remaps or ():
             yield from ((topic, node.location) for topic in names)
         facts = workspace.code.own_node(node)
-        for endpoint in facts.endpoints if facts is not None else ():
-            yield node.topic(endpoint.name or "") or "", endpoint.location
+        if facts is not None:
+            yield from _topics_of_node(node, facts)
+
+
+def _topics_of_node(node: StartedNode, facts: NodeFacts) -> Iterator[tuple[str, Location]]:
+    """Yield the topics that the code of a node opens, as the launch file names them."""
+    for endpoint in facts.endpoints:
+        yield node.topic(endpoint.name or "") or "", endpoint.location
 
 
 def _declared(workspace: Workspace) -> Iterator[_Use]:

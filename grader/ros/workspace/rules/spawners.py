@@ -44,14 +44,19 @@ def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
     # Without a controller manager, the robot's driver starts one, with controllers of its own.
     if not workspace.robots.has_controller_manager:
         yield Open("controller")
+    yield from _names_in_spawners(workspace)
+    for package, launch in workspace.launches.roots:
+        yield from _without_type(workspace, package, launch, controllers)
+    yield from _not_started(workspace, controllers)
+
+
+def _names_in_spawners(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers that spawners name, and managers that they surely misspell."""
     for _, node in workspace.launches.nodes:
         if _is_spawner(node) and _is_defined_by_files(workspace, node.arguments or ()):
             for name in _named(node.arguments or ()):
                 yield Use("controller", name, node.location, "spawner")
             yield from _managers_named(workspace, node)
-    for package, launch in workspace.launches.roots:
-        yield from _without_type(workspace, package, launch, controllers)
-    yield from _not_started(workspace, controllers)
 
 
 def _is_spawner(node: StartedNode) -> bool:

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 
+from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.urdf.model import Joint, Limit, Robot
 from grader.ros.workspace.model.workspace import Workspace
@@ -75,18 +76,26 @@ def _names(file: XmlFile) -> Iterator[Use]:
     for element in root.iter("*"):
         if not isinstance(element.tag, str):
             continue
-        at, said = file.location(element), f"<{element.tag}>"
-        # The parent of a virtual joint is a frame of the world.
-        for key in _LINKS:
-            if element.get(key):
-                yield Use("link", element.get(key, ""), at, f"{said} {key}")
-        for key in ("group", "parent_group"):
-            if element.get(key):
-                yield Use("group", element.get(key, ""), at, f"{said} {key}")
+        at = file.location(element)
+        yield from _links_and_groups(element, at)
         name, kind = element.get("name", ""), _kind_of_name(element, root)
         is_virtual = kind == "joint" and name in virtual
         if kind is not None and name and not is_virtual:
-            yield Use(kind, name, at, said)
+            yield Use(kind, name, at, f"<{element.tag}>")
+
+
+def _links_and_groups(element: Element, at: Location) -> Iterator[Use]:
+    """Yield the links and groups that the attributes of an element name.
+
+    The parent of a virtual joint is a frame of the world, and no link.
+    """
+    said = f"<{element.tag}>"
+    for key in _LINKS:
+        if element.get(key):
+            yield Use("link", element.get(key, ""), at, f"{said} {key}")
+    for key in ("group", "parent_group"):
+        if element.get(key):
+            yield Use("group", element.get(key, ""), at, f"{said} {key}")
 
 
 def _kind_of_name(element: Element, root: Element) -> DefinedKind | None:

@@ -439,6 +439,17 @@ def _is_near(value: float, other: float) -> bool:
     return abs(value - other) <= _TOLERANCE * other
 
 
+def _wheels_of_other_size(wheels: _Wheels, value: float, factor: float) -> list[WheelSize]:
+    """Return the wheels without a radius that a factor turns into a value; one if none has it."""
+    sized = [wheel for wheel in wheels.all if wheel.radii]
+    fitting = []
+    for wheel in sized:
+        if any(_is_near(value, factor * radius) for radius in wheel.radii):
+            fitting.append(wheel)
+    others = [wheel for wheel in sized if wheel not in fitting]
+    return others if fitting else others[:1]
+
+
 def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
     """Yield that no wheel has a radius, and that wheels of one radius have several.
 
@@ -449,13 +460,7 @@ def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterato
         yield Mismatch(WHEEL_SIZE, _negative(key, value), at)
         return
     factor = 2.0 if kind == "diameter" else 1.0
-    sized = [wheel for wheel in wheels.all if wheel.radii]
-    fitting = []
-    for wheel in sized:
-        if any(_is_near(value, factor * radius) for radius in wheel.radii):
-            fitting.append(wheel)
-    others = [wheel for wheel in sized if wheel not in fitting]
-    for wheel in others if fitting else others[:1]:
+    for wheel in _wheels_of_other_size(wheels, value, factor):
         name, size = quoted(wheel.joint.name), factor * wheel.radii[0]
         message = f"{key} is {value:g} m; the wheel of {name} has the {kind} {size:.4g} m"
         yield warning(WHEEL_SIZE, message, at, _place(wheel))
