@@ -191,11 +191,12 @@ class Installation(NamedTuple):
             folder = posixpath.dirname(glob.pattern)
             if folder in folders or (folder and closest(folder, folders)):
                 return glob
-            if endings and glob.pattern.endswith(endings):
+            if glob.pattern.endswith(endings):  # no text ends with one of no endings
                 return glob
-        for glob in self.empty:
-            if word is not None and word in glob.pattern.lower():
-                return glob
+        if word is not None:
+            for glob in self.empty:
+                if word in glob.pattern.lower():
+                    return glob
         return None
 
     def has_program(self, name: str, package: str, programs: KnownPrograms) -> bool | None:

@@ -39,16 +39,19 @@ def cpp_field_uses(function: CppFunction, unit: CppUnit) -> Iterator[FieldUse]:
     if not types:
         return
     for node in _unconditional(function.node):
-        if node.kind != "field_expression":
+        if node.kind != "field_expression" or _is_method(node):
             continue
-        around = node.parent
-        is_called = around is not None and around.kind == "call_expression"
-        if is_called and node.field == "function":
-            continue  # a method, of a list or a pointer
         root, path = _path_of(node)
         field = node.child("field")
         if root is not None and field is not None and path and root.text in types:
             yield FieldUse(types[root.text], path, field.location)
+
+
+def _is_method(member: CppNode) -> bool:
+    """Return whether a member is called: it is a method, of a list or a pointer."""
+    around = member.parent
+    is_called = around is not None and around.kind == "call_expression"
+    return is_called and member.field == "function"
 
 
 def _unconditional(function: CppNode) -> Iterator[CppNode]:

@@ -260,10 +260,7 @@ class _NodeSlips:
             match statement:
                 case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=made, args=[])):
                     types[name] = self._full_name(made)
-        counts = Counter(parameters)
-        for node in ast.walk(function.node):
-            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store | ast.Del):
-                counts[node.id] += 1
+        counts = Counter(parameters) + _count_stored(function.node)
         return {name: full for name, full in types.items() if counts[name] == 1}
 
     def _wrong_field(self, node: ast.Attribute, kind: str) -> Iterator[Slip]:
@@ -541,3 +538,12 @@ def _meant_attribute(name: str, own_names: Collection[str]) -> str | None:
 def _methods_of(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:
     """Return the methods of a class by their names."""
     return {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
+
+
+def _count_stored(function: ast.AST) -> Counter[str]:
+    """Return how often a function sets or deletes each variable."""
+    return Counter(
+        node.id
+        for node in ast.walk(function)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store | ast.Del)
+    )

@@ -63,12 +63,9 @@ def stated_releases(tree: Tree) -> StatedReleases:
     settings = [file for file in every if _is_container(file.name.lower())]
     settings += tree.settings()
     readmes = [file for file in every if file.name.lower().startswith("readme")]
-    # An archive of a repository has all files in one folder.
-    depth = len({path.partition("/")[0] for path in tree.files}) == 1
-    highest = [file for file in readmes if file.path.count("/") <= depth]
     texts = [file for file in every if file.suffix in (".md", ".sh", ".bash")]
     levels: list[list[_Reader]] = [
-        [(settings, _in_setting_of_every_branch), (highest, _in_prose)],
+        [(settings, _in_setting_of_every_branch), (_highest(tree, readmes), _in_prose)],
         [(settings, _in_setting)],
         [(readmes, _in_prose)],
         [(texts, _in_prose)],
@@ -79,6 +76,12 @@ def stated_releases(tree: Tree) -> StatedReleases:
         if stated.releases:
             return stated
     return StatedReleases()
+
+
+def _highest(tree: Tree, files: Sequence[File]) -> list[File]:
+    """Return the files beside the packages; an archive of a repository has all in one folder."""
+    depth = len({path.partition("/")[0] for path in tree.files}) == 1
+    return [file for file in files if file.path.count("/") <= depth]
 
 
 _Reader = tuple[Sequence[File], Callable[[str], set[str]]]  # files, and what finds releases in them

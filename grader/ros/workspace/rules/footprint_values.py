@@ -68,9 +68,8 @@ def footprint_facts(workspace: Workspace) -> Iterator[Fact]:
     for room in rooms:
         workspace.charge(_OF_LINK * sum(links))
         yield Compared("values")
-        reaches = [_beyond(room, robot) for robot in robots]
-        beyond = [reach for reach in reaches if reach is not None]
-        if len(beyond) == len(robots):
+        beyond = [_beyond(room, robot) for robot in robots]
+        if beyond[0] is not None and None not in beyond:
             yield _too_small(room, robots[0], beyond[0])
 
 

@@ -167,9 +167,10 @@ def _other_remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:
     left = [name for name in names if name not in replaced]
     plain = {name.replace("_", ""): name for name in left}
     for written in replaced:
+        if written in names or ":" in written or written.startswith("__"):
+            continue
         meant = plain.get(written.replace("_", "")) or near(written, left)
-        is_topic = ":" not in written and not written.startswith("__")
-        if meant is not None and is_topic and written not in names:
+        if meant is not None:
             message = (
                 f"{node.executable} has no topic {quoted(written)}, so its remapping does nothing; "
                 f"did you mean {meant}?"

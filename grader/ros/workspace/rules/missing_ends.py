@@ -200,20 +200,26 @@ def _without_server(graph: Graph, meeting: Meeting) -> Iterator[Mismatch]:
     The server has the type of the client, and there is one such name only. It is certain where
     the nodes of both certainly are started.
     """
-    workspace = graph.workspace
     clients, servers = meeting.ends(graph)
     called = {end.name for end in clients}
     served = {end.name for end in servers}
     uncalled = [end for end in servers if end.name not in called]
-    unserved = [end for end in clients if end.name not in served and end.type is not None]
-    for client in unserved:
-        alike = {end.name: end for end in reversed(graph.alike(client, uncalled))}
-        if len(alike) != 1 or _may_be_served(workspace, meeting, client, alike):
-            continue
-        [(meant, server)] = alike.items()
-        what = f"nothing serves the {meeting.noun} {client.name}"
-        mismatch = _no_other_end(SERVICE_SERVED, what, client, meant, server.location)
-        yield mismatch._replace(is_certain=client.is_certain and server.is_certain)
+    for client in clients:
+        if client.name not in served and client.type is not None:
+            yield from _served_elsewhere(graph, meeting, client, uncalled)
+
+
+def _served_elsewhere(
+    graph: Graph, meeting: Meeting, client: End, uncalled: Sequence[End]
+) -> Iterator[Mismatch]:
+    """Yield that the server of a client's type waits under one other name."""
+    alike = {end.name: end for end in reversed(graph.alike(client, uncalled))}
+    if len(alike) != 1 or _may_be_served(graph.workspace, meeting, client, alike):
+        return
+    [(meant, server)] = alike.items()
+    what = f"nothing serves the {meeting.noun} {client.name}"
+    mismatch = _no_other_end(SERVICE_SERVED, what, client, meant, server.location)
+    yield mismatch._replace(is_certain=client.is_certain and server.is_certain)
 
 
 def _may_be_served(

@@ -176,7 +176,7 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
     compared, files = _compared(every)
     for use in [fact for fact in every if isinstance(fact, Use)]:
         family = DEFINED[use.kind].family
-        if names.holds(use) or not (use.optional or names.are_open(use)):
+        if names.compares(use):
             compared.add(family)
         charge(1 + len(names.patterns))
         if names.holds(use) or names.may_hold(use):
@@ -231,6 +231,10 @@ class _DefinedNames:
     def like(self, use: Use) -> Mapping[str, Location]:
         """Return the names that are defined of the kind and the owner of a use."""
         return self._known.get((use.kind, use.owner), {})
+
+    def compares(self, use: Use) -> bool:
+        """Return whether it is certain that a name is defined, or that it has to be."""
+        return self.holds(use) or not (use.optional or self.are_open(use))
 
     def holds(self, use: Use) -> bool:
         """Return whether a name is defined."""

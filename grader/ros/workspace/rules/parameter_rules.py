@@ -130,10 +130,20 @@ def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismat
     releases = [release for release in stated or read if known.is_in(release)]
     for finding in _findings_in_all([readers[release] for release in releases]):
         if finding.mismatch.rule is PARAMETER_NAME:
-            having = [release for release in read if readers[release].has(finding.name)]
-            yield _of_other_release(given, finding.name, finding.mismatch, having, stated)
+            yield _unknown_name(given, finding, readers, stated)
         else:
             yield finding.mismatch
+
+
+def _unknown_name(
+    given: GivenNode,
+    finding: _RowFinding,
+    readers: Mapping[Release, "_NodeReader"],
+    stated: Sequence[Release],
+) -> Mismatch:
+    """Return that a node has no parameter of a name, with the releases in which it has one."""
+    having = [release for release, reader in readers.items() if reader.has(finding.name)]
+    return _of_other_release(given, finding.name, finding.mismatch, having, stated)
 
 
 def _findings_in_all(readers: "Sequence[_NodeReader]") -> Iterator[_RowFinding]:
@@ -460,7 +470,7 @@ class _NodeReader:
         table = next(
             candidate for candidate in reversed(self._tables) if name.startswith(candidate.prefix)
         )
-        if table.is_open or any(not prefix for prefix in self._unread):
+        if table.is_open or "" in self._unread:
             return None
         section = self._first_unknown(name, table)
         similar = closest(section, self._names(table), is_clear=True)

@@ -7,6 +7,7 @@ import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from itertools import chain
+from typing import NamedTuple
 
 from grader.base.names import near
 from grader.base.source import Location
@@ -212,14 +213,32 @@ def _sections_of_others(
     for node, name in zip(nodes, names, strict=True):
         if name not in lacking or _is_renamed(workspace, tree, node):
             continue
-        workspace.charge(cost_of_guess(len(unread)))
-        meant = near(name, unread)
-        if meant is None and _may_read_another(workspace, path, node):
+        meant = _section_meant(workspace, path, node, name, unread)
+        if meant is None:
             continue
-        key = meant or unread[0]
-        at = tree.key_location(*sections[key])
-        renamed = name if meant is not None or is_only_pair else None
-        yield _section_of_other(key, at, name, renamed, node.location)
+        at = tree.key_location(*sections[meant.key])
+        renamed = name if meant.is_sure or is_only_pair else None
+        yield _section_of_other(meant.key, at, name, renamed, node.location)
+
+
+class _MeantSection(NamedTuple):
+    """The section that a node may have been meant to get; it is sure if its name is similar."""
+
+    key: str
+    is_sure: bool
+
+
+def _section_meant(
+    workspace: Workspace, path: str, node: StartedNode, name: str, unread: Sequence[str]
+) -> _MeantSection | None:
+    """Return the section that a node without one may mean; None if another node may read it."""
+    workspace.charge(cost_of_guess(len(unread)))
+    similar = near(name, unread)
+    if similar is not None:
+        return _MeantSection(similar, is_sure=True)
+    if _may_read_another(workspace, path, node):
+        return None
+    return _MeantSection(unread[0], is_sure=False)
 
 
 def _section_of_other(

@@ -4,10 +4,11 @@ Two sources send commands, images have another transport, displays of RViz ask f
 programs send another type.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain
 
 from grader.base.text import quoted
+from grader.ros.config.rviz import Display
 from grader.ros.known.package_tables import transport_types
 from grader.ros.workspace.graph.code_ends import End
 from grader.ros.workspace.graph.graph import Graph, graph_of
@@ -81,16 +82,24 @@ def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Misma
     for package in workspace.packages:
         files = [package.rviz(path) for path in package.rviz_files]
         for display in chain.from_iterable(file.displays for file in files):
-            policy = display.node.get("Topic", "Reliability Policy")
-            topic = display.node.get("Topic", "Value")
-            if policy is None or topic is None or not display.enabled:
-                continue
-            if policy.text == "Reliable" and offered.get(topic.text or "") == {"best_effort"}:
-                message = (
-                    f"the display {quoted(display.name)} asks for reliable messages of "
-                    f"{topic.text}, which are published as best effort: it stays empty"
-                )
-                yield warning(DISPLAY_QUALITY, message, policy.location)
+            if display.enabled:
+                yield from _other_reliability(display, offered)
+
+
+def _other_reliability(
+    display: Display, offered: Mapping[str, Collection[str | None]]
+) -> Iterator[Mismatch]:
+    """Yield that a display asks for reliable messages, which are published as best effort."""
+    policy = display.node.get("Topic", "Reliability Policy")
+    topic = display.node.get("Topic", "Value")
+    if policy is None or topic is None:
+        return
+    if policy.text == "Reliable" and offered.get(topic.text or "") == {"best_effort"}:
+        message = (
+            f"the display {quoted(display.name)} asks for reliable messages of "
+            f"{topic.text}, which are published as best effort: it stays empty"
+        )
+        yield warning(DISPLAY_QUALITY, message, policy.location)
 
 
 def _programs(graph: Graph) -> Iterator[Mismatch]:
