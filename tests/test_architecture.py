@@ -166,7 +166,7 @@ WEIGHTS = {
     "ros.package": 24_900,  # the release that reads a robot, and the fixes of files that cannot be read
     "ros.python": 27_700,
     "ros.urdf": 48_700,  # the versions of URDF that Lyrical reads, and the fixes of words, which were in lab.hints
-    "ros.workspace": 100_500,  # a function for each rule, none of high complexity; nodes of the graph; fixes of names
+    "ros.workspace": 100_500,  # a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches
     "ros.xacro": 27_800,
     "ros.xml": 12_300,  # the attributes of newer versions of URDF
     "": 400,

@@ -70,21 +70,9 @@ class GivenFiles:
                     shared += node.parameters or ()
             shared += self.robots.given_in_gazebo
             for node in launch.nodes:
-                for name, given in self._given_by(package, node, shared):
+                for name, given in _given_by(self, package, node, shared):
                     owners.setdefault(name, []).append(given)
         return owners
-
-    def _given_by(
-        self, package: Package, node: StartedNode, shared: Sequence[GivenParameters]
-    ) -> Iterator[tuple[str, NodeParameters]]:
-        """Yield the parameters of a node, and of the controllers that it spawns, by names."""
-        name = self.code.name_of(node)
-        if name == MANAGER or (name is not None and node.package != MANAGER):
-            yield name, self.read_given(package, node, name)
-        for controller in _spawned_by(node):
-            files = (*shared, *(controller.parameters or ()))
-            started = controller._replace(parameters=files)
-            yield controller.node_name or "", self.read_given(package, started, "")
 
     @cached_property
     def controller_files(self) -> frozenset[str]:
@@ -157,3 +145,16 @@ class GivenFiles:
 def _spawned_by(node: StartedNode) -> Sequence[StartedNode]:
     """Return the controllers that a node starts, if it is a spawner whose arguments are known."""
     return (controllers_of(node) or ()) if node.executable in SPAWNERS else ()
+
+
+def _given_by(
+    files: GivenFiles, package: Package, node: StartedNode, shared: Sequence[GivenParameters]
+) -> Iterator[tuple[str, NodeParameters]]:
+    """Yield the parameters of a node, and of the controllers that it spawns, by names."""
+    name = files.code.name_of(node)
+    if name == MANAGER or (name is not None and node.package != MANAGER):
+        yield name, files.read_given(package, node, name)
+    for controller in _spawned_by(node):
+        given = (*shared, *(controller.parameters or ()))
+        started = controller._replace(parameters=given)
+        yield controller.node_name or "", files.read_given(package, started, "")
