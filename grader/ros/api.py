@@ -1,5 +1,7 @@
-"""The public API of `ros`: what the rest of the grader uses of it, besides the checks, hints and
-rubric tools, which take robots and packages apart. All other names may move at any time.
+"""The public API of `ros`: what the rest of the grader uses of it.
+
+The checks, hints and rubric tools, which take robots and packages apart, use more. All other
+names may move at any time.
 
 **Read.** `open_workspace` reads what is at a path, `read_workspace` a file tree, and `read_urdf`
 one URDF. Nothing is run or imported, and no text raises: a URDF that ROS 2 rejects is a `Reading`

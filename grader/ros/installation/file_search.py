@@ -1,5 +1,7 @@
-"""What searches of a setup.py find in its package, by glob, pathlib, os and setuptools, from the
-list of its files.
+"""What searches of a setup.py find in its package.
+
+The searches are those of glob, pathlib, os and setuptools. They find files in the list of its
+files.
 """
 
 import posixpath
@@ -55,9 +57,30 @@ class EmptyGlob(NamedTuple):
     at: Position
 
 
+def _below(folder: str, name: str) -> str:
+    """Return the path of a name in a folder. Raises Undetermined for one outside of the tree."""
+    if name != "..":
+        return posixpath.join(folder, name)
+    if not folder:
+        raise Undetermined(_OUTSIDE)
+    return folder.rpartition("/")[0]
+
+
+def _parts_of_pattern(pattern: str) -> list[str]:
+    """Return the parts of a pattern of pathlib. Raises Undetermined for one that nobody writes."""
+    if pattern.startswith("/") or pattern.endswith(("/", "/.")):
+        raise Undetermined(_UNUSUAL)
+    parts = [part for part in pattern.split("/") if part not in ("", ".")]
+    parts = [part for part, after in pairwise([*parts, ""]) if (part, after) != ("**", "**")]
+    if not parts or any("**" in part and part != "**" for part in parts):
+        raise Undetermined(_UNUSUAL)
+    return parts
+
+
 class PackageListing:
-    """The folders of a file tree, listed in one of the possible orders. Paths are relative to the
-    tree's root.
+    """The folders of a file tree, listed in one of the possible orders.
+
+    Paths are relative to the tree's root.
     """
 
     def __init__(self, tree: Tree, budget: Budget | None = None, order: str = ORDERS[0]) -> None:
@@ -89,22 +112,23 @@ class PackageListing:
                 return [*values[1:], *values[:1]]
         return values
 
-    def record(self, pattern: str, found: list[Value], at: Position) -> list[Value]:
-        """Keep the position of a search for each path that it found, up to a limit, and return the
-        paths.
+    def record(self, pattern: str, paths: list[Value], at: Position) -> list[Value]:
+        """Keep the position of a search for each path that it found, and return the paths.
+
+        Positions are kept up to a limit.
         """
-        self.positions |= dict.fromkeys(map(str, found[:_MAX_RECORDED]), at)
-        if not found:
+        self.positions |= dict.fromkeys(map(str, paths[:_MAX_RECORDED]), at)
+        if not paths:
             self.empty[EmptyGlob(pattern, at)] = None
-        return found
+        return paths
 
     def names(self, folder: str) -> list[str]:
         """Return the names in a folder. Raises Undetermined for an ignored folder."""
         if folder in self._unseen:
             raise Undetermined(_IGNORED)
-        found = self._children.get(folder, [])
-        self.budget.charge(1 + len(found))
-        return found
+        names_in_folder = self._children.get(folder, [])
+        self.budget.charge(1 + len(names_in_folder))
+        return names_in_folder
 
     def files_below(self, folder: str) -> list[str]:
         """Return the paths of the files in a folder and in the folders of it."""
@@ -116,8 +140,9 @@ class PackageListing:
         return self._file_paths[first:last]
 
     def modules(self) -> frozenset[str]:
-        """Return the names of the modules and packages beside setup.py, which are imported before
-        any other.
+        """Return the names of the modules and packages beside setup.py.
+
+        They are imported before any other.
         """
         files = (
             name.removesuffix(".py") for name in self._children.get("", ()) if name.endswith(".py")
@@ -128,8 +153,9 @@ class PackageListing:
         return frozenset((*files, *packages)) - {"setup"}
 
     def real(self, path: str) -> str | None:
-        """Return the file or folder at a path, without dots; None where there is nothing. Raises
-        Undetermined.
+        """Return the file or folder at a path, without dots.
+
+        The result is None where there is nothing. Raises Undetermined.
         """
         if path.startswith("/"):
             raise Undetermined(_OUTSIDE)
@@ -138,12 +164,8 @@ class PackageListing:
         for index, part in enumerate(path.split("/")):
             if here not in self.folders or not path:
                 return None
-            if part == "..":
-                if not here:
-                    raise Undetermined(_OUTSIDE)
-                here = here.rpartition("/")[0]
-            elif part not in ("", "."):
-                here = posixpath.join(here, part)
+            if part not in ("", "."):
+                here = _below(here, part)
             elif index and here not in self.folders:
                 return None
             if here in self._links:
@@ -162,34 +184,32 @@ class PackageListing:
             raise Undetermined(_OUTSIDE)
         start = f"{above}./" if pattern.startswith("./") else above
         parts = _SLASHES.sub("/", pattern.removeprefix("./")).split("/")
-        found = self._search(parts, recursive=recursive)
+        paths = self._search(parts, recursive=recursive)
         if recursive and parts[-1] == "**":  # also the folder that it begins in
-            found = [*self._search([*parts[:-1], ""]), *self._search([*parts, "*"], recursive=True)]
-        return [start + path for path in found if start + path]
+            paths = [*self._search([*parts[:-1], ""]), *self._search([*parts, "*"], recursive=True)]
+        return [start + path for path in paths if start + path]
 
     def path_glob(self, folder: str, pattern: str) -> list[str]:
-        """Return the paths below a folder that pathlib's glob finds in Python 3.12. Raises
-        Undetermined.
+        """Return the paths below a folder that pathlib's glob finds in Python 3.12.
+
+        Raises Undetermined.
         """
-        parts = [part for part in pattern.split("/") if part not in ("", ".")]
-        parts = [part for part, after in pairwise([*parts, ""]) if (part, after) != ("**", "**")]
-        odd = any("**" in part and part != "**" for part in parts) or pattern.startswith("/")
-        if odd or not parts or pattern.endswith(("/", "/.")):
-            raise Undetermined(_UNUSUAL)
+        parts = _parts_of_pattern(pattern)
         start = self.real(folder)
         if start not in self.folders:
             return []
         folders_only = [""] if parts[-1] == "**" else []
-        found = self._search(
+        paths = self._search(
             [*parts, *folders_only], recursive=True, hidden=True, folder=start or ""
         )
-        return [path.rstrip("/") for path in found]
+        return [path.rstrip("/") for path in paths]
 
     def _search(
         self, parts: list[str], *, recursive: bool = False, hidden: bool = False, folder: str = ""
     ) -> list[str]:
-        """Return the paths below a folder that consist of such names; with an empty one at the end,
-        those of folders.
+        """Return the paths below a folder that consist of such names.
+
+        With an empty name at the end, they are those of folders.
 
         Wildcards match names that begin with a dot only if `hidden`. Raises Undetermined, also for
         what nobody writes.
@@ -259,8 +279,9 @@ def _name_test(part: str, *, hidden: bool) -> Callable[[str], object]:
 
 
 def file_functions(listing: PackageListing, root: str) -> FunctionTable:
-    """Return the functions by full name; `root` is the absolute path that represents the package's
-    folder.
+    """Return the functions by full name.
+
+    `root` is the absolute path that represents the package's folder.
     """
     folder = _PackageFolder(listing, root)
     functions: dict[str, Callable[[Evaluation, Call], Value]] = {
@@ -303,9 +324,9 @@ def _evaluate_search(
 ) -> Value:
     """Evaluate a search, charge it and record whether the order of files in a folder matters."""
     known([call.args, [*call.kwargs.values()]])
-    found = function(evaluation, call)
-    listing.order_matters |= isinstance(found, list) and len(found) > 1
-    return found
+    result = function(evaluation, call)
+    listing.order_matters |= isinstance(result, list) and len(result) > 1
+    return result
 
 
 class _PackageFolder(NamedTuple):
@@ -357,16 +378,16 @@ class _PackageFolder(NamedTuple):
         above = self.root + "/" if pattern.startswith(self.root + "/") else ""
         pattern = pattern.removeprefix(above)
         try:
-            found = self.listing.glob(pattern, recursive=bool(recursive), above=above)
+            paths = self.listing.glob(pattern, recursive=bool(recursive), above=above)
         except Undetermined as error:  # glob raises no error of its own
             return Unknown(str(error), call.at)
-        return self.listing.record(pattern, found, call.at)
+        return self.listing.record(pattern, paths, call.at)
 
     def iglob(self, evaluation: Evaluation, call: Call) -> Value:
-        found = self.glob(evaluation, call)
-        if isinstance(found, list):
-            return Items(found)
-        return found
+        paths = self.glob(evaluation, call)
+        if isinstance(paths, list):
+            return Items(paths)
+        return paths
 
     def path_glob(self, _: Evaluation, call: Call, prefix: str = "") -> Value:
         pattern = call.argument(1, "pattern")
@@ -374,9 +395,9 @@ class _PackageFolder(NamedTuple):
         if not isinstance(pattern, str) or not is_supported:
             raise Undetermined("this search for files is not supported")
         folder = self.inside(call.args[0])
-        found = [call.args[0] / path for path in self.listing.path_glob(folder, prefix + pattern)]
-        self.listing.order_matters |= len(found) > 1
-        return Items(self.listing.record(str(PurePosixPath(folder) / pattern), found, call.at))
+        paths = [call.args[0] / path for path in self.listing.path_glob(folder, prefix + pattern)]
+        self.listing.order_matters |= len(paths) > 1
+        return Items(self.listing.record(str(PurePosixPath(folder) / pattern), paths, call.at))
 
     def test(self, answer: Callable[[str | None], bool], _: Evaluation, call: Call) -> Value:
         if len(call.args) != 1 or call.kwargs:
@@ -396,9 +417,9 @@ class _PackageFolder(NamedTuple):
         return Unknown("the size of a folder is not known", call.at) if file is None else file.size
 
     def iterdir(self, _: Evaluation, call: Call) -> Value:
-        found = [call.args[0] / name for name in self._names(call.args[0])]
-        self.listing.order_matters |= len(found) > 1
-        return Items(found)
+        paths = [call.args[0] / name for name in self._names(call.args[0])]
+        self.listing.order_matters |= len(paths) > 1
+        return Items(paths)
 
     def walk(self, evaluation: Evaluation, call: Call) -> Value:
         if len(call.args) != 1 or not call.kwargs.keys() <= {"followlinks"}:
@@ -406,8 +427,9 @@ class _PackageFolder(NamedTuple):
         return Items(self._steps(evaluation, self.real(call.args[0]), str(call.args[0])))
 
     def _steps(self, evaluation: Evaluation, real: str | None, spelled: str) -> Iterator[Value]:
-        """Yield the steps of os.walk: the caller may change the list of folders before the next
-        step.
+        """Yield the steps of os.walk.
+
+        The caller may change the list of folders before the next step.
         """
         if real is None or real not in self.listing.folders:
             return
@@ -457,10 +479,13 @@ class _PackageFolder(NamedTuple):
 
 def _find_packages(listing: PackageListing, _: Evaluation, call: Call) -> Value:
     """Return the folders with an __init__.py; those without need other rules."""
-    where, exclude, include = (
-        call.argument(place, name) for place, name in enumerate(("where", "exclude", "include"))
-    )
-    exclude, include = () if exclude is None else exclude, ["*"] if include is None else include
+    where = call.argument(0, "where")
+    exclude = call.argument(1, "exclude")
+    include = call.argument(2, "include")
+    if exclude is None:
+        exclude = ()
+    if include is None:
+        include = ["*"]
     is_known = where in (None, ".", "./") and call.kwargs.keys() <= {"where", "exclude", "include"}
     is_listed = isinstance(exclude, list | tuple) and isinstance(include, list | tuple)
     if not is_known or "namespace" in call.name or not is_listed:

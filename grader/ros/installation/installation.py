@@ -1,5 +1,6 @@
-"""What a build of a package installs, as far as it is certain: the result of its setup.py or
-CMakeLists.txt.
+"""What a build of a package installs, as far as it is certain.
+
+It is the result of its setup.py or CMakeLists.txt.
 """
 
 import posixpath
@@ -16,8 +17,9 @@ from grader.ros.python.values import Unknown, Value
 
 
 class InstalledFile(NamedTuple):
-    """One installed file: its path in the package, its path below the prefix, and the position that
-    installs it.
+    """One installed file: its path in the package, and its path below the prefix.
+
+    `at` is the position that installs it.
     """
 
     source: str
@@ -71,8 +73,10 @@ class IgnoredArgument(NamedTuple):
 
 
 class GeneratedInterfaces(NamedTuple):
-    """What rosidl_generate_interfaces() makes code of: the paths of .msg, .srv and .action files,
-    of which those in `files` are there, and the packages whose messages these may use.
+    """What rosidl_generate_interfaces() makes code of, and the packages it may use.
+
+    It has the paths of .msg, .srv and .action files, of which those in `files` are there, and the
+    packages whose messages these may use.
 
     Where it is not certain that it is called, or with what, `is_certain` is False.
     """
@@ -93,8 +97,9 @@ class CmakeComponent(NamedTuple):
 
 
 class CmakeTarget(NamedTuple):
-    """An executable or a library that CMake makes. Where it is not `is_certain`, it may have other
-    sources, or not be made.
+    """An executable or a library that CMake makes.
+
+    Where it is not `is_certain`, it may have other sources, or not be made.
     """
 
     name: str
@@ -117,8 +122,9 @@ class KnownPrograms(NamedTuple):
 
 
 class Installation(NamedTuple):
-    """The result of a setup.py or CMakeLists.txt. `fault` is set if it cannot be parsed: nothing
-    else is known then.
+    """The result of a setup.py or CMakeLists.txt.
+
+    `fault` is set if it cannot be parsed: nothing else is known then.
 
     What certainly stops a setup.py is read as if it was fixed, and a misspelt data_files as what it
     means: `copies` are the files that are installed then.
@@ -154,8 +160,10 @@ class Installation(NamedTuple):
     later_stops: tuple[LaterStop, ...] = ()  # in releases that may not be meant
 
     def in_releases(self, releases: Collection[Release]) -> "Installation":
-        """Return it as it is built for some releases: what stops a build in all of them stops it;
-        what does in one, or in no stated one, may stop it.
+        """Return it as it is built for some releases.
+
+        What stops a build in all of them stops it; what does in one, or in no stated one, may
+        stop it.
         """
         stops, left = [*self.stops], []
         for stop in self.later_stops:
@@ -173,26 +181,28 @@ class Installation(NamedTuple):
         return points.get("console_scripts", []) if isinstance(points, dict) else None
 
     def empty_for(self, files: Sequence[str], word: str | None) -> EmptyGlob | None:
-        """Return the pattern without a match that is meant for one of these files, by its folder
-        or ending, or by a word in it.
+        """Return the pattern without a match that is meant for one of these files.
+
+        It is found by the folder or ending of the file, or by a word in it.
         """
         folders = {posixpath.dirname(path) for path in files}
         endings = tuple({posixpath.splitext(path)[1] for path in files} - {""})
         for glob in self.empty:
             folder = posixpath.dirname(glob.pattern)
-            if (
-                folder in folders
-                or (folder and closest(folder, folders))
-                or (endings and glob.pattern.endswith(endings))
-            ):
+            if folder in folders or (folder and closest(folder, folders)):
                 return glob
-        return next(
-            (it for it in self.empty if word is not None and word in it.pattern.lower()), None
-        )
+            if glob.pattern.endswith(endings):  # no text ends with one of no endings
+                return glob
+        if word is not None:
+            for glob in self.empty:
+                if word in glob.pattern.lower():
+                    return glob
+        return None
 
     def has_program(self, name: str, package: str, programs: KnownPrograms) -> bool | None:
-        """Return whether a build installs a program where `ros2 run` looks for it; None where this
-        is not known. `programs` are those of `known_programs`.
+        """Return whether a build installs a program where `ros2 run` looks for it.
+
+        The result is None where this is not known. `programs` are those of `known_programs`.
         """
         if self.fault is not None:
             return None
@@ -230,7 +240,9 @@ class Installation(NamedTuple):
     @property
     def is_unknown_after_error(self) -> bool:
         """Whether what is installed is unknown only because of an error that stops Python."""
-        return bool(self.unknown and self.faults) and all(it.follows_error for it in self.unknown)
+        return bool(self.unknown and self.faults) and all(
+            reason.follows_error for reason in self.unknown
+        )
 
     @property
     def fault_text(self) -> str:
@@ -244,8 +256,9 @@ class Installation(NamedTuple):
 
     @property
     def unread(self) -> str:
-        """Why it is not known what the file does, as part of a sentence; empty if it is, or if it
-        certainly fails.
+        """Why it is not known what the file does, as part of a sentence.
+
+        It is empty if it is, or if it certainly fails.
         """
         if self.fault is None or self.fault.is_certain:
             return ""

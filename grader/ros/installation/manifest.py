@@ -16,8 +16,9 @@ _MAX_MISPLACED = 100  # dependencies in <export>
 
 
 class Manifest(NamedTuple):
-    """The content of a package.xml. `name` is None where it cannot be read; `build_type` is by
-    default colcon's.
+    """The content of a package.xml.
+
+    `name` is None where it cannot be read; `build_type` is by default colcon's.
 
     Of a file that is not well-formed XML, both are what can still be read; the build type may then
     be empty.
@@ -38,7 +39,9 @@ class Manifest(NamedTuple):
     def refusals(self) -> tuple[Problem, ...]:
         """The problems for which the tools of ROS 2 do not take the package for one of ROS 2."""
         return tuple(
-            it for it in self.problems if it.kind in (kinds.BAD_MANIFEST, kinds.REFUSED_MANIFEST)
+            problem
+            for problem in self.problems
+            if problem.kind in (kinds.BAD_MANIFEST, kinds.REFUSED_MANIFEST)
         )
 
 
@@ -86,35 +89,33 @@ def _manifest_in(file: XmlFile, source: Source, problems: Sequence[Problem]) -> 
     root = file.root
     exports = _exports(root)
     build_types = [element for element in exports if _is_used_build_type(element)]
-    exported = [element for element in exports if tag_of(element).endswith("depend")]
-    name: Element | None = None
+    names: list[Element] = []
     dependencies, groups = set[str](), set[str]()
-    for element in reversed([*root.iterchildren("*")]):
+    for element in root.iterchildren("*"):
         tag = tag_of(element)
         if tag == "name":
-            name = element
+            names.append(element)
         elif tag == "member_of_group":
             groups.add(text_of(element))
         elif tag.endswith("depend"):
             dependencies.add(text_of(element))
     return Manifest(
         source,
-        (text_of(name) or None) if name is not None else None,
+        (text_of(names[0]) or None) if names else None,
         " and ".join(map(text_of, build_types)) if build_types else "catkin",
         (*problems, *_condition_problems(file, exports)),
-        file.location(name if name is not None else root),
-        file.location(build_types[0] if build_types else root),
+        file.location([*names, root][0]),
+        file.location([*build_types, root][0]),
         dependencies=frozenset(dependencies),
         groups=frozenset(groups),
-        misplaced={
-            text_of(element): file.location(element) for element in exported[:_MAX_MISPLACED]
-        },
+        misplaced=_misplaced_dependencies(file, exports),
     )
 
 
 def _read_broken(data: bytes, source: Source, problem: Problem) -> Manifest:
-    """Return what can be read of a package.xml that is not XML: the first name, and the first build
-    type.
+    """Return what can be read of a package.xml that is not XML.
+
+    This is the first name, and the first build type.
     """
     root, start = recover_xml(data), Location(source.path, 1, 1)
     if root is None or tag_of(root) != "package":
@@ -126,9 +127,15 @@ def _read_broken(data: bytes, source: Source, problem: Problem) -> Manifest:
     )
 
 
+def _misplaced_dependencies(file: XmlFile, exports: Sequence[Element]) -> dict[str, Location]:
+    """Return the dependencies that stand in <export>, where no tool reads them."""
+    exported = [element for element in exports if tag_of(element).endswith("depend")]
+    return {text_of(element): file.location(element) for element in exported[:_MAX_MISPLACED]}
+
+
 def _exports(root: Element) -> list[Element]:
-    found = (element for element in root.iterchildren("*") if tag_of(element) == "export")
-    return [element for export in found for element in export.iterchildren("*")]
+    exports = (element for element in root.iterchildren("*") if tag_of(element) == "export")
+    return [element for export in exports for element in export.iterchildren("*")]
 
 
 def _refused(words: str, location: Location) -> Problem:

@@ -1,5 +1,6 @@
-"""Conditions in a package.xml, such as $ROS_VERSION == 2 (REP 149), as catkin_pkg's
-`evaluate_condition` reads them.
+"""Conditions in a package.xml, such as $ROS_VERSION == 2 (REP 149).
+
+They are read as catkin_pkg's `evaluate_condition` reads them.
 """
 
 import ast
@@ -24,8 +25,9 @@ _MAX_LENGTH = 1_000  # characters
 
 
 def evaluate_condition(condition: str | None) -> bool | None:
-    """Return whether a condition holds in ROS 2 Jazzy; True without one, None for one that is not
-    valid.
+    """Return whether a condition holds in ROS 2 Jazzy.
+
+    The result is True without one, None for one that is not valid.
     """
     if condition is None:
         return True

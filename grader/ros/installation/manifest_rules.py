@@ -35,8 +35,9 @@ _STANDS_FOR = {
 
 
 def find_refusals(root: Element) -> Iterator[_Refusal]:
-    """Yield why the tools of ROS 2 refuse a package.xml with this root, and where; nothing if they
-    accept it.
+    """Yield why the tools of ROS 2 refuse a package.xml with this root, and where.
+
+    Nothing is yielded if they accept it.
     """
     children: dict[str, list[Element]] = defaultdict(list)
     for element in root.iterchildren("*"):
@@ -74,8 +75,9 @@ def text_of(element: Element) -> str:
 
 
 def email_of(person: Element) -> str:
-    """Return the email of a maintainer or author, without the quotes that a quoted git
-    configuration puts around it.
+    """Return the email of a maintainer or author, without quotes.
+
+    A quoted git configuration puts quotes around it.
     """
     return (person.get("email") or "").strip("\"'")
 
@@ -171,8 +173,9 @@ def _unknown_attributes(element: Element, known: Sequence[str]) -> Iterator[_Ref
 
 
 def _invalid_texts(root: Element, children: _Children) -> Iterator[_Refusal]:
-    """Yield what `Package.validate` refuses: an invalid name, version or email, a text or element
-    that is missing.
+    """Yield what `Package.validate` refuses.
+
+    This is an invalid name, version or email, or a text or element that is missing.
     """
     for element in children.get("name", ()):
         yield from _invalid_names(element)

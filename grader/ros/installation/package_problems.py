@@ -1,5 +1,6 @@
-"""The kinds of problems of the files around a URDF. docs/examples/ explains each one: pkg.toml,
-lch.toml, rvz.toml.
+"""The kinds of problems of the files around a URDF.
+
+docs/examples/ explains each one: pkg.toml, lch.toml, rvz.toml.
 """
 
 from grader.base.problems import Kind, Severity, kinds_in

@@ -25,8 +25,9 @@ ENDINGS = (
 
 
 def is_launch_file(path: str) -> bool:
-    """Return whether a file is a launch file: by its name, or because it is in a folder named
-    launch.
+    """Return whether a file is a launch file.
+
+    It is by its name, or because it is in a folder named launch.
     """
     if path.endswith(ENDINGS):
         return True
@@ -46,8 +47,9 @@ _ROS1 = re.compile(r"<node\b(?![^<>]*\bexec=)[^<>]*\btype=|\$\((?:find|arg|opten
 
 
 def launch_kind(path: str, text: str) -> LaunchKind:
-    """Return whether a file that may be a launch file is one, by its text: of what a folder named
-    launch holds, some files are read by others.
+    """Return whether a file that may be a launch file is one, by its text.
+
+    Of what a folder named launch holds, some files are read by others.
     """
     is_named = path.endswith(ENDINGS)
     if path.endswith(".py"):
@@ -62,11 +64,14 @@ def launch_kind(path: str, text: str) -> LaunchKind:
 
 
 def is_launch_named(path: str, name: str) -> bool:
-    """Return whether a launch file has this name, in any of the three languages that ros2 launch
-    reads.
+    """Return whether a launch file has this name, in any of the three languages.
+
+    These are the languages that ros2 launch reads.
     """
-    own = path.rpartition("/")[2]
-    return own == name or (launch_stem(own) == launch_stem(name) and own.endswith(ENDINGS[:4]))
+    file_name = path.rpartition("/")[2]
+    return file_name == name or (
+        launch_stem(file_name) == launch_stem(name) and file_name.endswith(ENDINGS[:4])
+    )
 
 
 def launch_stem(name: str) -> str:
@@ -90,8 +95,9 @@ def is_of_one_machine(path: str) -> bool:
 
 
 def share_parts(path: str) -> tuple[str, str]:
-    """Return the package in whose share folder a path is, and the path in it; of another path,
-    empty texts.
+    """Return the package in whose share folder a path is, and the path in it.
+
+    The texts are empty for another path.
     """
     inside = posixpath.normpath(path)
     owner, _, rest = inside.removeprefix(f"{SHARE}/").partition("/")

@@ -9,9 +9,10 @@ import posixpath
 import re
 import tomllib
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from configparser import ConfigParser, Error
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import PurePosixPath
 
 from grader.base.errors import InputError
@@ -175,8 +176,9 @@ _Finding = str | Unknown
 
 
 def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None) -> Installation:
-    """Evaluate the setup.py of a package with these files; its work is charged to the budget. Never
-    raises.
+    """Evaluate the setup.py of a package with these files; its work is charged to the budget.
+
+    Never raises.
 
     The file system lists a folder in any order. If there are several files, other orders are
     evaluated as well. colcon runs the file twice, with __file__ as "setup.py" and as an absolute
@@ -207,8 +209,16 @@ def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None)
         _evaluate_setup(code, PackageListing(tree, budget, order), written, "setup.py")
         for order in orders
     ]
-    results = {(it.name, frozenset(it.copies), it.is_called, bool(it.faults)) for it in setups}
-    doubts = [unknown for it in setups[1:] for unknown in it.unknown]
+    return _common_result(setups)
+
+
+def _common_result(setups: Sequence[Installation]) -> Installation:
+    """Return the first of several results; what differs between them is unknown."""
+    results = {
+        (setup.name, frozenset(setup.copies), setup.is_called, bool(setup.faults))
+        for setup in setups
+    }
+    doubts = [unknown for setup in setups[1:] for unknown in setup.unknown]
     if len(results) == 1 and not doubts:
         return setups[0]
     doubt = Unknown(
@@ -370,8 +380,9 @@ class _DataFiles:
         self.stops.append(InstallError(path, reason, self._origin(path, at)))
 
     def _entry(self, entry: Value, at: Position) -> None:
-        """Add an entry, which colcon takes as a file, or as a tuple of a folder and a list of
-        files.
+        """Add an entry of data_files.
+
+        colcon takes it as a file, or as a tuple of a folder and a list of files.
         """
         match entry:
             case str():
@@ -389,7 +400,7 @@ class _DataFiles:
                 self.stop("an entry of data_files is not a tuple: write (folder, [files])", at)
                 for folder, files in entry.items() if isinstance(entry, dict) else ():
                     self._folder(folder, files, at)
-            case (*folders, list() as files) if all(isinstance(it, str) for it in folders):
+            case (*folders, list() as files) if all(isinstance(part, str) for part in folders):
                 self.stop(
                     "an entry of data_files is not a tuple of a folder and a list of files", at
                 )
@@ -422,8 +433,9 @@ class _DataFiles:
             self._files(files, folder, at)
 
     def _files(self, files: Value, folder: str, at: Position) -> None:
-        """Add the files of an entry; what is no list stops the build, and is read as the list that
-        is meant.
+        """Add the files of an entry.
+
+        What is no list stops the build, and is read as the list that is meant.
         """
         if isinstance(files, str) and files:
             self.stop(
@@ -501,14 +513,19 @@ class _DataFiles:
         elif is_absolute and self.is_first:
             self.stop("the path is absolute, and colcon takes paths in the package only", at, text)
             self._copy(path, folder, at)
-        elif path is not None and not self._copy(path, folder, at):
+        elif path is None:
+            self._missing_path(text, at)
+        elif not self._copy(path, folder, at):
             reason = f"it is a folder, and only files can be installed{self._narrower(path)}"
             self.stops.append(InstallError(text, reason, at))
-        elif path is None and str(PurePosixPath(text)) in self.listing.files:
+
+    def _missing_path(self, text: str, at: Position) -> None:
+        """Note that there is no file at a path, or that it is ignored."""
+        if str(PurePosixPath(text)) in self.listing.files:
             self.stop("there is no such file: a path of a file does not end in /", at, text)
-        elif path is None and ignored_part(posixpath.normpath(text)):
+        elif ignored_part(posixpath.normpath(text)):
             self._give_up(None, f"{text} is an ignored file", at)
-        elif path is None:
+        else:
             guess = did_you_mean(text, self.listing.files) if len(self.stops) < _MAX_GUESSES else ""
             self.stops.append(InstallError(text, "there is no such file", at, guess))
 
@@ -521,8 +538,9 @@ class _DataFiles:
         return True
 
     def _narrower(self, folder: str) -> str:
-        """Return the hint about a pattern that matches the other files next to a folder, but not
-        the folder.
+        """Return the hint about a pattern that matches the other files next to a folder.
+
+        It does not match the folder.
         """
         above = posixpath.dirname(folder)
         names = self.listing.names(above) if above else []
@@ -540,40 +558,47 @@ class _DataFiles:
 def _argument_findings(
     kwargs: Mapping[str, Value], listing: PackageListing, at: Position, is_configured: bool
 ) -> Iterator[_Finding]:
-    """Yield what is wrong with the arguments of setup() besides data_files, and what of them is not
-    evaluated.
+    """Yield what is wrong with the arguments of setup() besides data_files.
+
+    What of them is not evaluated is yielded, too.
     """
+    yield from _unusual_values(kwargs, at)
+    yield from _version_findings(kwargs, at)
+    yield from _switch_findings(kwargs, at)
+    yield from _entry_point_findings(kwargs, at)
+    yield from _package_findings(kwargs, listing, at)
+    if not _is_list(kwargs.get("py_modules") or []):  # one that is not there is a warning
+        yield Unknown("this value of py_modules is not evaluated", at)
+    names_packages = any(kwargs.get(name) is not None for name in _PACKAGES)
+    if not is_configured and not names_packages and "src" not in listing.folders:
+        yield from _discovery_findings(listing)
+
+
+def _unusual_values(kwargs: Mapping[str, Value], at: Position) -> Iterator[Unknown]:
+    """Yield that arguments which are not checked further have values that are not evaluated."""
     for name, value in kwargs.items():
-        if (
-            name not in _CHECKED
-            and value is not None
-            and not (name in _USUAL and _USUAL[name](value))
-        ):
+        if name in _CHECKED or value is None:
+            continue
+        if name not in _USUAL or not _USUAL[name](value):
             yield unknown_in(value) or Unknown(
                 f"this value of {name} in setup() is not evaluated", at
             )
-    yield from _version_findings(kwargs, at)
+
+
+def _switch_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator[_Finding]:
+    """Yield what is wrong with the arguments that are True or False."""
     for name in _SWITCHES:
         value = kwargs.get(name)
         if not isinstance(value, (*SCALARS, type(None))):
             yield unknown_in(value) or Unknown(f"this value of {name} is not evaluated", at)
         elif value not in (True, False, None):
             yield f"{name} is True or False, not {value!r}"
-    yield from _entry_point_findings(kwargs, at)
-    yield from _package_findings(kwargs, listing, at)
-    if not _is_list(kwargs.get("py_modules") or []):  # one that is not there is a warning
-        yield Unknown("this value of py_modules is not evaluated", at)
-    if (
-        not is_configured
-        and all(kwargs.get(name) is None for name in _PACKAGES)
-        and "src" not in listing.folders
-    ):
-        yield from _discovery_findings(listing)
 
 
 def _ignored_arguments(kwargs: Mapping[str, Value]) -> list[IgnoredArgument]:
-    """Return the arguments that setuptools does not know, each with the missing one that it may
-    mean.
+    """Return the arguments that setuptools does not know, with what they may mean.
+
+    Each has the missing argument that it may mean.
     """
     known = {*_USUAL, *_CHECKED, *_OTHERS}
     return [
@@ -621,17 +646,23 @@ def _is_version(text: str) -> bool:
 
 # Whether setuptools certainly accepts the value of an argument.
 _USUAL: Mapping[str, Callable[[Value], bool]] = {
-    **dict.fromkeys(_TEXTS, lambda it: isinstance(it, str | Unknown)),
+    **dict.fromkeys(_TEXTS, lambda argument: isinstance(argument, str | Unknown)),
     **dict.fromkeys(
-        ("keywords", "classifiers", "platforms"), lambda it: isinstance(it, str) or _is_list(it)
+        ("keywords", "classifiers", "platforms"),
+        lambda argument: isinstance(argument, str) or _is_list(argument),
     ),
     **dict.fromkeys(("install_requires", "tests_require"), _are_requirements),
-    "setup_requires": lambda it: (
-        _are_requirements(it) and _AT_HAND.issuperset([it] if isinstance(it, str) else it)
+    "setup_requires": lambda argument: (
+        _are_requirements(argument)
+        and _AT_HAND.issuperset([argument] if isinstance(argument, str) else argument)
     ),
-    "extras_require": lambda it: isinstance(it, dict) and all(map(_are_requirements, it.values())),
-    "package_data": lambda it: (
-        isinstance(it, dict) and all(map(_is_list, it.values())) and _is_list([*it])
+    "extras_require": lambda argument: (
+        isinstance(argument, dict) and all(map(_are_requirements, argument.values()))
+    ),
+    "package_data": lambda argument: (
+        isinstance(argument, dict)
+        and all(map(_is_list, argument.values()))
+        and _is_list([*argument])
     ),
 }
 
@@ -649,13 +680,14 @@ def _entry_point_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator
     groups = kwargs.get("entry_points")
     if groups is None:
         return
-    is_plain = isinstance(groups, dict) and all(
-        isinstance(group, list | tuple) for group in groups.values()
-    )
-    if not is_plain or unknown_in(groups) is not None:
-        yield unknown_in(groups) or Unknown("these entry points are not evaluated", at)
+    unknown = unknown_in(groups)
+    if unknown is not None or not isinstance(groups, dict):
+        yield unknown or Unknown("these entry points are not evaluated", at)
         return
-    for line in (line for group in groups.values() for line in group):
+    if not all(isinstance(group, list | tuple) for group in groups.values()):
+        yield Unknown("these entry points are not evaluated", at)
+        return
+    for line in chain.from_iterable(groups.values()):
         if not isinstance(line, str):
             yield Unknown("an entry point that is no string is not evaluated", at)
         elif "=" not in line or not _ENTRY_POINT.fullmatch(line):
@@ -666,7 +698,7 @@ def _package_findings(
     kwargs: Mapping[str, Value], listing: PackageListing, at: Position
 ) -> Iterator[_Finding]:
     packages = kwargs.get("packages")
-    if isinstance(packages, list | tuple) and all(isinstance(it, str) for it in packages):
+    if isinstance(packages, list | tuple) and all(isinstance(package, str) for package in packages):
         for name in packages:
             if name.replace(".", "/") not in listing.folders:
                 yield f"packages lists {name!r}, but there is no such folder"
@@ -679,13 +711,13 @@ def _discovery_findings(listing: PackageListing) -> Iterator[_Finding]:
     folders = [
         name for name in listing.names("") if name in listing.folders and name.isidentifier()
     ]
-    found = sorted(
+    candidates = sorted(
         name for name in folders if name not in _NO_PACKAGES and not name.startswith("_")
     )
-    if len(found) > 1:
+    if len(candidates) > 1:
         yield (
             "packages=[...] is missing, and setuptools cannot choose between the folders "
-            f"{enumerated(found)}"
+            f"{enumerated(candidates)}"
         )
 
 
@@ -721,13 +753,14 @@ def _cfg_findings(text: str, call: Call) -> Iterator[_Finding]:
 
 def _packages_in(value: Value) -> tuple[str, ...]:
     if isinstance(value, list | tuple):
-        return tuple(it for it in value if isinstance(it, str))
+        return tuple(name for name in value if isinstance(name, str))
     return ()
 
 
 def _scripts_folder(listing: PackageListing) -> str:
-    """Return the folder below the prefix that console_scripts are installed to; bin unless
-    setup.cfg names another.
+    """Return the folder below the prefix that console_scripts are installed to.
+
+    It is bin unless setup.cfg names another.
     """
     parser, file = ConfigParser(), listing.files.get("setup.cfg")
     try:

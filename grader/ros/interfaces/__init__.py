@@ -1,3 +1,4 @@
-"""Messages, services and actions: their files as rosidl reads them, and the types of well-known
-packages.
+"""Messages, services and actions: their files, and the types of well-known packages.
+
+The files are read as rosidl reads them.
 """

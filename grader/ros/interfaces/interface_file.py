@@ -1,5 +1,6 @@
-"""Reads .msg, .srv and .action files as rosidl_adapter does: rosidl_adapter/parser.py of
-ros2/rosidl, branch jazzy.
+"""Reads .msg, .srv and .action files as rosidl_adapter does.
+
+The source is rosidl_adapter/parser.py of ros2/rosidl, branch jazzy.
 """
 
 import posixpath
@@ -71,8 +72,9 @@ class _Line(NamedTuple):
 
 
 def read_interface(data: bytes, path: str, package: str) -> Interface:
-    """Read the file of a message, service or action of a package. Never raises: what rosidl does
-    not accept is among the faults.
+    """Read the file of a message, service or action of a package.
+
+    Never raises: what rosidl does not accept is among the faults.
     """
     kind = cast("InterfaceKind", posixpath.splitext(path)[1].removeprefix("."))
     try:
@@ -246,25 +248,42 @@ def _read_element(text: str, package: str) -> FieldType:
             raise _Wrong(f"the bound of {text!r} is no whole number above 0", text)
         return FieldType("", word, text_bound=bound)
     owner, is_foreign, name = text.partition("/")
-    if not is_foreign:
+    if is_foreign:
+        _check_foreign(text)
+    else:
         owner, name = package, text
-    elif "/" in name:
+    if not _is_message_name(name):
+        raise _no_type(text, is_foreign=bool(is_foreign))
+    return FieldType(owner, name)
+
+
+def _check_foreign(text: str) -> None:
+    """Raise _Wrong for a text that is no package with a message of it."""
+    owner, _, name = text.partition("/")
+    if "/" in name:
         plain = text.replace("/msg/", "/")
         if plain == text:
             raise _Wrong(f"there is no type {text!r}", text)
         raise _Wrong(f"there is no type {text!r}; write {plain!r}", text, plain)
-    if is_foreign and not _PACKAGE.match(owner):
+    if not _PACKAGE.match(owner):
         raise _Wrong(f"{owner!r} is no name of a package", owner)
-    if not _is_message_name(name):
-        meant = _MEANT.get(text) or near(text, PRIMITIVES) if not is_foreign else None
-        word = text.rstrip("0123456789")
-        sizes = [it for it in sorted(PRIMITIVES) if it.rstrip("0123456789") == word]
-        if meant is not None:
-            hint = f"; did you mean {meant!r}?"
-        else:
-            hint = f"; there are {enumerated(sizes)}" if len(sizes) > 1 else ""
-        raise _Wrong(f"there is no type {text!r}{hint}", text, meant)
-    return FieldType(owner, name)
+
+
+def _no_type(text: str, *, is_foreign: bool) -> _Wrong:
+    """Return that there is no type of a name, with the primitive type that may be meant."""
+    meant = None
+    if not is_foreign:
+        meant = _MEANT.get(text) or near(text, PRIMITIVES)
+    word = text.rstrip("0123456789")
+    sizes = [
+        primitive for primitive in sorted(PRIMITIVES) if primitive.rstrip("0123456789") == word
+    ]
+    hint = ""
+    if meant is not None:
+        hint = f"; did you mean {meant!r}?"
+    elif len(sizes) > 1:
+        hint = f"; there are {enumerated(sizes)}"
+    return _Wrong(f"there is no type {text!r}{hint}", text, meant)
 
 
 def _positive(text: str) -> int | None:
@@ -291,12 +310,19 @@ def _check_default(kind: FieldType, text: str) -> None:
     items = _text_items(text[1:-1]) if kind.name in TEXTS else text[1:-1].split(",")
     if text == "[]":
         items = []
-    if kind.size is not None and not kind.is_bounded and len(items) != kind.size:
-        raise _Wrong(f"the default has {len(items)} items; the list has {kind.size}", text)
-    if kind.size is not None and len(items) > kind.size:
-        raise _Wrong(f"the default has {len(items)} items; the list has at most {kind.size}", text)
+    _check_size(kind, len(items), text)
     for item in items:
         _check_value(kind, item.strip())
+
+
+def _check_size(kind: FieldType, count: int, text: str) -> None:
+    """Raise _Wrong for a default with another number of items than a list may have."""
+    if kind.size is None:
+        return
+    if not kind.is_bounded and count != kind.size:
+        raise _Wrong(f"the default has {count} items; the list has {kind.size}", text)
+    if count > kind.size:
+        raise _Wrong(f"the default has {count} items; the list has at most {kind.size}", text)
 
 
 def _text_items(text: str) -> list[str]:
@@ -339,16 +365,21 @@ def _check_value(kind: FieldType, text: str) -> None:
     elif kind.name in TEXTS:
         _check_text(kind, text)
     elif kind.name in INTEGERS or kind.name == "byte":
-        number = _integer(text, 10)
-        if number is None:
-            number = _integer(text, 0)
-        smallest, largest = _range_of(kind.name)
-        if number is None or not smallest <= number <= largest:
-            raise _Wrong(
-                f"{text!r} is no {kind.name}, a whole number from {smallest} to {largest}", text
-            )
+        _check_integer(kind, text)
     else:
         raise _Wrong(f"a value of the type {kind.name} cannot be written", text)
+
+
+def _check_integer(kind: FieldType, text: str) -> None:
+    """Raise _Wrong for a text that is no integer of a type."""
+    number = _integer(text, 10)
+    if number is None:
+        number = _integer(text, 0)
+    smallest, largest = _range_of(kind.name)
+    if number is None or not smallest <= number <= largest:
+        raise _Wrong(
+            f"{text!r} is no {kind.name}, a whole number from {smallest} to {largest}", text
+        )
 
 
 def _range_of(name: str) -> tuple[int, int]:

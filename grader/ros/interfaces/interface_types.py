@@ -22,8 +22,9 @@ PRIMITIVES = BOOLEANS | TEXTS | FLOATS | INTEGERS | _BYTES | {"duration", "time"
 
 
 class FieldType(NamedTuple):
-    """The type of a field: a primitive one, whose `package` is empty, or a message; or a list of
-    these.
+    """The type of a field: a primitive one or a message; or a list of these.
+
+    The `package` of a primitive type is empty.
     """
 
     package: str
@@ -50,8 +51,9 @@ class InterfaceField(NamedTuple):
 
 
 class InterfaceSection(NamedTuple):
-    """The fields and the names of the constants of a message, or of a part of a service or
-    action.
+    """The fields and constants of a message, or of a part of a service or action.
+
+    Of the constants, it has the names.
     """
 
     fields: Mapping[str, InterfaceField]
@@ -59,8 +61,9 @@ class InterfaceSection(NamedTuple):
 
 
 class InterfaceFault(NamedTuple):
-    """Why rosidl does not accept a file; `written` is the word that is wrong, and `meant` the one
-    that may be meant.
+    """Why rosidl does not accept a file.
+
+    `written` is the word that is wrong, and `meant` the one that may be meant.
     """
 
     message: str
@@ -70,8 +73,9 @@ class InterfaceFault(NamedTuple):
 
 
 class Interface(NamedTuple):
-    """A message, service or action; with `faults`, rosidl does not accept its file, and its fields
-    are those that can be read.
+    """A message, service or action.
+
+    With `faults`, rosidl does not accept its file, and its fields are those that can be read.
     """
 
     kind: InterfaceKind

@@ -1,5 +1,6 @@
-"""The messages, services and actions of well-known packages, by release: the tables of
-known/packages, each of which is read when it is needed.
+"""The messages, services and actions of well-known packages, by release.
+
+They are the tables of known/packages, each of which is read when it is needed.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -28,19 +29,21 @@ _OF_SEVERAL = FieldType("", "")  # of a field that has other types in other rele
 def known_interfaces(
     package: str, releases: Collection[Release] = ()
 ) -> Mapping[str, Interface] | None:
-    """Return the interfaces of a package by their names, msg.Twist, with the fields that they have
-    in any of some releases, or of all; None for a package that is not known.
+    """Return the interfaces of a package by their names, msg.Twist.
+
+    Their fields are those that they have in any of some releases, or of all. The result is None
+    for a package that is not known.
     """
     table = interface_table(package)
     if table is None:
         return None
-    found: dict[str, Interface] = {}
+    interfaces: dict[str, Interface] = {}
     for kind in get_args(InterfaceKind):
         for name, row in table.get(kind, {}).items():
             forms = [form for form in _forms(row, releases or RELEASES) if form != _ABSENT]
             if forms:
-                found[f"{kind}.{name}"] = _merged(kind, package, forms)
-    return found
+                interfaces[f"{kind}.{name}"] = _merged(kind, package, forms)
+    return interfaces
 
 
 def is_open_in(releases: Collection[Release]) -> bool:
@@ -49,8 +52,10 @@ def is_open_in(releases: Collection[Release]) -> bool:
 
 
 def find_change(package: str, name: str, releases: Collection[Release]) -> str:
-    """Return since or until when there is a type that none of some releases has, in words: `before
-    Lyrical`; empty for one that one of them has, and one that no release has.
+    """Return since or until when there is a type, in words: `before Lyrical`.
+
+    It is a type that none of some releases has. The result is empty for one that one of them has,
+    and one that no release has.
     """
     kind, _, short = name.partition(".")
     row = (interface_table(package) or {}).get(kind, {}).get(short, _ABSENT)
@@ -95,12 +100,12 @@ def _merged(kind: InterfaceKind, package: str, forms: Iterable[str]) -> Interfac
 
 def _section(text: str, package: str) -> InterfaceSection:
     fields, _, constants = text.partition("|")
-    found = {}
+    section_fields = {}
     for written in fields.split(";"):
         if written.strip():
             type_text, name = written.split()
-            found[name] = InterfaceField(name, read_type(type_text, package))
-    return InterfaceSection(found, frozenset(constants.split()))
+            section_fields[name] = InterfaceField(name, read_type(type_text, package))
+    return InterfaceSection(section_fields, frozenset(constants.split()))
 
 
 def _with(one: InterfaceSection, other: InterfaceSection) -> InterfaceSection:

@@ -1,5 +1,6 @@
-"""The files of the folder `packages`: what is known of a ROS package that is not submitted, one
-file a package.
+"""The files of the folder `packages`, one file a package.
+
+They are what is known of a ROS package that is not submitted.
 
 A file begins with the facts of the package, its programs, controllers and launch files, which
 package_rows.py reads. What follows is longer and read apart: the parameters of its nodes, its

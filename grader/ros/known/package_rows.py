@@ -1,5 +1,6 @@
-"""What is known of packages that are not submitted: rows of their files in the folder `packages`,
-of which the file of one package is read when it is needed.
+"""What is known of packages that are not submitted: rows of files in `packages`.
+
+The file of one package is read when it is needed.
 
 The fields of a row are the keys of the files.
 """
@@ -28,8 +29,10 @@ class DecidingParameter(NamedTuple):
 
 
 class _TransformRow(NamedTuple):
-    """A transform that a program or a controller publishes on /tf while the parameter `on` does not
-    switch it off, and while the parameters in `if_equal` are equal.
+    """A transform that a program or a controller publishes on /tf.
+
+    It is published while the parameter `on` does not switch it off, and while the parameters in
+    `if_equal` are equal.
     """
 
     parent: DecidingParameter  # the name of the frame
@@ -39,11 +42,12 @@ class _TransformRow(NamedTuple):
 
 
 class WheelRow(NamedTuple):
-    """What a parameter with a number tells of the wheels of a robot: the radius or the diameter of
-    the wheels in `of`; the track between the wheels or the pivots of two groups, left and right;
-    the wheelbase between those of two groups, front and rear; half the track and half the wheelbase
-    together, of four groups (left, right, front, rear); the ring on which wheels stand around the
-    middle of the robot.
+    """What a parameter with a number tells of the wheels of a robot.
+
+    It is the radius or the diameter of the wheels in `of`; the track between the wheels or the
+    pivots of two groups, left and right; the wheelbase between those of two groups, front and
+    rear; half the track and half the wheelbase together, of four groups (left, right, front,
+    rear); the ring on which wheels stand around the middle of the robot.
 
     `of` has groups, each of parameters that name joints; a number behind the name means one entry
     of a list. Where one of two parameters is given, the first counts.
@@ -55,8 +59,9 @@ class WheelRow(NamedTuple):
 
 
 class GainsRow(NamedTuple):
-    """The gains with which a controller computes the commands of one interface alone, for each
-    joint, and which are 0 by default, so that nothing moves.
+    """The gains with which a controller computes the commands of one interface alone.
+
+    There are gains for each joint, which are 0 by default, so that nothing moves.
     """
 
     joints: str  # a parameter
@@ -67,8 +72,9 @@ class GainsRow(NamedTuple):
 
 
 class CommandRow(NamedTuple):
-    """A topic to which a program publishes commands: with another type if a parameter has a
-    value.
+    """A topic to which a program publishes commands.
+
+    It has another type if a parameter has a value.
     """
 
     topic: str

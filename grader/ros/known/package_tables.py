@@ -86,8 +86,9 @@ TABLES: Mapping[str, Mapping[str, Any]] = {  # the types of the tables of each p
 
 
 def interface_table(package: str) -> Mapping[str, Mapping[str, Any]] | None:
-    """Return the messages, services and actions of a package, by kind and name; None for a package
-    without any.
+    """Return the messages, services and actions of a package, by kind and name.
+
+    The result is None for a package without any.
     """
     tables = tables_in_file(package)
     kinds = {kind: tables[kind] for kind in INTERFACE_KINDS if kind in tables}

@@ -1,5 +1,6 @@
-"""The parameters of well-known nodes, controllers and plugins, by release: rows of the files of
-their packages.
+"""The parameters of well-known nodes, controllers and plugins, by release.
+
+They are rows of the files of their packages.
 
 docs/known-parameters.md describes the form of a row.
 """
@@ -146,8 +147,9 @@ def rows_of(node: str, release: Release | None = None) -> tuple[ParameterRow, ..
 
 
 def row_for(node: str, parameter: str, release: Release | None = None) -> ParameterRow | None:
-    """Return the row of a parameter of a node in a release, or of the newest one that has it; None
-    without one.
+    """Return the row of a parameter of a node in a release, or of the newest one that has it.
+
+    The result is None without one.
     """
     rows = rows_of(node, release)
     for row in rows[::-1]:
@@ -170,8 +172,10 @@ def is_name_of_node(table: str) -> bool:
 
 
 def node_called(name: str) -> str | None:
-    """Return the node that a name means: its own, the one that it usually has when it runs, such as
-    `amcl`, the package of one node only, or the end of its own, such as `DiffDriveController`.
+    """Return the node that a name means.
+
+    The name is its own, the one that it usually has when it runs, such as `amcl`, the package of
+    one node only, or the end of its own, such as `DiffDriveController`.
     """
     if name in usual_names():
         return usual_names()[name]

@@ -12,9 +12,10 @@ from grader.ros.known.releases import Release
 
 
 def parameter_explanation(name: str) -> str:
-    """Return the explanation of a parameter, such as `ekf_node.frequency`, or what parameters a
-    node has; empty if the name begins with no well-known node. Raises InputError for a parameter
-    that the node does not have.
+    """Return the explanation of a parameter, or what parameters a node has.
+
+    A parameter is named as `ekf_node.frequency`. The result is empty if the name begins with no
+    well-known node. Raises InputError for a parameter that the node does not have.
     """
     written, _, parameter = name.partition(".")
     node = node_called(written)
@@ -46,8 +47,9 @@ def _summary(row: ParameterRow) -> str:
 
 
 def row_text(row: ParameterRow, read: Release) -> str:
-    """Return what is known of a parameter, one fact a line; `read` is the last release in which it
-    was read.
+    """Return what is known of a parameter, one fact a line.
+
+    `read` is the last release in which it was read.
     """
     return "\n".join(_row_lines(row, read))
 
@@ -62,6 +64,16 @@ def _row_lines(row: ParameterRow, read: Release) -> Iterator[str]:
         yield f"only with: {row.only_with}"
     for switch, value in row.unless.items():
         yield f"without effect unless: {switch} is {_value(value)}"
+    yield from _accepted_values(row)
+    if row.entries:
+        yield f"entries: {enumerated(row.entries, len(row.entries))}"
+    if row.size is not None:
+        yield f"values: {row.size}"
+    yield f"releases: {_releases(row, read)}"
+
+
+def _accepted_values(row: ParameterRow) -> Iterator[str]:
+    """Yield the limits of a parameter's value, and the values that it may have."""
     bounds = (
         ("more than", row.above),
         ("less than", row.below),
@@ -73,11 +85,6 @@ def _row_lines(row: ParameterRow, read: Release) -> Iterator[str]:
         yield f"value: {enumerated(limits)}"
     if row.one_of:
         yield f"value: {enumerated([*map(_value, row.one_of)], word='or')}"
-    if row.entries:
-        yield f"entries: {enumerated(row.entries, len(row.entries))}"
-    if row.size is not None:
-        yield f"values: {row.size}"
-    yield f"releases: {_releases(row, read)}"
 
 
 def _releases(row: ParameterRow, read: Release) -> str:

@@ -27,8 +27,9 @@ _FILE = Path(__file__).with_name("releases.toml")
 
 
 class StatedReleases(NamedTuple):
-    """The releases that a workspace is for, and the files or the option that say so; names of any
-    release are right if there are none.
+    """The releases that a workspace is for, and the files or the option that say so.
+
+    Names of any release are right if there are none.
     """
 
     releases: tuple[Release, ...] = ()
@@ -47,8 +48,9 @@ NOT_STATED = StatedReleases()
 
 
 class _ReleaseName(NamedTuple):
-    """A name in the releases from one on, up to another one. A star at its end stands for the
-    rest.
+    """A name in the releases from one on, up to another one.
+
+    A star at its end stands for the rest.
     """
 
     name: str
@@ -92,8 +94,9 @@ class _OtherName(NamedTuple):
 def other_name(
     kind: NameKind, name: str, releases: Collection[Release], *, shown: str = ""
 ) -> _OtherName | None:
-    """Return what a name is called in the given releases; None if one of them has it, or if none is
-    given.
+    """Return what a name is called in the given releases.
+
+    The result is None if one of them has it, or if none is given.
 
     Args:
         kind: What has the name.
@@ -102,23 +105,30 @@ def other_name(
         shown: The start of the name that messages leave out, such as the package of a program.
     """
     row = _row_with(kind, name)
-    own = next((it for it in row if it.matches(name)), None)
-    if own is None or not releases or any(map(own.is_in, releases)):
+    named_row = next((other for other in row if other.matches(name)), None)
+    if named_row is None or not releases or any(map(named_row.is_in, releases)):
         return None
     release = min(releases, key=RELEASES.index)
-    is_later = RELEASES.index(release) > own.last
-    meant = next((it for it in row if it.is_in(release)), None)
+    is_later = RELEASES.index(release) > named_row.last
     here = name.removeprefix(shown)
-    if meant is None and is_later:
-        next_one = RELEASES[own.last + 1].title()
-        return _OtherName(f"there is no {kind} {here!r} from {next_one} on")
-    if meant is None:
-        return _OtherName(f"there is no {kind} {here!r} before {own.since.title()}")
-    there = meant.in_place_of(own, name).removeprefix(shown)
+    for meant in row:
+        if meant.is_in(release):
+            there = meant.in_place_of(named_row, name).removeprefix(shown)
+            return _renamed(named_row, meant, here, there, is_later=is_later)
     if is_later:
-        first = RELEASES[max(own.last + 1, meant.first)]
+        next_one = RELEASES[named_row.last + 1].title()
+        return _OtherName(f"there is no {kind} {here!r} from {next_one} on")
+    return _OtherName(f"there is no {kind} {here!r} before {named_row.since.title()}")
+
+
+def _renamed(
+    named_row: _ReleaseName, meant: _ReleaseName, here: str, there: str, *, is_later: bool
+) -> _OtherName:
+    """Return that a name is another one from a release on, or until one."""
+    if is_later:
+        first = RELEASES[max(named_row.last + 1, meant.first)]
         return _OtherName(f"{here!r} is {there!r} from {first.title()} on", there)
-    last = RELEASES[min(own.first - 1, meant.last)]
+    last = RELEASES[min(named_row.first - 1, meant.last)]
     return _OtherName(f"{here!r} is {there!r} until {last.title()}", there)
 
 

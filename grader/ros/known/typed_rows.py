@@ -12,8 +12,9 @@ _Reading = Callable[[Any], Any]
 
 
 def read_row(kind: Callable[..., _Row], table: Mapping[str, Any]) -> _Row:
-    """Return a table as a row of a named tuple. Raises ValueError for a key that is no field of it
-    and a value of another type.
+    """Return a table as a row of a named tuple.
+
+    Raises ValueError for a key that is no field of it and a value of another type.
 
     Arrays become tuples. A frozenset of strings is written as words in one string.
 

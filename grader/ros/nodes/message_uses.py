@@ -1,5 +1,6 @@
-"""The types of messages, services and actions that Python code imports, and the fields that it uses
-of values whose type is certain.
+"""The types of messages, services and actions that Python code imports, and used fields.
+
+The fields are those of values whose type is certain.
 
 A value is certain where its name is bound once: what a typed callback is given, T(), and a field of
 these. What is under a condition on its type, or caught, does not count.
@@ -7,7 +8,7 @@ these. What is under a condition on its type, or caught, does not count.
 
 import ast
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -27,8 +28,9 @@ ITEM = "[]"  # in a path: an item of a list
 
 
 class _Typed(NamedTuple):
-    """A value: a field of what has a type, or this itself. The type has the name of its section:
-    chat_msgs.srv.Ask.Request.
+    """A value: a field of what has a type, or this itself.
+
+    The type has the name of its section: chat_msgs.srv.Ask.Request.
     """
 
     type: str
@@ -36,8 +38,9 @@ class _Typed(NamedTuple):
 
 
 class CodePart(NamedTuple):
-    """A function or method, or the module without these: its calls, its scope and the place of its
-    class.
+    """A function or method, or the module without these.
+
+    It has its calls, its scope and the place of its class.
     """
 
     name: str
@@ -51,8 +54,9 @@ _Evaluate = Callable[[ast.expr], Value]
 
 
 def _interface_name(value: Value) -> str | None:
-    """Return the full name of a type of a message, service or action, or of a section of one; None
-    for what is none.
+    """Return the full name of a type of a message, service or action, or of a section of one.
+
+    The result is None for what is none.
     """
     if not isinstance(value, QualifiedName):
         return None
@@ -81,8 +85,9 @@ def type_imports(tree: ast.Module, source: Source) -> Iterator[TypeImport]:
 
 
 class _Callback(NamedTuple):
-    """Which arguments of a function are the type and the callback, and what the callback is given:
-    sections of the type.
+    """Which arguments of a function are the type and the callback, and what that is given.
+
+    The callback is given sections of the type.
     """
 
     type_at: int
@@ -104,13 +109,7 @@ def field_uses(
 ) -> Iterator[FieldUse]:
     """Yield the fields that the functions of a module use."""
     nodes = every_node(code.tree)
-    stored = Counter[str]()  # names and attributes that are bound, wherever it is
-    for node in nodes:
-        match node:
-            case ast.Attribute(attr=name, ctx=ast.Store() | ast.Del()):
-                stored[name] += 1
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
-                stored[name] += 1
+    stored = _count_bindings(nodes)
     given = _types_given(parts, nodes, value_of)
     functions = []
     for part in parts:
@@ -129,6 +128,18 @@ def field_uses(
             yield use.placed(code.source)
 
 
+def _count_bindings(nodes: Iterable[ast.AST]) -> Counter[str]:
+    """Return how often names and attributes are bound, wherever it is."""
+    stored = Counter[str]()
+    for node in nodes:
+        match node:
+            case ast.Attribute(attr=name, ctx=ast.Store() | ast.Del()):
+                stored[name] += 1
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+                stored[name] += 1
+    return stored
+
+
 def _value_in(scope: Scope, value_of: Callable[[ast.expr, Scope], Value], node: ast.expr) -> Value:
     return value_of(node, scope)
 
@@ -138,31 +149,52 @@ def _types_given(
     nodes: Sequence[ast.AST],
     value_of: Callable[[ast.expr, Scope], Value],
 ) -> dict[tuple[Location | None, str], tuple[str, ...]]:
-    """Return what functions are called with that are named only where they become callbacks, by the
-    places of their classes and their names.
+    """Return what functions are called with that are named only where they become callbacks.
+
+    The keys are the places of their classes and their names.
     """
-    named = Counter(
+    named = _count_uses(nodes)
+    types_by_name: dict[tuple[Location | None, str], list[tuple[str, ...]]] = {}
+    for part in parts:
+        for call in part.calls:
+            callback = _typed_callback(call, part.scope, value_of)
+            if callback is not None:
+                name, types = callback
+                of = part.of if name.startswith("self.") else None
+                types_by_name.setdefault((of, name), []).append(types)
+    return {
+        key: types_of_each[0]
+        for key, types_of_each in types_by_name.items()
+        if {*types_of_each} == {types_of_each[0]} and named[key[1]] == len(types_of_each)
+    }
+
+
+def _count_uses(nodes: Iterable[ast.AST]) -> Counter[str]:
+    """Return how often names and attributes are read."""
+    return Counter(
         dotted(node)
         for node in nodes
         if isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
     )
-    found: dict[tuple[Location | None, str], list[tuple[str, ...]]] = {}
-    for part in parts:
-        for call in part.calls:
-            row = _CALLBACKS.get(last_name(call.func))
-            callback = given_argument(call, row.callback_at, row.callback_name) if row else None
-            made = given_argument(call, row.type_at, row.type_name) if row else None
-            if row is None or callback is None or made is None:
-                continue
-            name, kind = dotted(callback), _interface_name(value_of(made, part.scope))
-            types = tuple(f"{kind}{section}" for section in row.sections) if kind else ()
-            of = part.of if name.startswith("self.") else None
-            found.setdefault((of, name), []).append(types)
-    given = {}
-    for key, types_of_each in found.items():
-        if len({*types_of_each}) == 1 and named[key[1]] == len(types_of_each):
-            given[key] = types_of_each[0]
-    return given
+
+
+def _typed_callback(
+    call: ast.Call, scope: Scope, value_of: Callable[[ast.expr, Scope], Value]
+) -> tuple[str, tuple[str, ...]] | None:
+    """Return the name of the callback that a call registers, and the types that it is given.
+
+    There are no types where the type of the call is not known.
+    """
+    row = _CALLBACKS.get(last_name(call.func))
+    if row is None:
+        return None
+    callback = given_argument(call, row.callback_at, row.callback_name)
+    made = given_argument(call, row.type_at, row.type_name)
+    if callback is None or made is None:
+        return None
+    kind = _interface_name(value_of(made, scope))
+    types = tuple(f"{kind}{section}" for section in row.sections) if kind else ()
+    return dotted(callback), types
 
 
 def given_argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
@@ -170,7 +202,9 @@ def given_argument(call: ast.Call, position: int, name: str) -> ast.expr | None:
     for keyword in call.keywords:
         if keyword.arg == name:
             return keyword.value
-    if position < len(call.args) and not any(isinstance(it, ast.Starred) for it in call.args):
+    if position < len(call.args) and not any(
+        isinstance(argument, ast.Starred) for argument in call.args
+    ):
         return call.args[position]
     return None
 
@@ -283,22 +317,35 @@ class _FunctionUses:
             match node:
                 case ast.Assign(targets=[ast.Attribute() as target], value=value):
                     literals[target] = self._literal(value)
-                case ast.Attribute(value=owner):
-                    typed = self._type_of(owner)
-                    if typed is None and node.attr.isupper() and dotted(owner):
-                        kind = _interface_name(self._evaluate(owner))  # a constant of a type
-                        typed = _Typed(kind) if kind is not None else None
-                    if typed is not None:
-                        end = (node.end_col_offset or 0) - len(node.attr) + 1
-                        at = Position(node.end_lineno or node.lineno, end)
-                        path = (*typed.path, node.attr)
-                        yield _PlacedUse(typed.type, path, at, literals.get(node, ()))
-                case ast.Call(func=made, keywords=keywords) if keywords and dotted(made):
-                    kind = _interface_name(self._evaluate(made))
-                    for keyword in keywords if kind is not None else ():
-                        if keyword.arg not in (None, "check_fields"):
-                            at, literal = position_of(keyword), self._literal(keyword.value)
-                            yield _PlacedUse(kind or "", (keyword.arg or "",), at, literal)
+                case ast.Attribute():
+                    yield from self._uses_of_attribute(node, literals.get(node, ()))
+                case ast.Call():
+                    yield from self._uses_in_call(node)
+
+    def _uses_of_attribute(
+        self, node: ast.Attribute, literal: tuple[Value, ...]
+    ) -> Iterator[_PlacedUse]:
+        """Yield the use of a field, or of a constant, that an attribute is."""
+        typed = self._type_of(node.value)
+        if typed is None and node.attr.isupper() and dotted(node.value):
+            kind = _interface_name(self._evaluate(node.value))  # a constant of a type
+            typed = _Typed(kind) if kind is not None else None
+        if typed is not None:
+            end = (node.end_col_offset or 0) - len(node.attr) + 1
+            at = Position(node.end_lineno or node.lineno, end)
+            yield _PlacedUse(typed.type, (*typed.path, node.attr), at, literal)
+
+    def _uses_in_call(self, call: ast.Call) -> Iterator[_PlacedUse]:
+        """Yield the fields that the keywords of a constructor set."""
+        if not call.keywords or not dotted(call.func):
+            return
+        kind = _interface_name(self._evaluate(call.func))
+        if kind is None:
+            return
+        for keyword in call.keywords:
+            if keyword.arg not in (None, "check_fields"):
+                at, literal = position_of(keyword), self._literal(keyword.value)
+                yield _PlacedUse(kind, (keyword.arg or "",), at, literal)
 
     def _literal(self, node: ast.expr) -> tuple[Value, ...]:
         value = self._evaluate(node)
@@ -318,8 +365,9 @@ def _asked(nodes: Sequence[ast.AST]) -> Iterator[str]:
 
 
 def certain_nodes(function: ast.AST) -> Iterator[ast.AST]:
-    """Yield the nodes of a function, or of a module without its functions and classes, but for
-    those of which errors are caught.
+    """Yield the nodes of a function, or of a module without its functions and classes.
+
+    Nodes of which errors are caught are left out.
     """
     pending = [function]
     while pending:
@@ -329,7 +377,7 @@ def certain_nodes(function: ast.AST) -> Iterator[ast.AST]:
             case ast.Try(handlers=handlers, orelse=orelse, finalbody=final) if _catches(handlers):
                 pending += [*handlers, *orelse, *final]
             case ast.Module(body=body):
-                pending += [it for it in body if not isinstance(it, _SCOPES)]
+                pending += [statement for statement in body if not isinstance(statement, _SCOPES)]
             case _:
                 pending += ast.iter_child_nodes(node)
 

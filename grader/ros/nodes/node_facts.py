@@ -42,8 +42,9 @@ class ImageEncoding(NamedTuple):
 
 
 class Endpoint(NamedTuple):
-    """A publisher, subscription, service or client, also of an action. `type` is a full name:
-    std_msgs.msg.Float32.
+    """A publisher, subscription, service or client, also of an action.
+
+    `type` is a full name: std_msgs.msg.Float32.
     """
 
     kind: EndpointKind
@@ -77,8 +78,9 @@ FrameUse = Literal["publishes", "is above", "looks up", "names"]
 
 
 class NodeFrame(NamedTuple):
-    """A frame that a node publishes, or that is above one; or that it looks up, or that its
-    messages name. Without a name and `parts` it is not known.
+    """A frame that a node publishes, looks up or names in messages, or one above it.
+
+    Without a name and `parts` it is not known.
 
     `lookup` is the place of the call that looks up the transform between it and another frame.
     """
@@ -192,8 +194,9 @@ class NodeProgram(NamedTuple):
 
 
 class PackageNodes(NamedTuple):
-    """The nodes of a package, and its programs. With `doubts`, a node may declare or open more,
-    or be missing.
+    """The nodes of a package, and its programs.
+
+    With `doubts`, a node may declare or open more, or be missing.
     """
 
     nodes: tuple[NodeFacts, ...]

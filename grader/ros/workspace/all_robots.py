@@ -50,8 +50,8 @@ def read_workspace(
     """
     if stated is None:
         stated = stated_releases(tree)
-    found = read_packages(tree, "", memory=memory, most=_MAX_PACKAGES, are_whole=True)
-    packages = _outermost(found)
+    all_packages = read_packages(tree, "", memory=memory, most=_MAX_PACKAGES, are_whole=True)
+    packages = _outermost(all_packages)
     ros1_packages = tuple(package for package in packages if package.is_of_ros1)
     return OpenedWorkspace(
         identity,
@@ -85,13 +85,13 @@ def _read_robots(
     memory: Memory | None,
     releases: Collection[Release],
 ) -> list[Read | Unreadable]:
-    found = find_robots(tree, max_size=max_size)
-    launched = launched_paths(tree, packages, found)
-    included = parts_of(found) | _chosen_parts(tree, found)
+    robot_files = find_robots(tree, max_size=max_size)
+    launched = launched_paths(tree, packages, robot_files)
+    included = parts_of(robot_files) | _chosen_parts(tree, robot_files)
     whole = Budget(READING + (packages[0].work.limit if packages else 0))
     robots: list[Read | Unreadable] = []
     parts: list[Read | Unreadable] = []
-    for file in _whole(found, launched, included)[:_MAX_ROBOTS]:
+    for file in _whole(robot_files, launched, included)[:_MAX_ROBOTS]:
         budget = Budget(whole=whole)
         around = package_around(packages, file.path)
         surroundings = Surroundings(
@@ -112,26 +112,24 @@ def _read_robots(
 
 
 def _whole(
-    found: Sequence[RobotFile], launched: set[str], parts: frozenset[str]
+    robot_files: Sequence[RobotFile], launched: set[str], parts: frozenset[str]
 ) -> list[RobotFile]:
-    """Return the files that launch files load, or that are no backup and that no other one
-    includes.
-    """
+    """Return the files that launch files load, and those that are neither backups nor included."""
     return [
         file
-        for file in found
+        for file in robot_files
         if file.path in launched or not (file.path in parts or is_backup(file.path))
     ]
 
 
-def _chosen_parts(tree: Tree, found: Sequence[RobotFile]) -> frozenset[str]:
+def _chosen_parts(tree: Tree, robot_files: Sequence[RobotFile]) -> frozenset[str]:
     """Return the paths of those files that another one includes by a name that it computes."""
     parts: set[str] = set()
-    for file in found:
+    for file in robot_files:
         text = (tree.read(file.path, URDF_LIMIT) or b"").decode("utf-8", "replace")
         names = [name for name in INCLUDED.findall(text) if "$" in posixpath.basename(name)]
         for made in made_paths(Source(file.path, "\n".join(names))) if names else ():
-            parts |= {other.path for other in found if made.matches(other.path)} - {file.path}
+            parts |= {other.path for other in robot_files if made.matches(other.path)} - {file.path}
     return frozenset(parts)
 
 

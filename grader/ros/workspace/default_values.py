@@ -1,12 +1,11 @@
-"""The values that nodes have for parameters that they do not get: the defaults of own nodes,
-controllers and well-known nodes.
-"""
+"""The defaults of parameters that nodes do not get: of own and known nodes and controllers."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from grader.ros.known.parameter_rows import COVERED, row_for
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
+from grader.ros.nodes.node_facts import NodeParameter
 from grader.ros.python.parse import START
 from grader.ros.python.values import SCALARS, Unknown, Value
 from grader.ros.workspace.graph.started_controllers import defined_controllers
@@ -20,8 +19,10 @@ _NOT_KNOWN = Unknown("its default is not known", START)
 
 
 def default_value(workspace: Workspace, node: str, parameter: str) -> ParameterValue | None:
-    """Return the value that a node has for a parameter that it does not get, and where the node
-    declares it or is started. It is Unknown where it is not known; None if there is none.
+    """Return the value of a parameter that a node does not get, and the place that says so.
+
+    The place is where the node declares the parameter or is started. The value is Unknown where
+    it is not known. The result is None if there is no value.
 
     Args:
         workspace: The packages.
@@ -49,7 +50,11 @@ def _defaults(
         return
     kind = f"{node.package}/{node.executable}"
     if node.executable in SPAWNERS:
-        kinds = {it.type.text or "" for it in defined_controllers(workspace) if it.name == name}
+        kinds = {
+            controller.type.text or ""
+            for controller in defined_controllers(workspace)
+            if controller.name == name
+        }
         kind = kinds.pop() if len(kinds) == 1 else ""
     if not is_as_released(workspace, kind):
         yield ParameterValue(_NOT_KNOWN, node.location)
@@ -68,12 +73,25 @@ def _own_default(workspace: Workspace, node: StartedNode, parameter: str) -> Par
     for_all = row_for(_EVERY_NODE, parameter)
     if for_all is not None:
         return ParameterValue(_scalar_or_list(for_all.default), node.location)
-    same_name = [it for it in own_node.parameters if it.name in (parameter, None)]
+    same_name = [
+        candidate for candidate in own_node.parameters if candidate.name in (parameter, None)
+    ]
     nodes = workspace.code.by_package[node.package]
     if not same_name and not own_node.doubts and not nodes.has_loose_declarations:
         return None
-    declarations = [it for it in same_name if it.is_declared and it.name is not None]
-    if len({repr(it.default) for it in declarations}) != 1:
+    return _declared_default(same_name, unknown)
+
+
+def _declared_default(
+    parameters: Sequence[NodeParameter], unknown: ParameterValue
+) -> ParameterValue | None:
+    """Return the default of parameters, if all declarations agree in it; else an unknown one."""
+    declarations = [
+        parameter
+        for parameter in parameters
+        if parameter.is_declared and parameter.name is not None
+    ]
+    if len({repr(declaration.default) for declaration in declarations}) != 1:
         return unknown
     declared = declarations[0]
     if declared.default is None:

@@ -28,8 +28,9 @@ def joints_of_plugins(robot: Read) -> list[str]:
 
 
 def joints_of_controllers(workspace: "Workspace") -> list[str]:
-    """Return the joints that the first controller with wheels on both sides names; none where
-    reading the workspace takes too much work.
+    """Return the joints that the first controller with wheels on both sides names.
+
+    There are none where reading the workspace takes too much work.
     """
     with suppress(NotDecided):
         for _, tree in workspace.installed.trees:

@@ -53,7 +53,7 @@ def _counted_ones(*counts: tuple[int, str]) -> list[str]:
 
 def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) -> Extent:
     """Return what of a workspace was read; `unread_robots` are not even opened."""
-    nodes = [node for found in workspace.code.by_package.values() for node in found.nodes]
+    nodes = [node for code in workspace.code.by_package.values() for node in code.nodes]
     cpp_files = expressions = 0
     for package in workspace.packages:
         cpp_files += _unread_cpp_files(workspace, package)

@@ -29,27 +29,35 @@ class NamePlaces:
 
     def same(self, name: WrittenName) -> list[WrittenName]:
         """Return each place of a name, the definitions first."""
-        return sorted(self._names.same_as(name), key=lambda it: it.role)
+        return sorted(self._names.same_as(name), key=lambda place: place.role)
 
     def named_like(self, places: Collection[WrittenName], new: str) -> list[WrittenName]:
         """Return the places of another name of the kinds and owners that some places have."""
-        meant = {(it.kind, it.owner) for it in places}
-        return [it for it in self._names.names if it.name == new and (it.kind, it.owner) in meant]
+        meant = {(place.kind, place.owner) for place in places}
+        return [
+            place
+            for place in self._names.names
+            if place.name == new and (place.kind, place.owner) in meant
+        ]
 
     def defined_in(self, path: str) -> list[WrittenName]:
         """Return the names that a file defines, each place once, in its order."""
         by_place: dict[object, WrittenName] = {}
-        for it in self._names.names:
-            if it.location.path == path and it.role == "definition":
-                by_place.setdefault((it.location, it.kind, it.name), it)
+        for definition in self._names.names:
+            if definition.location.path == path and definition.role == "definition":
+                by_place.setdefault(
+                    (definition.location, definition.kind, definition.name), definition
+                )
         return [*by_place.values()]
 
     def holding(self, text: str, most: int) -> list[WrittenName]:
         """Return the first definitions whose names hold a text, in whatever case."""
         by_place: dict[object, WrittenName] = {}
-        for it in self._names.names:
-            if it.role == "definition" and text.lower() in it.name.lower():
-                by_place.setdefault((it.location, it.kind, it.name), it)
+        for definition in self._names.names:
+            if definition.role == "definition" and text.lower() in definition.name.lower():
+                by_place.setdefault(
+                    (definition.location, definition.kind, definition.name), definition
+                )
         return [*by_place.values()][:most]
 
     def offered(self, kind: str, owner: str) -> list[str]:
@@ -66,12 +74,18 @@ class NamePlaces:
 
     def values(self, name: WrittenName) -> list[str]:
         """Return the values that an argument has, as far as they are known, each once."""
-        found: list[str] = []
+        known_values: list[str] = []
         if name.kind == "launch argument":
             for _, _, launch in self._opened.workspace.launches.files:
-                found += (value for declared, value in launch.values if declared == name.name)
+                known_values += (
+                    value for declared, value in launch.values if declared == name.name
+                )
         if name.kind == "xacro argument":
             for robot in self._opened.workspace.urdfs:
                 arguments = getattr(robot.reading.source, "declared_arguments", ())
-                found += (it.value for it in arguments if it.name == name.name and it.value)
-        return [*dict.fromkeys(found)]
+                known_values += (
+                    argument.value
+                    for argument in arguments
+                    if argument.name == name.name and argument.value
+                )
+        return [*dict.fromkeys(known_values)]

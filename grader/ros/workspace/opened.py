@@ -65,10 +65,12 @@ class OpenedWorkspace:
         )
 
         has_other_robots = any(
-            not it.is_part for it in self.unused_candidates if not it.path.endswith(MANIFEST)
+            not candidate.is_part
+            for candidate in self.unused_candidates
+            if not candidate.path.endswith(MANIFEST)
         )
-        urdfs = tuple(it for it in (*self.robots, self.urdf) if isinstance(it, Read))
-        has_unread = has_other_robots or any(isinstance(it, Unreadable) for it in self.robots)
+        urdfs = tuple(robot for robot in (*self.robots, self.urdf) if isinstance(robot, Read))
+        has_unread = has_other_robots or any(isinstance(robot, Unreadable) for robot in self.robots)
         releases = (self.distro,) if self.distro is not None else self.stated.releases
         return Workspace(
             self.packages, urdfs, self.whole_tree, has_unread, releases, memory=self.memory
@@ -84,7 +86,9 @@ class OpenedWorkspace:
     @property
     def unused_candidates(self) -> tuple[OtherCandidate, ...]:
         """The other candidates that the URDF is not expanded from."""
-        return tuple(it for it in self.other_candidates if it.path not in self.included)
+        return tuple(
+            candidate for candidate in self.other_candidates if candidate.path not in self.included
+        )
 
     @property
     def included(self) -> Collection[str]:
@@ -99,8 +103,9 @@ class OpenedWorkspace:
         return problems_of_robot(robot, (*self.packages, *self.ros1_packages), self.whole_tree)
 
     def driven_joints(self, robot: Read) -> list[str]:
-        """Return the joints of the wheels that a plugin in a robot, or else a controller, drives;
-        of a URDF on its own, only a plugin.
+        """Return the joints of the wheels that a plugin in a robot, or a controller, drives.
+
+        A controller counts only without a plugin, and not for a URDF on its own.
         """
         # Late: few commands ask for wheels.
         from grader.ros.workspace.driven_joints import joints_of_controllers, joints_of_plugins
@@ -123,10 +128,10 @@ class OpenedWorkspace:
         from grader.ros.workspace.rules.file_problems import listed_problems, ros1_problem
         from grader.ros.workspace.rules.release_problems import compared_names
 
-        found = [ros1_problem(package) for package in self.ros1_packages]
-        found += listed_problems(self.workspace)
-        found += compared_names(self.workspace)
-        return found
+        problems = [ros1_problem(package) for package in self.ros1_packages]
+        problems += listed_problems(self.workspace)
+        problems += compared_names(self.workspace)
+        return problems
 
     def default_value(self, node: str, parameter: str) -> "ParameterValue | None":
         """Return the value that a node has for a parameter that it does not get; None without."""
@@ -135,8 +140,9 @@ class OpenedWorkspace:
         return default_value(self.workspace, node, parameter)
 
     def mesh_size_problems(self) -> list[Problem]:
-        """Return the meshes whose sizes surely are in another unit: `grader inspect` alone warns of
-        them.
+        """Return the meshes whose sizes surely are in another unit.
+
+        `grader inspect` alone warns of them.
         """
         from grader.ros.workspace.rules.mesh_sizes import mesh_size_problems  # late: as above
 
@@ -155,7 +161,7 @@ class OpenedWorkspace:
         """Return how much of it was read."""
         from grader.ros.workspace.extent import extent_of  # late: few commands say it
 
-        unread = sum(isinstance(it, Unreadable) for it in self.robots)
+        unread = sum(isinstance(robot, Unreadable) for robot in self.robots)
         return extent_of(self.workspace, unread, self.stated)
 
     def source(self, path: str) -> Source | None:

@@ -1,5 +1,7 @@
-"""Open what is at a path: a URDF on its own, with what it reads from the package around it; or a
-folder or archive, with its packages and all of its robots.
+"""Open what is at a path: a URDF, a folder or an archive.
+
+A URDF on its own is read with what it reads from the package around it; a folder or archive with
+its packages and all of its robots.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -144,8 +146,12 @@ def _read_with_neighbours(
         )
         root = _workspace_around(root, _packages_in(asked) - {root.name})
         path = printable((folder / place.name).relative_to(root).as_posix())
-        found = read_folder(root)
-        tree = overlaid(found, {path: data}) if path in found.files or place.is_symlink() else None
+        folder_tree = read_folder(root)
+        tree = (
+            overlaid(folder_tree, {path: data})
+            if path in folder_tree.files or place.is_symlink()
+            else None
+        )
     except (OSError, InputError) as error:
         MachineError.check(error, printable_path(place.name))
         tree = None
@@ -155,8 +161,10 @@ def _read_with_neighbours(
 
 
 def _read_around(place: Path, names: Collection[str]) -> tuple[tuple[Package, ...], Tree]:
-    """Return the packages around a file, and the files that they are among, to find those of some
-    packages; without a package.xml, the files of the folder that is called as one of them.
+    """Return the packages around a file, and the files that they are among.
+
+    They are read to find those of some packages. Without a package.xml, the files are those of
+    the folder that is called as one of them.
     """
     # Late: few robots have meshes.
     from grader.files.folder import read_folder
@@ -166,8 +174,8 @@ def _read_around(place: Path, names: Collection[str]) -> tuple[tuple[Package, ..
     try:
         folder = place.parent.resolve()
         above = (folder, *folder.parents)
-        package = next((it for it in above if (it / MANIFEST).is_file()), None)
-        root = next((it for it in above if it.name in names), None)
+        package = next((parent for parent in above if (parent / MANIFEST).is_file()), None)
+        root = next((parent for parent in above if parent.name in names), None)
         if package is not None:
             root = _workspace_around(package, {*names} - {package.name})
         if root is None:
@@ -180,9 +188,10 @@ def _read_around(place: Path, names: Collection[str]) -> tuple[tuple[Package, ..
 
 
 def _workspace_around(package: Path, names: Collection[str]) -> Path:
-    """Return the folder of a workspace in which packages of these names are: that of a package, one
-    in which another one is beside it, or the nearest src or repository above; without any the
-    package.
+    """Return the folder of a workspace in which packages of these names are.
+
+    It is that of a package in which another one is beside it, or the nearest src or repository
+    above; without any, the package.
     """
     if any((package.parent / name / MANIFEST).is_file() for name in names):
         return package.parent
@@ -203,8 +212,9 @@ def _packages_in(asked: Iterable[str]) -> set[str]:
 def _with_files_around(
     opened: OpenedWorkspace, tree: Tree, path: str, alone: Surroundings
 ) -> OpenedWorkspace:
-    """Return a single file with what is read for it of a tree; `alone`: its surroundings without a
-    tree.
+    """Return a single file with what is read for it of a tree.
+
+    `alone` is its surroundings without a tree.
     """
     from grader.ros.package.finding import read_packages
 

@@ -79,12 +79,18 @@ class Build:
             files_at=self._package_at or self.last,
             packages=tuple(self.modules),
             interfaces=tuple(self.interfaces),
-            targets=self.made.all({it: self.inside(it) for it in self.made.written_sources}),
+            targets=self.made.all(
+                {
+                    written_path: self.inside(written_path)
+                    for written_path in self.made.written_sources
+                }
+            ),
         )
 
     def give_up(self, reason: str, at: Position) -> None:
-        """Note that something is not evaluated that may set variables, install files or stop the
-        build.
+        """Note that something is not evaluated.
+
+        It may set variables, install files or stop the build.
         """
         self.doubts.append(self.values.uncertain or Unknown(reason, at))
         self.values.is_opaque = True
@@ -102,8 +108,9 @@ class Build:
             self.later_stops.append(LaterStop(reason, since, at, instead))
 
     def _guess(self, name: str, known: Collection[str]) -> str:
-        """Return which name may be meant, for the end of a message; of the first missing names
-        only, because comparing names takes long.
+        """Return which name may be meant, for the end of a message.
+
+        This is done for the first missing names only, because comparing names takes long.
         """
         self._guesses += 1
         return did_you_mean(name, known) if self._guesses <= MAX_GUESSES else ""
@@ -119,8 +126,9 @@ class Build:
         return None if path.startswith(("/", "..")) else path
 
     def _has(self, path: str) -> bool | None:
-        """Return whether the package has a file or folder at a path; None where that is not
-        known.
+        """Return whether the package has a file or folder at a path.
+
+        The result is None where that is not known.
         """
         try:
             is_there = not path or self.listing.real(path) is not None
@@ -131,8 +139,10 @@ class Build:
         return is_there
 
     def exists(self, text: str) -> bool | None:
-        """Return whether a file or folder of the package exists; None where that is not known, as
-        below an empty folder, which may be a submodule.
+        """Return whether a file or folder of the package exists.
+
+        The result is None where that is not known, as below an empty folder, which may be a
+        submodule.
         """
         path = self.inside(text)
         if path is None:
@@ -151,7 +161,7 @@ class Build:
             if words[1:2] != [ROOT]:
                 return Unknown("a search relative to another folder is not evaluated", at)
             words, start = words[2:], ""
-        found: set[str] = set()
+        found_paths: set[str] = set()
         for word in words:
             pattern = self.inside(word) if isinstance(word, str) else None
             if pattern is None or words[0] == "LIST_DIRECTORIES":
@@ -159,14 +169,15 @@ class Build:
             paths = self._matching(pattern, recursive=recursive)
             if not paths:
                 self.listing.empty[EmptyGlob(pattern, at)] = None
-            found.update(paths)
-        text = ";".join(f"{start}{path}" for path in sorted(found))
+            found_paths.update(paths)
+        text = ";".join(f"{start}{path}" for path in sorted(found_paths))
         self.listing.budget.charge(1, len(text))
         return text
 
     def _matching(self, pattern: str, *, recursive: bool) -> list[str]:
-        """Return the files that a pattern of CMake matches; without `recursive` the folders,
-        too.
+        """Return the files that a pattern of CMake matches.
+
+        Without `recursive`, folders are matched, too.
         """
         if not recursive:
             with suppress(Undetermined):
@@ -216,7 +227,8 @@ class Build:
         name, *rest = self.values.texts(command.arguments) or [""]
         if isinstance(name, Unknown):
             return
-        if command.name == "ament_target_dependencies":
+        names_packages = command.name == "ament_target_dependencies"
+        if names_packages:
             self.made.depend(name, rest)
         else:
             self.made.link(name, rest)
@@ -224,14 +236,18 @@ class Build:
             return
         if name not in self.targets:
             self._stop_target(command, name)
-        found = self.values.packages
+        self._use_packages(command, rest if names_packages else ())
+
+    def _use_packages(self, command: Command, texts: Sequence[Text]) -> None:
+        """Note a package that a target depends on, and that was not found."""
+        packages = self.values.packages
         reached = self.values.reached_packages()
-        for text in rest if command.name == "ament_target_dependencies" else ():
-            if not isinstance(text, str) or not text.islower() or text in (reached or found):
+        for text in texts:
+            if not isinstance(text, str) or not text.islower() or text in (reached or packages):
                 continue
-            self.listing.budget.charge(len(found))
+            self.listing.budget.charge(len(packages))
             # What is found may export the package, unless it is surely misspelt.
-            if reached is not None or near(text, found) is not None:
+            if reached is not None or near(text, packages) is not None:
                 self.stop(
                     f"{command.name}() names the package {text!r}, without find_package({text})",
                     command.at,
@@ -246,8 +262,9 @@ class Build:
         )
 
     def register_component(self, command: Command) -> None:
-        """Install the program that rclcpp_components_register_node() makes, which its EXECUTABLE
-        names.
+        """Install the program that rclcpp_components_register_node() makes.
+
+        Its EXECUTABLE names the program.
         """
         texts = self.values.texts(command.arguments)
         after = dict(pairwise(texts))
@@ -288,41 +305,56 @@ class Build:
             return
         name, *files = known
         self.targets[name] = "interfaces"
-        made = []
-        for text in files:
-            path = self.inside(text.replace(f"{ROOT}:", f"{ROOT}/"))
-            if path is None:
-                self.give_up(f"{text} is not in the package", command.at)
-                continue
-            if self._has(path) is False:
-                self._stop_missing(command, path)
-                self.listing.budget.charge(len(self.listing.files))
-                meant = closest(path, self.listing.files)
-                if meant is None or not meant.endswith(posixpath.splitext(path)[1]):
-                    continue
-                path = meant  # as which the rest is read
-            made.append(path)
-            self._copy(path, f"{self._share()}/{'/'.join(path.split('/')[-2:])}", command.at)
+        made = self._copy_interfaces(files, command)
         rest = texts[len(words) :]
         groups: dict[str, list[str]] = {}
         for keyword, items in _groups([str(text) for text in rest], keywords):
             groups.setdefault(keyword, []).extend(items)
         is_known = len(made) == len(files) and all(isinstance(text, str) for text in rest)
-        found = GeneratedInterfaces(
+        interfaces = GeneratedInterfaces(
             command.at,
             tuple(made),
             tuple(groups.get("DEPENDENCIES", ())),
             is_certain=is_known and self.values.uncertain is None,
             needs_group=groups.keys().isdisjoint(("SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK")),
         )
-        self.interfaces.append(found)
+        self.interfaces.append(interfaces)
+
+    def _copy_interfaces(self, texts: Sequence[str], command: Command) -> list[str]:
+        """Install the files of interfaces, and return those that are known."""
+        paths = []
+        for text in texts:
+            path = self._interface_file(text, command)
+            if path is not None:
+                paths.append(path)
+                self._copy(path, f"{self._share()}/{'/'.join(path.split('/')[-2:])}", command.at)
+        return paths
+
+    def _interface_file(self, text: str, command: Command) -> str | None:
+        """Return the file of an interface; of a missing one, the one that is surely meant.
+
+        The result is None where no file is known.
+        """
+        path = self.inside(text.replace(f"{ROOT}:", f"{ROOT}/"))
+        if path is None:
+            self.give_up(f"{text} is not in the package", command.at)
+            return None
+        if self._has(path) is not False:
+            return path
+        self._stop_missing(command, path)
+        self.listing.budget.charge(len(self.listing.files))
+        meant = closest(path, self.listing.files)
+        if meant is None or not meant.endswith(posixpath.splitext(path)[1]):
+            return None
+        return meant  # as which the rest is read
 
     # --- Installed files
     # ----------------------------------------------------------------------
 
     def package(self, command: Command) -> None:
-        """End the package, as ament_package() does; the name of the project must be that in
-        package.xml.
+        """End the package, as ament_package() does.
+
+        The name of the project must be that in package.xml.
         """
         if self.values.uncertain is not None:
             self.give_up("it is not known whether ament_package() is called", command.at)
@@ -382,31 +414,38 @@ class Build:
     def install(self, command: Command) -> None:
         """Install files, folders, programs or targets."""
         texts = self.values.texts(command.arguments)
-        kind = (texts or [""])[0]
-        words = [text for text in texts[1:] if isinstance(text, str)]
-        unknown = next((text for text in texts if isinstance(text, Unknown)), None)
-        if kind in ("EXPORT", "RUNTIME_DEPENDENCY_SET"):
-            return
         if not texts:
             self.stop("install() has no arguments", command.at)
             return
-        if unknown is not None or kind not in ("DIRECTORY", "FILES", "PROGRAMS", "TARGETS"):
-            self._leave_open(
-                unknown or Unknown(f"install({kind} ...) is not evaluated", command.at)
-            )
+        kind = texts[0]
+        if kind in ("EXPORT", "RUNTIME_DEPENDENCY_SET"):
             return
+        unknown = next((text for text in texts if isinstance(text, Unknown)), None)
+        if unknown is not None:
+            self._leave_open(unknown)
+        elif kind not in ("DIRECTORY", "FILES", "PROGRAMS", "TARGETS"):
+            self._leave_open(Unknown(f"install({kind} ...) is not evaluated", command.at))
+        else:
+            self._install_known(str(kind), [*map(str, texts[1:])], command)
+
+    def _install_known(self, kind: str, words: Sequence[str], command: Command) -> None:
+        """Install what the known arguments of install() list."""
         groups = _groups(words, cmake_words().install_keywords)
         if kind == "TARGETS":
             self._install_targets(groups, command)
-            return
+        elif groups[0][1]:  # without paths, CMake does not look at the rest
+            self._install_paths(kind, groups, command)
+
+    def _install_paths(self, kind: str, groups: _Groups, command: Command) -> None:
+        """Install files, programs, or what is in folders."""
         options = dict(groups[1:])
-        if not groups[0][1]:
-            return  # CMake does not look at the rest then
+        texts = groups[0][1]
         target, before = self._destination(options, command), set(self.copies)
-        for text in groups[0][1] if target is not None and kind == "DIRECTORY" else ():
-            self._copy_folder(text, target or "", command, groups)
-        if target is not None and kind != "DIRECTORY":
-            self._copy_files(groups[0][1], target, command, options)
+        if target is not None and kind == "DIRECTORY":
+            for text in texts:
+                self._copy_folder(text, target, command, groups)
+        elif target is not None:
+            self._copy_files(texts, target, command, options)
         if kind == "PROGRAMS" or any("PERMISSIONS" in key for key in options):
             self.scripts.update(self.copies.keys() - before)
 
@@ -415,8 +454,9 @@ class Build:
         self.unknown.append(self.values.uncertain or reason)
 
     def _destination(self, options: _Options, command: Command) -> str | None:
-        """Return the path below the prefix where files go; None where it is not known, or there is
-        none.
+        """Return the path below the prefix where files go.
+
+        The result is None where it is not known, or there is none.
         """
         values = options.get("DESTINATION", [])
         if len(values) != 1:
@@ -433,13 +473,7 @@ class Build:
 
     def _install_targets(self, groups: _Groups, command: Command) -> None:
         """Install executables; where libraries go is not needed."""
-        kind, places = "", dict[str, str]()
-        for keyword, values in groups[1:]:
-            if keyword in cmake_words().artifacts:
-                kind = keyword
-            elif keyword == "DESTINATION" and values:
-                places.setdefault(kind, posixpath.normpath(values[0].removeprefix(f"{PREFIX}/")))
-        target = places.get("RUNTIME") or places.get("") or "bin"
+        target = _folder_of_programs(groups)
         for name in groups[0][1]:
             known = self.targets.get(name)
             self.made.install(name)
@@ -453,25 +487,29 @@ class Build:
     def _copy_files(
         self, texts: Sequence[str], target: str, command: Command, options: _Options
     ) -> None:
-        names = options.get("RENAME", [])
-        if names and len(texts) > 1:
+        if options.get("RENAME") and len(texts) > 1:
             self.stop("install() gives several files one name with RENAME", command.at)
             return
         for text in texts:
-            path = self.inside(text)
-            state = self._has(path) if path is not None else None
-            if path in self.listing.files:
-                name = names[0] if names else posixpath.basename(path or "")
-                self._copy(path or "", posixpath.normpath(posixpath.join(target, name)), command.at)
-            elif state is None:
-                self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
-            elif state or "OPTIONAL" not in options:
-                if state:
-                    reason = "it is a folder: write install(DIRECTORY ...)"
-                else:
-                    reason = "there is no such file"
-                hint = "" if state else self._guess(path or "", self.listing.files)
-                self.stop(reason, command.at, path or text, hint)
+            self._copy_file(text, target, command, options)
+
+    def _copy_file(self, text: str, target: str, command: Command, options: _Options) -> None:
+        path = self.inside(text)
+        if path is None:
+            self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
+            return
+        state = self._has(path)
+        if path in self.listing.files:
+            name = [*options.get("RENAME", ()), posixpath.basename(path)][0]
+            self._copy(path, posixpath.normpath(posixpath.join(target, name)), command.at)
+        elif state is None:
+            self._leave_open(Unknown(f"{text} is not a file of the package", command.at))
+        elif state:
+            reason = "it is a folder: write install(DIRECTORY ...)"
+            self.stop(reason, command.at, path or text)
+        elif "OPTIONAL" not in options:
+            hint = self._guess(path, self.listing.files)
+            self.stop("there is no such file", command.at, path or text, hint)
 
     def _copy_folder(self, text: str, target: str, command: Command, groups: _Groups) -> None:
         """Install the files of a folder; with a slash at its end without its own name."""
@@ -487,23 +525,20 @@ class Build:
         elif not state and patterns.is_limited:
             pass  # CMake takes it for a file that no pattern matches
         elif not state and "OPTIONAL" not in options:
-            self.stop(
-                "there is no such folder",
-                command.at,
-                path,
-                self._guess(path, self.listing.folders),
-            )
+            guess = self._guess(path, self.listing.folders)
+            self.stop("there is no such folder", command.at, path, guess)
         else:
             if text.endswith("/"):
                 above = target
             else:
                 above = posixpath.join(target, posixpath.basename(path))
-            for file in self._below(path, patterns):
-                self._copy(
-                    posixpath.join(path, file),
-                    posixpath.normpath(posixpath.join(above, file)),
-                    command.at,
-                )
+            self._copy_below(path, above, patterns, command)
+
+    def _copy_below(self, path: str, above: str, patterns: "_Patterns", command: Command) -> None:
+        """Install the files below a folder that patterns include."""
+        for file in self._below(path, patterns):
+            target = posixpath.normpath(posixpath.join(above, file))
+            self._copy(posixpath.join(path, file), target, command.at)
 
     def _below(self, folder: str, patterns: "_Patterns") -> Iterator[str]:
         """Yield the paths of the files below a folder, as seen from it."""
@@ -528,8 +563,9 @@ class Build:
 
 
 class _Patterns:
-    """The options PATTERN of install(DIRECTORY ...): what they match is excluded, or with
-    FILES_MATCHING included.
+    """The options PATTERN of install(DIRECTORY ...).
+
+    What they match is excluded, or with FILES_MATCHING included.
     """
 
     def __init__(self, groups: _Groups) -> None:
@@ -547,8 +583,9 @@ class _Patterns:
                 )
 
     def include(self, folder: str, path: str) -> bool:
-        """Return whether a file at a path below an installed folder is installed; the folder itself
-        may be excluded.
+        """Return whether a file at a path below an installed folder is installed.
+
+        The folder itself may be excluded.
         """
         parts = f"{folder}/{path}".split("/")
         above = len(parts) - path.count("/") - 1
@@ -586,3 +623,14 @@ BUILD_COMMANDS: dict[str, Callable[[Build, Command], None]] = {
     "pluginlib_export_plugin_description_file": Build.plugin_description,
     "install": Build.install,
 }
+
+
+def _folder_of_programs(groups: _Groups) -> str:
+    """Return the folder below the prefix to which install(TARGETS ...) copies executables."""
+    kind, places = "", dict[str, str]()
+    for keyword, values in groups[1:]:
+        if keyword in cmake_words().artifacts:
+            kind = keyword
+        elif keyword == "DESTINATION" and values:
+            places.setdefault(kind, posixpath.normpath(values[0].removeprefix(f"{PREFIX}/")))
+    return places.get("RUNTIME") or places.get("") or "bin"

@@ -40,8 +40,9 @@ class _Returns(Exception):
 def read_cmake(
     text: str, path: str, tree: Tree, name: str, budget: Budget | None = None
 ) -> Installation:
-    """Evaluate the CMakeLists.txt of a package with these files, which package.xml gives this
-    name. Never raises.
+    """Evaluate the CMakeLists.txt of a package with these files, which package.xml gives this name.
+
+    Never raises.
     """
     source = Source(path, text)
     try:
@@ -61,8 +62,9 @@ def read_cmake(
 
 
 def _newest_minimum(texts: Sequence[Text]) -> tuple[int, ...] | None:
-    """Return the version for which the policies of CMake are set: of `VERSION 3.1...3.20` the
-    last; None where it is not known.
+    """Return the version for which the policies of CMake are set: of `VERSION 3.1...3.20` the last.
+
+    The result is None where it is not known.
     """
     words = [text for text in texts if isinstance(text, str)]
     if len(words) < len(texts) or words[:1] != ["VERSION"] or len(words) < 2:
@@ -235,8 +237,9 @@ class _Evaluation:
         self.own[str(self.values.first(command)).lower()] = command
 
     def _call(self, command: Command) -> None:
-        """Evaluate the body of an own function or macro; the variables of a function are its
-        own.
+        """Evaluate the body of an own function or macro.
+
+        The variables of a function are its own.
         """
         definition, values = self.own.pop(command.name), self.values  # so that none calls itself
         values.budget.charge(_PARTS_A_CALL)
@@ -310,8 +313,9 @@ class _Evaluation:
             self.build.give_up("include() is not evaluated", command.at)
 
     def find_package(self, command: Command) -> None:
-        """Remember a package, whose variables are not known. One that is surely misspelt stops the
-        build, if it is required, and is not found.
+        """Remember a package, whose variables are not known.
+
+        One that is surely misspelt stops the build, if it is required, and is not found.
         """
         name, *words = self.values.texts(command.arguments) or [""]
         if isinstance(name, Unknown):
@@ -333,8 +337,8 @@ class _Evaluation:
         texts = self.values.texts(command.arguments)
         match texts:
             case ["GLOB" | "GLOB_RECURSE" as word, str() as name, *patterns]:
-                found = self.build.searched(patterns, command.at, recursive=word != "GLOB")
-                self.values.assign(name, found)
+                found_paths = self.build.searched(patterns, command.at, recursive=word != "GLOB")
+                self.values.assign(name, found_paths)
             case _:
                 names = [
                     text for text in texts[1:] if isinstance(text, str) and text.isidentifier()

@@ -1,6 +1,4 @@
-"""The slips of a CMakeLists.txt: words for which CMake stops, or for which it installs files
-elsewhere.
-"""
+"""The slips of a CMakeLists.txt: words for which CMake stops or installs files elsewhere."""
 
 import re
 from collections.abc import Collection, Iterable, Iterator
@@ -77,8 +75,9 @@ class _CMakeSlips:
             yield from self._of_command(command)
 
     def _near(self, name: str, known: Collection[str]) -> str | None:
-        """Return the name that surely is meant; of the first misspelt ones only, because comparing
-        names takes long.
+        """Return the name that surely is meant.
+
+        This is done for the first misspelt ones only, because comparing names takes long.
         """
         self._guesses += 1
         return near(name, known) if self._guesses <= MAX_GUESSES else None
@@ -96,23 +95,31 @@ class _CMakeSlips:
             command = command._replace(name=meant)
         for argument in command.arguments:
             yield from self._of_variables(argument)
-        first = command.arguments[0] if command.arguments else None
-        if first is None:
+        if not command.arguments:
             return
-        if command.name == "project" and self._name and "$" not in first.text:
-            if first.text != self._name:
-                reaction = (
-                    f"project() names the package {quoted(first.text)}, package.xml names it "
-                    f"{quoted(self._name)}"
-                )
-                yield self._of_argument(first, self._name, reaction)
+        first = command.arguments[0]
+        if command.name == "project":
+            yield from self._of_project(first)
         elif command.name == "find_package":
-            known = {*self._dependencies, "ament_cmake"}
-            meant = near(first.text, known) if first.text not in known else None
-            if meant is not None:
-                yield self._of_argument(first, meant, f"there is no package {quoted(first.text)}")
+            yield from self._of_package(first)
         elif command.name == "install":
             yield from self._of_install(command)
+
+    def _of_project(self, argument: Argument) -> Iterator[Slip]:
+        """Yield that project() has another name than package.xml."""
+        if self._name and "$" not in argument.text and argument.text != self._name:
+            reaction = (
+                f"project() names the package {quoted(argument.text)}, package.xml names it "
+                f"{quoted(self._name)}"
+            )
+            yield self._of_argument(argument, self._name, reaction)
+
+    def _of_package(self, argument: Argument) -> Iterator[Slip]:
+        """Yield that find_package() names a misspelt package."""
+        known = {*self._dependencies, "ament_cmake"}
+        meant = near(argument.text, known) if argument.text not in known else None
+        if meant is not None:
+            yield self._of_argument(argument, meant, f"there is no package {quoted(argument.text)}")
 
     def _of_install(self, command: Command) -> Iterator[Slip]:
         """Yield misspelt words of install(), and the paths that it lists."""
@@ -126,12 +133,13 @@ class _CMakeSlips:
         is_listed = first.text != "TARGETS"  # whether the arguments are what is installed
         for argument in others:
             text = argument.text
+            is_word = text.isupper() and argument.kind == "unquoted"
+            keyword = near(text, keywords) if is_word and text not in keywords else None
             if text in keywords:
                 is_listed = False
-            elif text.isupper() and argument.kind == "unquoted" and near(text, keywords):
+            elif keyword:
                 is_listed = False
-                meant = near(text, keywords) or ""
-                yield self._of_argument(argument, meant, f"install() knows no word {text}")
+                yield self._of_argument(argument, keyword, f"install() knows no word {text}")
             elif is_listed and "$" not in text:
                 yield from self._of_path(argument, is_folder=first.text == "DIRECTORY")
 
@@ -141,7 +149,9 @@ class _CMakeSlips:
         if not path or path in known:
             return
         folder = path.rpartition("/")[0]
-        meant = self._near(path, [it for it in known if it.rpartition("/")[0] == folder])
+        meant = self._near(
+            path, [other_path for other_path in known if other_path.rpartition("/")[0] == folder]
+        )
         if meant is not None:
             new = argument.text.replace(path, meant)
             yield self._of_argument(argument, new, f"the package has no {argument.text}")

@@ -61,8 +61,8 @@ class CmakeTargets:
         path = posixpath.normpath(folder.removeprefix(f"{ROOT}/"))
         files = self._listing.files
         self._listing.budget.charge(1 + len(files))
-        found = [it for it in files if posixpath.dirname(it) == path]
-        return sorted(it for it in found if it.endswith(_CPP))
+        files_beside = [file for file in files if posixpath.dirname(file) == path]
+        return sorted(file for file in files_beside if file.endswith(_CPP))
 
     def link(self, name: str, texts: Sequence[Text]) -> None:
         """Add what target_link_libraries() names."""

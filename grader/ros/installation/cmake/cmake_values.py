@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import chain
 
 from grader.ros.installation.cmake.language import Argument, Command
 from grader.ros.installation.places import PREFIX
@@ -40,8 +41,9 @@ class Values:
         self._reached: tuple[tuple[int, str], set[str] | None] | None = None
 
     def reached_packages(self) -> set[str] | None:
-        """Return the packages that were found, with those that they export; None where it is not
-        known which these are.
+        """Return the packages that were found, with those that they export.
+
+        The result is None where it is not known which these are.
         """
         if self.is_opaque:
             return None
@@ -50,12 +52,12 @@ class Values:
             self._reached = (key, self._reach(self.packages - {key[1]}))
         return self._reached[1]
 
-    def _reach(self, found: set[str]) -> set[str] | None:
+    def _reach(self, packages: set[str]) -> set[str] | None:
         exports = cmake_words().exports
-        self.budget.charge(len(found))
-        if not found.issubset(exports):
+        self.budget.charge(len(packages))
+        if not packages.issubset(exports):
             return None
-        pending, reached = [*found], set[str]()
+        pending, reached = [*packages], set[str]()
         while pending:
             package = pending.pop()
             if package not in reached:
@@ -104,11 +106,14 @@ class Values:
                 stack[-1].append(Unknown(f"{piece[0]} is not known", at))
             else:
                 stack[-1].append(piece[0])
-        found = joined(part for parts in stack for part in parts)
-        self.budget.charge(1, len(text) if isinstance(found, Unknown) else len(found))
-        if isinstance(found, str) and len(found) > _MAX_TEXT:
+        return self._bounded(joined(chain.from_iterable(stack)), len(text), at)
+
+    def _bounded(self, value: Text, length: int, at: Position) -> Text:
+        """Return a value unless it is too long; its length, or that of its text, is charged."""
+        self.budget.charge(1, length if isinstance(value, Unknown) else len(value))
+        if isinstance(value, str) and len(value) > _MAX_TEXT:
             return Unknown("a value is too long", at)
-        return found
+        return value
 
     def lookup(self, name: str, at: Position) -> Text:
         """Return the value of a variable: an empty text if it is certainly not set."""

@@ -33,8 +33,9 @@ _UNARY = (
 
 
 class Condition:
-    """A condition: texts, and whether each is written without quotes, so that it may name a
-    variable.
+    """A condition: texts, and whether each is written without quotes.
+
+    A text without quotes may name a variable.
     """
 
     def __init__(
@@ -50,9 +51,9 @@ class Condition:
 
     def holds(self) -> bool | None:
         """Return whether it holds; None if that is not known."""
-        found = self._either(0)
+        is_true = self._either(0)
         if self._index == len(self._tokens):
-            return found
+            return is_true
         return None
 
     def _peek(self) -> Text | None:
@@ -61,44 +62,44 @@ class Condition:
         return None
 
     def _either(self, depth: int) -> bool | None:
-        found = self._both(depth)
+        is_true = self._both(depth)
         while self._peek() == "OR":
             self._index += 1
             other = self._both(depth)
-            if found or other:
-                found = True
-            elif None in (found, other):
-                found = None
+            if is_true or other:
+                is_true = True
+            elif None in (is_true, other):
+                is_true = None
             else:
-                found = False
-        return found
+                is_true = False
+        return is_true
 
     def _both(self, depth: int) -> bool | None:
-        found = self._negated(depth)
+        is_true = self._negated(depth)
         while self._peek() == "AND":
             self._index += 1
             other = self._negated(depth)
-            if False in (found, other):
-                found = False
-            elif None in (found, other):
-                found = None
+            if False in (is_true, other):
+                is_true = False
+            elif None in (is_true, other):
+                is_true = None
             else:
-                found = True
-        return found
+                is_true = True
+        return is_true
 
     def _negated(self, depth: int) -> bool | None:
         if depth > _MAX_DEPTH:
             return None
         if self._peek() == "NOT":
             self._index += 1
-            found = self._negated(depth + 1)
-            return None if found is None else not found
+            is_true = self._negated(depth + 1)
+            return None if is_true is None else not is_true
         if self._peek() == "(":
             self._index += 1
-            found = self._either(depth + 1)
+            is_true = self._either(depth + 1)
             if self._peek() == ")":
                 self._index += 1
-            return found
+            return is_true
         return self._leaf()
 
     def _leaf(self) -> bool | None:
@@ -168,10 +169,10 @@ class Condition:
         if word == "IN_LIST":
             items = self._values.lookup(right, self._at)
             return None if isinstance(items, Unknown) else left in split_list(items)
+        if word == "MATCHES":
+            return right in left if right.isidentifier() else None
         if word in _COMPARE and _NUMBER.fullmatch(left) and _NUMBER.fullmatch(right):
             return _COMPARE[word](float(left), float(right))
-        if word == "MATCHES" and right.isidentifier():
-            return right in left
         return None
 
 

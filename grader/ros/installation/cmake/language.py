@@ -27,8 +27,9 @@ BLOCK_WORDS = frozenset({*_ENDS, *_ENDS.values(), "elseif", "else"})
 
 
 class CMakeFault(Exception):
-    """What CMake cannot parse, and where; `sure` is False for what only this reader does not
-    parse.
+    """What CMake cannot parse, and where.
+
+    `sure` is False for what only this reader does not parse.
     """
 
     def __init__(self, message: str, at: Position, *, is_certain: bool = True) -> None:
@@ -45,8 +46,9 @@ class Argument(NamedTuple):
 
 
 class Command(NamedTuple):
-    """A command, with the commands in it if it begins a block; of `if`, `elseif` and `else` are in
-    `others`.
+    """A command, with the commands in it if it begins a block.
+
+    Of `if`, `elseif` and `else` are in `others`.
     """
 
     name: str  # in lower case
@@ -59,17 +61,17 @@ class Command(NamedTuple):
 def parse_cmake(source: Source) -> tuple[Command, ...]:
     """Return the commands of a file. Raises CMakeFault."""
     commands = [*_commands(source)]
-    found, rest = _block(commands, 0, "", 0)
+    parsed, rest = _block(commands, 0, "", 0)
     if rest < len(commands):
         raise CMakeFault(f"{commands[rest].name}() has no beginning", commands[rest].at)
-    return found
+    return parsed
 
 
 def _block(
     commands: list[Command], index: int, end: str, depth: int
 ) -> tuple[tuple[Command, ...], int]:
     """Return the commands up to the end of a block, and the index of that end."""
-    found: list[Command] = []
+    block: list[Command] = []
     while index < len(commands):
         command = commands[index]
         if command.name == end or (end == "endif" and command.name in ("elseif", "else")):
@@ -78,14 +80,15 @@ def _block(
             break
         if command.name in _ENDS:
             command, index = _opened(commands, index, depth)
-        found.append(command)
+        block.append(command)
         index += 1
-    return tuple(found), index
+    return tuple(block), index
 
 
 def _opened(commands: list[Command], start: int, depth: int) -> tuple[Command, int]:
-    """Return the command that begins a block, with what is in it, and the index of its end. Raises
-    CMakeFault.
+    """Return the command that begins a block, with what is in it, and the index of its end.
+
+    Raises CMakeFault.
     """
     first, end = commands[start], _ENDS[commands[start].name]
     if depth > _MAX_DEPTH:
@@ -124,7 +127,7 @@ def _commands(source: Source) -> Iterator[Command]:
 def _arguments(text: str, offset: int, places: "_Columns") -> tuple[tuple[Argument, ...], int]:
     """Return the arguments of a command and where it ends. Raises CMakeFault."""
     start, depth = offset, 0
-    found: list[Argument] = []
+    arguments: list[Argument] = []
     while True:
         offset = _skip(text, offset)
         match = _ARGUMENT.match(text, offset)
@@ -139,15 +142,15 @@ def _arguments(text: str, offset: int, places: "_Columns") -> tuple[tuple[Argume
         if match["paren"]:
             depth += 1 if match["paren"] == "(" else -1
             if depth < 0:
-                return tuple(found), offset
+                return tuple(arguments), offset
         content = match[4] if kind == "bracket" else match[kind]
-        found.append(Argument(content, kind, places.at(match.start())))
+        arguments.append(Argument(content, kind, places.at(match.start())))
 
 
 def _skip(text: str, offset: int) -> int:
     """Return where the next token begins, after space and comments."""
-    found = _SKIP.match(text, offset)
-    return found.end() if found is not None else offset
+    match = _SKIP.match(text, offset)
+    return match.end() if match is not None else offset
 
 
 class _Columns:

@@ -4,7 +4,7 @@ Each rule is about what certainly fails once it runs.
 """
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
 from grader.ros.cpp.declarations import CppFunction, declared_in, plain
 from grader.ros.cpp.objects import class_written
@@ -68,7 +68,9 @@ class _CppSearch:
 
     def __init__(self, unit: CppUnit, nodes: Collection[str]) -> None:
         self._unit, self._nodes = unit, nodes
-        self._methods = [it for it in unit.functions if unit.owner_of(it) in nodes]
+        self._methods = [
+            function for function in unit.functions if unit.owner_of(function) in nodes
+        ]
 
     def _calls(self, function: CppFunction, *names: str) -> Iterator[CppNode]:
         for call in self._unit.calls_in(function):
@@ -79,8 +81,8 @@ class _CppSearch:
     def _uses(self, name: str, function: CppFunction) -> list[CppNode]:
         """Return where a name is written in a function."""
         node = function.node
-        uses = [it for it in self._unit.uses.get(name, ()) if it.file is node.file]
-        return [it for it in uses if node.start <= it.start < node.end]
+        uses = [use for use in self._unit.uses.get(name, ()) if use.file is node.file]
+        return [use for use in uses if node.start <= use.start < node.end]
 
     def destroyed(self) -> Iterator[CodeFault]:
         """Yield what a method makes and nothing keeps: it is destroyed when the method ends."""
@@ -106,23 +108,23 @@ class _CppSearch:
                 yield CodeFault("destroyed at once", message, node.location)
 
     def _is_lost(self, made: CppNode, function: CppFunction) -> bool:
-        """Return whether an object is not kept: it is a statement of its own, or of a local
-        variable that nothing else names.
+        """Return whether an object is not kept.
+
+        It is a statement of its own, or of a local variable that nothing else names.
         """
-        parent = made.parent
-        if made.kind == "declaration":
-            names = [name for name, _ in declared_in(made)]
-        elif parent is None or is_conditional(made, function.node):
+        declaration = made
+        if made.kind != "declaration":
+            parent = made.parent
+            if parent is None or is_conditional(made, function.node):
+                return False
+            if parent.kind == "expression_statement":
+                return True
+            if parent.kind != "init_declarator" or parent.parent is None:
+                return False
+            declaration = parent.parent
+        if "static" in declaration.text.split("(")[0].split():
             return False
-        elif parent.kind == "expression_statement":
-            return True
-        elif parent.kind == "init_declarator" and parent.parent is not None:
-            names = [name for name, _ in declared_in(parent.parent)]
-        else:
-            return False
-        declaration = made if made.kind == "declaration" else (parent and parent.parent)
-        if declaration is None or "static" in declaration.text.split("(")[0].split():
-            return False
+        names = [name for name, _ in declared_in(declaration)]
         return len(names) == 1 and len(self._uses(names[0].text, function)) == 1
 
     def without_rotation(self) -> Iterator[CodeFault]:
@@ -130,23 +132,11 @@ class _CppSearch:
         for function in self._unit.functions:
             if function.body is None or not any(self._calls(function, "sendTransform")):
                 continue
-            found: dict[str, dict[str, list[CppNode]]] = {}
-            for node in function.node.walk():
-                if node.kind != "assignment_expression":
-                    continue
-                left, right = node.child("left"), node.child("right")
-                match = _ROTATION.fullmatch(left.text) if left is not None else None
-                if match is not None and right is not None:
-                    parts = found.setdefault(match[1], {})
-                    parts.setdefault(match[2], []).append(right)
-            for path, parts in found.items():
-                written = [it for values in parts.values() for it in values]
-                numbers = [it for it in written if it.kind == "number_literal"]
-                zeros = [it for it in numbers if _ZERO.fullmatch(it.text)]
-                is_zero = len(parts) == len(zeros) == len(written) == 4
-                if is_zero and self._is_only_sent(path, function):
+            for path, parts in _assigned_rotations(function).items():
+                zero = _last_zero(parts)
+                if zero is not None and self._is_only_sent(path, function):
                     message = "the rotation 0 0 0 0 turns nothing: tf2 ignores the transform"
-                    yield CodeFault("no rotation", message, zeros[-1].location)
+                    yield CodeFault("no rotation", message, zero.location)
 
     def _is_only_sent(self, path: str, function: CppFunction) -> bool:
         """Return whether nothing but the statements that are read can set a transform."""
@@ -178,8 +168,9 @@ class _CppSearch:
                     return
 
     def _is_made(self, name: str) -> bool:
-        """Return whether an object of a class may be made: it is named otherwise than as the type
-        of a pointer that is a member.
+        """Return whether an object of a class may be made.
+
+        The class is named otherwise than as the type of a pointer that is a member.
         """
         for file in self._unit.files:
             for node in file.syntax.root.walk():
@@ -192,24 +183,32 @@ class _CppSearch:
         return False
 
     def _is_own_buffer(self, call: CppNode) -> bool:
-        """Return whether a call is a method of a member that is a buffer, which only such methods
-        are called of.
+        """Return whether a call is a method of a member that is a buffer.
+
+        Only such methods are called of the member.
         """
         called = call.child("function")
         owner = called.child("argument") if called is not None else None
         if owner is None or owner.kind != "identifier":
             return False
-        variables = [it for found in self._unit.variables.values() for it in found]
-        own = [it for it in variables if it.declarator.text == owner.text]
-        if len(own) != 1 or not re.search(rf"\b{_BUFFER}\b", own[0].type):
+        variables = [
+            variable
+            for variables_of_name in self._unit.variables.values()
+            for variable in variables_of_name
+        ]
+        declared = [variable for variable in variables if variable.declarator.text == owner.text]
+        if len(declared) != 1 or not re.search(rf"\b{_BUFFER}\b", declared[0].type):
             return False
         return all(_is_plain_use(use) for use in self._unit.uses[owner.text])
 
     def without_spin(self) -> Iterator[CodeFault]:
         """Yield the end of a main() whose nodes nothing spins."""
-        mains = [it for it in self._unit.functions if it.name == "main" and not it.owner]
-        words = {word for file in self._unit.files for word in file.words}
-        if len(mains) != 1 or any(_SPINNING.search(word) for word in words):
+        mains = [
+            function
+            for function in self._unit.functions
+            if function.name == "main" and not function.owner
+        ]
+        if len(mains) != 1 or any(_SPINNING.search(word) for word in self._words()):
             return
         callbacks = any(
             any(self._calls(function, *_KEPT)) for function in (*self._methods, mains[0])
@@ -222,24 +221,31 @@ class _CppSearch:
         """Yield callbacks that wait for a response, which the same thread would have to receive."""
         if any(name in self._unit.uses for name in _CONCURRENT):
             return
-        words = {word for file in self._unit.files for word in file.words}
-        if not words.isdisjoint(_CONCURRENT):
-            return
-        for function in self._methods:
-            for call in self._calls(function, "spin_until_future_complete"):
-                if self._is_in_callback(call, function) and _is_given_itself(call):
-                    message = "a callback must not spin its own node: rclcpp throws an error"
-                    yield CodeFault("waits in a callback", message, call.location)
-            for call in self._calls(function, *_WAITING):
-                if self._is_in_callback(call, function) and self._is_of_request(call, function):
-                    message = (
-                        "this callback waits for a response that only the next callback can receive"
-                    )
-                    yield CodeFault("waits in a callback", message, call.location)
+        if self._words().isdisjoint(_CONCURRENT):
+            for function in self._methods:
+                yield from self._waiting_in(function)
+
+    def _waiting_in(self, function: CppFunction) -> Iterator[CodeFault]:
+        """Yield where a method waits in a callback."""
+        for call in self._calls(function, "spin_until_future_complete"):
+            if self._is_in_callback(call, function) and _is_given_itself(call):
+                message = "a callback must not spin its own node: rclcpp throws an error"
+                yield CodeFault("waits in a callback", message, call.location)
+        for call in self._calls(function, *_WAITING):
+            if self._is_in_callback(call, function) and self._is_of_request(call, function):
+                message = (
+                    "this callback waits for a response that only the next callback can receive"
+                )
+                yield CodeFault("waits in a callback", message, call.location)
+
+    def _words(self) -> set[str]:
+        """Return the words in the files of the unit."""
+        return {word for file in self._unit.files for word in file.words}
 
     def _is_in_callback(self, node: CppNode, function: CppFunction) -> bool:
-        """Return whether a place is in a function that is given to a timer, a subscription or a
-        service.
+        """Return whether a place is in a function that becomes a callback.
+
+        It is given to a timer, a subscription or a service.
         """
         for around in node.ancestors():
             if around is function.node:
@@ -247,13 +253,9 @@ class _CppSearch:
             if around.kind == "lambda_expression":
                 return _is_callback_argument(around)
         for use in self._unit.uses.get(function.name, ()):
-            pointed = next((it for it in use.ancestors() if it.kind == "pointer_expression"), None)
-            if pointed is not None and pointed.text.startswith("&"):
-                bound = next(
-                    (it for it in pointed.ancestors() if it.kind == "call_expression"), None
-                )
-                if bound is not None and called_name(bound) == "std::bind":
-                    return _is_callback_argument(bound)
+            bound = _binding_of(use)
+            if bound is not None:
+                return _is_callback_argument(bound)
         return False
 
     def _is_of_request(self, call: CppNode, function: CppFunction) -> bool:
@@ -266,21 +268,17 @@ class _CppSearch:
             return called_name(owner) == "async_send_request"
         if owner.kind != "identifier":
             return False
-        for use in self._uses(owner.text, function):
-            made = use.parent
-            if use.field == "declarator" and made is not None and made.kind == "init_declarator":
-                value = made.child("value")
-                if value is not None and value.kind == "call_expression":
-                    is_request = called_name(value) == "async_send_request"
-                    return is_request and len(arguments_of(value)) == 1
-        return False
+        made = _call_declared(self._uses(owner.text, function))
+        if made is None or called_name(made) != "async_send_request":
+            return False
+        return len(arguments_of(made)) == 1
 
 
 def _may_wait(function: CppFunction, unit: CppUnit) -> bool:
     """Return whether a function may run for so long that what it makes does its work."""
     if any(node.kind in _LOOPS for node in function.node.walk()):
         return True
-    calls = [it for it in unit.calls_in(function) if it.kind == "call_expression"]
+    calls = [call for call in unit.calls_in(function) if call.kind == "call_expression"]
     return any(_SPINNING.search(called_name(call).rpartition("::")[2]) for call in calls)
 
 
@@ -291,8 +289,9 @@ def _outermost_member(node: CppNode) -> CppNode:
 
 
 def _is_number_set(member: CppNode) -> bool:
-    """Return whether a member of a transform is set that is no rotation as a whole, or is a number
-    of one.
+    """Return whether a member of a transform is set that is no rotation, or is a number of one.
+
+    No rotation means none as a whole.
     """
     parent = member.parent
     if parent is None or parent.kind != "assignment_expression" or member.field != "left":
@@ -331,3 +330,51 @@ def _is_callback_argument(node: CppNode) -> bool:
     if call is None or call.kind != "call_expression":
         return False
     return called_name(call).rpartition("::")[2] in _GIVEN_CALLBACKS
+
+
+def _assigned_rotations(function: CppFunction) -> dict[str, dict[str, list[CppNode]]]:
+    """Return what a function assigns to the numbers of rotations, by paths and numbers."""
+    rotations: dict[str, dict[str, list[CppNode]]] = {}
+    for node in function.node.walk():
+        if node.kind != "assignment_expression":
+            continue
+        left, right = node.child("left"), node.child("right")
+        match = _ROTATION.fullmatch(left.text) if left is not None else None
+        if match is not None and right is not None:
+            parts = rotations.setdefault(match[1], {})
+            parts.setdefault(match[2], []).append(right)
+    return rotations
+
+
+def _last_zero(parts: Mapping[str, Sequence[CppNode]]) -> CppNode | None:
+    """Return the last number of a rotation of four zeros, each of which is assigned once."""
+    written = [value for values in parts.values() for value in values]
+    numbers = [value for value in written if value.kind == "number_literal"]
+    zeros = [number for number in numbers if _ZERO.fullmatch(number.text)]
+    is_zero = len(parts) == len(zeros) == len(written) == 4
+    return zeros[-1] if is_zero else None
+
+
+def _call_declared(uses: Iterable[CppNode]) -> CppNode | None:
+    """Return the first call that the declaration of a variable has as its value."""
+    for use in uses:
+        made = use.parent
+        if use.field == "declarator" and made is not None and made.kind == "init_declarator":
+            value = made.child("value")
+            if value is not None and value.kind == "call_expression":
+                return value
+    return None
+
+
+def _binding_of(use: CppNode) -> CppNode | None:
+    """Return the call of std::bind() that is given a pointer to a method where it is named."""
+    pointed = _first_around(use, "pointer_expression")
+    if pointed is None or not pointed.text.startswith("&"):
+        return None
+    bound = _first_around(pointed, "call_expression")
+    return bound if bound is not None and called_name(bound) == "std::bind" else None
+
+
+def _first_around(node: CppNode, kind: str) -> CppNode | None:
+    """Return the nearest node of a kind around another one."""
+    return next((ancestor for ancestor in node.ancestors() if ancestor.kind == kind), None)

@@ -58,7 +58,7 @@ class CppFiles:
     def compiled(self) -> tuple[CompiledTarget, ...]:
         """The targets that have sources in C++, without those of tests."""
         setup = self._package.installation
-        found: dict[tuple[str, ...], CppUnit] = {}
+        units: dict[tuple[str, ...], CppUnit] = {}
         compiled = []
         for target in self._targets.values():
             paths = [*self._compiled_into(target)]
@@ -66,7 +66,7 @@ class CppFiles:
                 continue
             files, unread = self._read_all(paths)
             key = tuple(file.syntax.source.path for file in files)
-            unit = found.setdefault(key, CppUnit(files))
+            unit = units.setdefault(key, CppUnit(files))
             assert setup is not None
             compiled.append(CompiledTarget(target, setup.location(target.at), unit, unread))
         return tuple(compiled)
@@ -127,7 +127,7 @@ class CppFiles:
     @property
     def read_paths(self) -> frozenset[str]:
         """The paths of the files that are read so far."""
-        return frozenset(path for path, it in self._files.items() if isinstance(it, CppFile))
+        return frozenset(path for path, file in self._files.items() if isinstance(file, CppFile))
 
     def _read(self, path: str) -> CppFile | _UnreadCpp:
         full = self._package.path(path)

@@ -1,6 +1,4 @@
-"""The frames that the functions of a node in C++ name: those that it publishes, and those that it
-looks up or stamps messages with.
-"""
+"""The frames that functions of a C++ node publish, look up or stamp messages with."""
 
 from collections.abc import Iterator
 
@@ -20,6 +18,18 @@ def frames_in(
     function: CppFunction, unit: CppUnit, evaluation: CppEvaluation
 ) -> Iterator[NodeFrame]:
     """Yield the frames that a function names. One that is published and not known has no name."""
+    yield from _frames_in_calls(function, unit, evaluation)
+    for name in ("frame_id", "child_frame_id"):
+        for use in unit.uses.get(name, ()):
+            is_inside = function.node.start <= use.start < function.node.end
+            if use.file is function.node.file and is_inside:
+                yield from _set_frame(use, function, unit, evaluation)
+
+
+def _frames_in_calls(
+    function: CppFunction, unit: CppUnit, evaluation: CppEvaluation
+) -> Iterator[NodeFrame]:
+    """Yield the frames between which a function looks up transforms, and unknown published ones."""
     for call in unit.calls_in(function):
         short = called_name(call).rpartition("::")[2] if call.kind == "call_expression" else ""
         given = arguments_of(call) if short else []
@@ -29,11 +39,6 @@ def frames_in(
                 yield _frame("looks up", node, evaluation)._replace(lookup=call.location)
         elif short == "sendTransform" and not _is_known_transform(given, function, unit):
             yield NodeFrame("publishes", None, call.location)
-    for name in ("frame_id", "child_frame_id"):
-        for use in unit.uses.get(name, ()):
-            is_inside = function.node.start <= use.start < function.node.end
-            if use.file is function.node.file and is_inside:
-                yield from _set_frame(use, function, unit, evaluation)
 
 
 def _set_frame(
@@ -45,15 +50,16 @@ def _set_frame(
     if member is None or setting is None or setting.kind != "assignment_expression":
         return
     value = setting.child("right")
-    if member.field != "left" or value is None:
-        return
-    root = next((it for it in member.walk() if it.kind == "identifier"), None)
-    is_transform = root is not None and _type_of(root, function, unit).endswith(_TRANSFORM)
-    is_child = use.text == "child_frame_id"
-    kind: FrameUse = "names"
-    if is_transform:
-        kind = "publishes" if is_child else "is above"
-    yield _frame(kind, value, evaluation)
+    if member.field == "left" and value is not None:
+        yield _frame(_kind_of_use(use, member, function, unit), value, evaluation)
+
+
+def _kind_of_use(use: CppNode, member: CppNode, function: CppFunction, unit: CppUnit) -> FrameUse:
+    """Return what a frame is to the message in which it is set."""
+    root = next((inner for inner in member.walk() if inner.kind == "identifier"), None)
+    if root is None or not _type_of(root, function, unit).endswith(_TRANSFORM):
+        return "names"
+    return "publishes" if use.text == "child_frame_id" else "is above"
 
 
 def _frame(kind: FrameUse, node: CppNode, evaluation: CppEvaluation) -> NodeFrame:

@@ -1,5 +1,7 @@
-"""What C++ code asks of the content of messages: a time in their header that a synchroniser
-compares, and the encoding of images that cv_bridge makes and converts.
+"""What C++ code asks of the content of messages.
+
+A time in their header that a synchroniser compares, and the encoding of images that cv_bridge
+makes and converts.
 """
 
 import re
@@ -68,20 +70,30 @@ class CppContentReader:
         said: set[tuple[str | None, ...]] = set()
         for file in self._unit.files:
             for node in file.of_kind("template_type"):
-                scopes = self._scopes_at(node)
-                names = {*self._unit.meanings(_full_name(node), scopes)} & _SYNCHRONISERS
-                given = node.child("arguments")
-                if len(names) != 1 or given is None or is_conditional(node, file.syntax.root):
+                compared = self._compared_by(node, file.syntax.root)
+                if compared is None:
                     continue
-                [by] = names
-                written = [it for it in given.children if it.kind == "type_descriptor"]
-                types = [message_type(it.text, self._unit, scopes) for it in written]
-                if (by, *types) not in said:
-                    said.add((by, *types))
-                    others = tuple(it for it in types if it is not None)
-                    for each, at in zip(types, written, strict=True):
-                        if each is not None:
-                            yield SynchronisedType(each, by, at.location, others)
+                synchroniser, types, written = compared
+                if (synchroniser, *types) not in said:
+                    said.add((synchroniser, *types))
+                    yield from _compared_types(synchroniser, types, written)
+
+    def _compared_by(
+        self, node: CppNode, root: CppNode
+    ) -> tuple[str, list[str | None], list[CppNode]] | None:
+        """Return the policy of message_filters that a template is, with the types of messages.
+
+        The last are where these types are written. The result is None for another template, and
+        for one under a condition.
+        """
+        scopes = self._scopes_at(node)
+        names = {*self._unit.meanings(_full_name(node), scopes)} & _SYNCHRONISERS
+        given = node.child("arguments")
+        if len(names) != 1 or given is None or is_conditional(node, root):
+            return None
+        written = [child for child in given.children if child.kind == "type_descriptor"]
+        types = [message_type(descriptor.text, self._unit, scopes) for descriptor in written]
+        return names.pop(), types, written
 
     def _scopes_at(self, node: CppNode) -> Sequence[str]:
         """Return the namespaces and classes around a place."""
@@ -97,20 +109,22 @@ class CppContentReader:
         return scopes
 
     def encodings(self) -> Mapping[Location, tuple[ImageEncoding, ...]]:
-        """Return the encodings of images that publishers send, and to which callbacks convert what
-        they get, by the places where these are made; none where one is not known.
+        """Return the encodings that publishers send, and to which callbacks convert images.
+
+        The keys are the places where publishers and subscriptions are made. There are none where
+        one is not known.
         """
         if not any(name in self._unit.uses for name in (_ENCODING, *_CONVERTING, _TO_MESSAGE)):
             return {}
-        found = {}
+        encodings_by_place = {}
         for function in self._unit.functions:
             for call in self._unit.calls_in(function):
                 name = called_name(call) if call.kind == "call_expression" else ""
                 if name == "create_publisher":
-                    found[call.location] = self._sent_by(call)
+                    encodings_by_place[call.location] = self._sent_by(call)
                 elif name == "create_subscription":
-                    found[call.location] = self._asked_by(call, function)
-        return found
+                    encodings_by_place[call.location] = self._asked_by(call, function)
+        return encodings_by_place
 
     # --- What is sent
     # ----------------------------------------------------------------------
@@ -130,32 +144,18 @@ class CppContentReader:
 
     def _published(self, variable: CppNode, made: CppNode) -> Sequence[CppNode] | None:
         """Return the calls of publish() of a publisher; None where it may publish elsewhere."""
-        calls = []
+        calls: list[CppNode] = []
         for use in self._evaluation.uses_of(variable) or ():
-            node = _whole(use)
-            parent = node.parent
-            if parent is None:
+            of_use = _publishing_calls(_whole(use), made)
+            if of_use is None:
                 return None
-            call, field = parent.parent, parent.child("field")
-            is_method = parent.kind == "field_expression" and node.field == "argument"
-            if is_method and field is not None and call is not None:
-                if call.kind != "call_expression":
-                    return None
-                if field.text == "publish":
-                    calls.append(call)
-                elif field.text not in _HARMLESS_METHODS:
-                    return None
-            elif node.field in ("declarator", "left") or parent.kind == "field_initializer":
-                is_here = parent.start <= made.start < parent.end
-                if not is_here and parent.kind not in ("declaration", "field_declaration"):
-                    return None
-            elif parent.kind not in _READING:
-                return None
+            calls += of_use
         return calls
 
     def _encoding_of(self, node: CppNode, depth: int) -> ImageEncoding | None:
-        """Return the encoding of an image, a message or one of cv_bridge; None where it is not
-        known.
+        """Return the encoding of an image, a message or one of cv_bridge.
+
+        The result is None where it is not known.
         """
         node = _unwrapped(node)
         if depth == 0:
@@ -216,46 +216,48 @@ class CppContentReader:
         if writes is None:
             return None
         if writes.encodings:
-            [assignment, *more] = writes.encodings
-            value = assignment.child("right")
-            is_last = not more and all(
-                it.file is assignment.file and it.start < assignment.start for it in writes.values
-            )
-            is_set = value is not None and is_last and self._reaches(assignment, node)
-            return self._encoding_in([value], 0) if is_set and value is not None else None
+            return self._encoding_assigned(writes, node)
         if len(writes.values) != 1:
             return None
         [value] = writes.values
         if value.kind in _LISTS:
-            return self._encoding_in([it for it in value.children if it.kind != "comment"], 1)
+            return self._encoding_in(
+                [child for child in value.children if child.kind != "comment"], 1
+            )
         return self._encoding_of(value, depth - 1)
+
+    def _encoding_assigned(self, writes: _Writes, node: CppNode) -> ImageEncoding | None:
+        """Return the encoding that is assigned to a variable after everything else."""
+        [assignment, *more] = writes.encodings
+        value = assignment.child("right")
+        if more or value is None:
+            return None
+        is_last = all(
+            write.file is assignment.file and write.start < assignment.start
+            for write in writes.values
+        )
+        if is_last and self._reaches(assignment, node):
+            return self._encoding_in([value], 0)
+        return None
 
     def _writes_of(self, name: CppNode) -> _Writes | None:
         """Return what sets an image; None where something that is not known may set it."""
         uses = self._evaluation.uses_of(name)
         if uses is None:
             return None
-        values, encodings = [], []
+        values: list[CppNode] = []
+        encodings: list[CppNode] = []
         for use in uses:
-            node = _whole(use)
-            while node.parent is not None and _is_same(node.parent):
-                node = node.parent
-            parent = node.parent
-            if parent is None:
+            node = _wrapped(use)
+            if node.parent is None:
                 return None
-            if parent.kind == "field_expression" and node.field == "argument":
-                encoding = _encoding_set(parent)
-                if encoding is None:
-                    return None
-                encodings += encoding
-            elif node.field == "declarator":
-                value = _value_declared(use)
-                values += [value] if value is not None else []
-            elif parent.kind == "assignment_expression" and node.field == "left":
-                value = parent.child("right")
-                values += [value] if value is not None else []
-            elif not _is_given_to(node, _TAKERS) and parent.kind not in _READING:
+            if node.parent.kind == "field_expression" and node.field == "argument":
+                written, place = _encoding_set(node.parent), encodings
+            else:
+                written, place = _value_set(use, node, node.parent), values
+            if written is None:
                 return None
+            place += written
         return _Writes(values, encodings)
 
     def _reaches(self, assignment: CppNode, use: CppNode) -> bool:
@@ -293,10 +295,7 @@ class CppContentReader:
     ) -> tuple[CppNode | None, CppNode | None]:
         """Return the body of a callback and the name of what it is given, as far as known."""
         if callback.kind == "identifier":
-            declared = [it for it in self._evaluation.uses_of(callback) or () if it is not callback]
-            values = [_value_declared(it) for it in declared if it.field == "declarator"]
-            if len(declared) == 1 and len(values) == 1 and values[0] is not None:
-                callback = values[0]
+            callback = self._declared_callback(callback)
         if callback.kind == "lambda_expression":
             declarator = callback.child("declarator")
             parameters = declarator.child("parameters") if declarator is not None else None
@@ -308,6 +307,14 @@ class CppContentReader:
             if method is not None:
                 return self._method(plain(method.text), function)
         return None, None
+
+    def _declared_callback(self, name: CppNode) -> CppNode:
+        """Return the value of the only declaration of a variable; else its name."""
+        declared = [use for use in self._evaluation.uses_of(name) or () if use is not name]
+        values = [_value_declared(use) for use in declared if use.field == "declarator"]
+        if len(declared) == 1 and len(values) == 1 and values[0] is not None:
+            return values[0]
+        return name
 
     def _method(self, name: str, function: CppFunction) -> tuple[CppNode | None, CppNode | None]:
         """Return the body and the first parameter of a method of the class of a function."""
@@ -323,15 +330,16 @@ class CppContentReader:
     @cached_property
     def _methods(self) -> Mapping[tuple[str, str], Sequence[CppFunction]]:
         """The functions by their classes and names."""
-        found: dict[tuple[str, str], list[CppFunction]] = {}
+        methods: dict[tuple[str, str], list[CppFunction]] = {}
         for function in self._unit.functions:
             owner = self._unit.owner_of(function)
-            found.setdefault((owner, function.name), []).append(function)
-        return found
+            methods.setdefault((owner, function.name), []).append(function)
+        return methods
 
     def _asked_in(self, body: CppNode, message: CppNode) -> tuple[ImageEncoding, ...]:
-        """Return the encodings to which a function converts a message; none where one is not
-        known, or it reads what the encoding is.
+        """Return the encodings to which a function converts a message.
+
+        There are none where one is not known, or it reads what the encoding is.
         """
         asked = []
         self._budget.charge(1, body.end - body.start)
@@ -342,11 +350,7 @@ class CppContentReader:
                     return ()
             if node.kind in _LEAVING:
                 break  # what follows may never be executed
-            if node.kind != "call_expression":
-                continue
-            given = arguments_of(node)
-            is_converted = called_name(node).rpartition("::")[2] in _CONVERTING[:2] and given
-            if not is_converted or _unwrapped(given[0]).text != message.text:
+            if not _is_conversion(node, message):
                 continue
             encoding = self._converted_to(node)
             if encoding is None or is_conditional(node, body):
@@ -386,6 +390,14 @@ def _is_same(node: CppNode) -> bool:
     return node.kind == "parenthesized_expression"
 
 
+def _wrapped(use: CppNode) -> CppNode:
+    """Return the largest expression that is what a name means, with `*` and parentheses."""
+    node = _whole(use)
+    while node.parent is not None and _is_same(node.parent):
+        node = node.parent
+    return node
+
+
 def _unwrapped(node: CppNode) -> CppNode:
     """Return an expression without `*`, parentheses and std::move()."""
     while True:
@@ -399,8 +411,10 @@ def _unwrapped(node: CppNode) -> CppNode:
 
 
 def _encoding_set(member: CppNode) -> list[CppNode] | None:
-    """Return the assignment of an encoding where a member of an image is named; none for another
-    member, None where the encoding may be set in another way.
+    """Return the assignment of an encoding where a member of an image is named.
+
+    There is none for another member. The result has None where the encoding may be set in another
+    way.
     """
     parent, field = member.parent, member.child("field")
     if parent is None or field is None:
@@ -441,14 +455,84 @@ def _parameter_name(parameters: Sequence[CppNode]) -> CppNode | None:
 
 def _only_call(body: CppNode, message: CppNode | None) -> CppNode | None:
     """Return the call of a method that is all that a function does with what it is given."""
-    statements = [it for it in body.children if it.kind != "comment"]
+    statements = [child for child in body.children if child.kind != "comment"]
     if message is None or len(statements) != 1 or not statements[0].children:
         return None
     call = statements[0].children[0]
     given = arguments_of(call) if call.kind == "call_expression" else []
     if not given or _unwrapped(given[0]).text != message.text:
         return None
+    return call if _is_own_method(call) else None
+
+
+def _is_own_method(call: CppNode) -> bool:
+    """Return whether a call is a method of the same object, or a function without a scope."""
     function = call.child("function")
     owner = function.child("argument") if function is not None else None
     is_own = owner is None or owner.kind == "this"
-    return call if is_own and "::" not in called_name(call) else None
+    return is_own and "::" not in called_name(call)
+
+
+def _compared_types(
+    synchroniser: str, types: Sequence[str | None], written: Sequence[CppNode]
+) -> Iterator[SynchronisedType]:
+    """Yield the known types of the messages that a synchroniser compares, with the others."""
+    known = tuple(type_name for type_name in types if type_name is not None)
+    for type_name, at in zip(types, written, strict=True):
+        if type_name is not None:
+            yield SynchronisedType(type_name, synchroniser, at.location, known)
+
+
+def _publishing_calls(node: CppNode, made: CppNode) -> list[CppNode] | None:
+    """Return the call of publish() that a use of a publisher is.
+
+    There is none where it is another harmless use. The result is None where the publisher may
+    publish elsewhere.
+    """
+    parent = node.parent
+    if parent is None:
+        return None
+    call, field = parent.parent, parent.child("field")
+    is_method = parent.kind == "field_expression" and node.field == "argument"
+    if is_method and field is not None and call is not None:
+        return _calls_of_method(call, field.text)
+    if node.field in ("declarator", "left") or parent.kind == "field_initializer":
+        is_here = parent.start <= made.start < parent.end
+        is_harmless = is_here or parent.kind in ("declaration", "field_declaration")
+    else:
+        is_harmless = parent.kind in _READING
+    return [] if is_harmless else None
+
+
+def _calls_of_method(call: CppNode, method: str) -> list[CppNode] | None:
+    """Return the call of a publisher's method if it is publish(); None where it may publish."""
+    if call.kind != "call_expression":
+        return None
+    if method == "publish":
+        return [call]
+    return [] if method in _HARMLESS_METHODS else None
+
+
+def _value_set(use: CppNode, node: CppNode, parent: CppNode) -> list[CppNode] | None:
+    """Return the value that a use of an image sets it to, if it sets it.
+
+    The result is None where the use may set it to something that is not known.
+    """
+    value = None
+    if node.field == "declarator":
+        value = _value_declared(use)
+    elif parent.kind == "assignment_expression" and node.field == "left":
+        value = parent.child("right")
+    elif not _is_given_to(node, _TAKERS) and parent.kind not in _READING:
+        return None
+    return [value] if value is not None else []
+
+
+def _is_conversion(node: CppNode, message: CppNode) -> bool:
+    """Return whether a node is a call of cv_bridge that converts a message."""
+    if node.kind != "call_expression":
+        return False
+    given = arguments_of(node)
+    if called_name(node).rpartition("::")[2] not in _CONVERTING[:2] or not given:
+        return False
+    return _unwrapped(given[0]).text == message.text

@@ -1,5 +1,6 @@
-"""The fields that functions in C++ use of messages, services and actions whose type is certain:
-of parameters and local variables that are declared once with that type.
+"""The fields that functions in C++ use of messages, services and actions of certain type.
+
+The type is certain of parameters and local variables that are declared once with it.
 """
 
 import re
@@ -38,16 +39,19 @@ def cpp_field_uses(function: CppFunction, unit: CppUnit) -> Iterator[FieldUse]:
     if not types:
         return
     for node in _unconditional(function.node):
-        if node.kind != "field_expression":
+        if node.kind != "field_expression" or _is_method(node):
             continue
-        around = node.parent
-        is_called = around is not None and around.kind == "call_expression"
-        if is_called and node.field == "function":
-            continue  # a method, of a list or a pointer
         root, path = _path_of(node)
         field = node.child("field")
         if root is not None and field is not None and path and root.text in types:
             yield FieldUse(types[root.text], path, field.location)
+
+
+def _is_method(member: CppNode) -> bool:
+    """Return whether a member is called: it is a method, of a list or a pointer."""
+    around = member.parent
+    is_called = around is not None and around.kind == "call_expression"
+    return is_called and member.field == "function"
 
 
 def _unconditional(function: CppNode) -> Iterator[CppNode]:
@@ -61,8 +65,9 @@ def _unconditional(function: CppNode) -> Iterator[CppNode]:
 
 
 def _types_in(function: CppFunction, unit: CppUnit) -> dict[str, str]:
-    """Return the types of the parameters and variables of a function that are declared once, as
-    names of classes in Python: geometry_msgs.msg.Twist.
+    """Return the types of the parameters and variables of a function that are declared once.
+
+    They are names of classes in Python: geometry_msgs.msg.Twist.
     """
     declared = Counter[str]()
     types: dict[str, str] = {}
@@ -77,10 +82,10 @@ def _types_in(function: CppFunction, unit: CppUnit) -> dict[str, str]:
             continue
         for name, value in declared_in(node):
             declared[name.text] += 1
-            found = _type_of(node, value, unit, scopes)
-            if found is not None:
-                types[name.text] = found
-    return {name: found for name, found in types.items() if declared[name] == 1}
+            type_found = _type_of(node, value, unit, scopes)
+            if type_found is not None:
+                types[name.text] = type_found
+    return {name: type_name for name, type_name in types.items() if declared[name] == 1}
 
 
 def _type_of(
@@ -97,11 +102,11 @@ def _type_of(
     if name.rpartition("::")[2] in _POINTERS:
         arguments = written.partition("<")[2].rpartition(">")[0]
         name = plain(arguments.strip().removeprefix("const ").removesuffix(" const"))
-    found = _TYPE.fullmatch(unit.meanings(name, scopes)[0])
-    if found is None:
+    match = _TYPE.fullmatch(unit.meanings(name, scopes)[0])
+    if match is None:
         return None
-    section = f".{found['section']}" if found["section"] else ""
-    return f"{found['package']}.{found['kind']}.{found['name']}{section}"
+    section = f".{match['section']}" if match["section"] else ""
+    return f"{match['package']}.{match['kind']}.{match['name']}{section}"
 
 
 def _type_made(value: CppNode | None) -> str:
@@ -123,8 +128,9 @@ def _type_made(value: CppNode | None) -> str:
 
 
 def _path_of(node: CppNode) -> tuple[CppNode | None, tuple[str, ...]]:
-    """Return the variable that a chain of members begins with, and the names of the fields; no
-    variable where something else is in between.
+    """Return the variable that a chain of members begins with, and the names of the fields.
+
+    There is no variable where something else is in between.
     """
     path: list[str] = []
     inner: CppNode | None = node

@@ -1,5 +1,6 @@
-"""The nodes of a package that are written in C++: what they declare and open, read from the text
-and never compiled.
+"""The nodes of a package that are written in C++: what they declare and open.
+
+The text is read and never compiled.
 
 Only what is written as a text, number or constant is known. What is opened under a condition is
 listed as well. Macros, templates and code behind `#if` leave open what a node does.
@@ -28,6 +29,7 @@ from grader.ros.cpp.unit import (
     called_name,
     is_conditional,
 )
+from grader.ros.installation.installation import Installation
 from grader.ros.known.package_tables import cpp_table
 from grader.ros.nodes.cpp.cpp_faults import cpp_faults
 from grader.ros.nodes.cpp.cpp_files import CompiledTarget, CppFiles
@@ -172,21 +174,21 @@ class _Target:
     def _node_classes(self) -> Mapping[str, CppClass]:
         """The classes of nodes by their full names: those that are derived from one of rclcpp's."""
         kinds = set(cpp_table().nodes)
-        found: dict[str, CppClass] = {}
+        node_classes: dict[str, CppClass] = {}
         is_growing = True
         while is_growing:
             is_growing = False
             for name, classes in self._unit.classes.items():
                 self._budget.charge(_OF_NODE)
-                if name not in found and self._is_node(classes[0], kinds):
-                    found[name] = classes[0]
+                if name not in node_classes and self._is_node(classes[0], kinds):
+                    node_classes[name] = classes[0]
                     kinds.add(name)
                     is_growing = True
-        return found
+        return node_classes
 
     def _is_node(self, each: CppClass, kinds: set[str]) -> bool:
         scopes = each.name.split("::")[:-1]
-        return any(not kinds.isdisjoint(self._unit.meanings(it, scopes)) for it in each.bases)
+        return any(not kinds.isdisjoint(self._unit.meanings(base, scopes)) for base in each.bases)
 
     def _doubts_of_class(self, each: CppClass) -> Iterator[Doubt]:
         """Yield why a class may declare or open more than its own methods do."""
@@ -244,30 +246,27 @@ class _Target:
         return None
 
     def _receiver(self, call: CppNode, function: CppFunction) -> "str | CppNode | None":
-        """Return the node whose method a call is: a class, or where an object of rclcpp's own
-        class is made; None where that is not known.
+        """Return the node whose method a call is.
+
+        It is a class, or where an object of rclcpp's own class is made. The result is None where
+        that is not known.
         """
         called = call.child("function")
-        owner = called.child("argument") if called is not None else None
-        if called is None or called.kind != "field_expression" or owner is None:
-            name = self._unit.owner_of(function)
-            return name if name in self._facts else None
-        if owner.kind == "this":
+        is_member = called is not None and called.kind == "field_expression"
+        owner = called.child("argument") if called is not None and is_member else None
+        if owner is None or owner.kind == "this":
             name = self._unit.owner_of(function)
             return name if name in self._facts else None
         made = self._object_of(owner, function)
-        created = self._created_at.get(made) if made is not None else None
-        if made is None or created is None:
+        if made is None or made not in self._created_at:
             return None
-        return made if made in self._facts else created.class_name
+        return made if made in self._facts else self._created_at[made].class_name
 
     def _object_of(self, node: CppNode, function: CppFunction) -> CppNode | None:
         """Return what makes the object that a local variable, which is set once, has."""
         if node.kind != "identifier":
             return None
-        inside = function.node
-        uses = [it for it in self._unit.uses.get(node.text, ()) if it.file is node.file]
-        uses = [it for it in uses if inside.start <= it.start < inside.end]
+        uses = self._uses_in(function, node.text)
         self._budget.charge(1 + len(uses))
         made: list[CppNode] = []
         for use in uses:
@@ -279,17 +278,22 @@ class _Target:
                 made.append(made_in(parent))
         return made[0] if len(made) == 1 else None
 
+    def _uses_in(self, function: CppFunction, name: str) -> list[CppNode]:
+        """Return where a function has a name."""
+        inside = function.node
+        uses = [use for use in self._unit.uses.get(name, ()) if use.file is inside.file]
+        return [use for use in uses if inside.start <= use.start < inside.end]
+
     def _doubts_of_object(self, created: _Created) -> Iterator[Doubt]:
         """Yield that something is given a node that is made, which may declare or open more."""
         function = self._unit.function_around(created.node)
         variable = variable_of(created.node)
         uses = [created.node]
         if variable is not None and function is not None:
-            uses = [*self._unit.uses.get(variable.text, ())]
             if variable.kind == "identifier" and variable.field == "declarator":
-                inside = [it for it in uses if it.file is function.node.file]
-                start, end = function.node.start, function.node.end
-                uses = [it for it in inside if start <= it.start < end]
+                uses = self._uses_in(function, variable.text)
+            else:
+                uses = [*self._unit.uses.get(variable.text, ())]
         self._budget.charge(1 + len(uses))
         for use in uses:
             taker = taker_of(self_of(use, _SELF))
@@ -313,7 +317,7 @@ class _Target:
         if owner in self._facts:
             self._facts[owner] += frames
         else:
-            self.loose_frames += [it for it in frames if it.use == "publishes"]
+            self.loose_frames += [frame for frame in frames if frame.use == "publishes"]
 
     def _read_call(
         self, call: CppNode, function: CppFunction, scopes: Sequence[str], owner: str
@@ -327,11 +331,15 @@ class _Target:
         elif short in METHODS:
             self._read_function_of_library(call, owner)
         elif owner in self._facts and short.isupper() and len(short) > 3:
-            if not short.startswith(tuple(cpp_table().macros)):
-                reason = f"the macro {short} is not evaluated"
-                self._facts[owner].append(Doubt(reason, call.location))
+            self._read_macro(call, short, owner)
         elif owner in self._facts and short in _SELF:
             self._read_this(call, owner)
+
+    def _read_macro(self, call: CppNode, name: str, owner: str) -> None:
+        """Doubt what a class does with a macro that is not known to be harmless."""
+        if not name.startswith(tuple(cpp_table().macros)):
+            reason = f"the macro {name} is not evaluated"
+            self._facts[owner].append(Doubt(reason, call.location))
 
     def _read_method(self, call: CppNode, function: CppFunction, scopes: Sequence[str]) -> None:
         key = self._receiver(call, function)
@@ -357,8 +365,8 @@ class _Target:
             return False
         owner = self._unit.owner_of(function)
         return any(
-            it.name == name and self._unit.owner_of(it) in ("", owner)
-            for it in self._unit.functions
+            candidate.name == name and self._unit.owner_of(candidate) in ("", owner)
+            for candidate in self._unit.functions
         )
 
     def _read_function_of_library(self, call: CppNode, owner: str) -> None:
@@ -407,8 +415,9 @@ class _Target:
             self._facts[owner].append(Doubt(f"{name} is given the node", node.location))
 
     def _subscription_of_filter(self, node: CppNode) -> Endpoint | None:
-        """Return the subscription of a filter of message_filters that is given a node; None where
-        something else is.
+        """Return the subscription of a filter of message_filters that is given a node.
+
+        The result is None where something else is.
         """
         given = node.parent
         taker = given.parent if given is not None and given.kind in _LISTS else None
@@ -417,25 +426,24 @@ class _Target:
             return None
         scopes = self._unit.scopes_of(function)
         match = _FILTER.search(self._type_given(taker, scopes))
-        arguments = [it for it in given.children if it.kind != "comment"]
+        arguments = [child for child in given.children if child.kind != "comment"]
         if match is None or arguments[:1] != [node]:
             return None
         if _SUBSCRIBER not in self._unit.meanings(match["class"], scopes):
             return None
         type_name = message_type(match["type"], self._unit, scopes)
-        values = [self._evaluation.value_of(it) for it in arguments]
+        values = [self._evaluation.value_of(argument) for argument in arguments]
         return filter_subscription(type_name, values, taker.location)
 
     def _type_given(self, taker: CppNode, scopes: Sequence[str]) -> str:
-        """Return the type, as it is written, of what gets the arguments of a call, of an
-        initializer or of a declaration; empty where it is not known.
+        """Return the type, as it is written, of what gets the given arguments.
+
+        It gets the arguments of a call, of an initializer or of a declaration. The result is
+        empty where it is not known.
         """
         name: CppNode | None = None
         if taker.kind == "call_expression" and called_name(taker) == "subscribe":
-            called = taker.child("function")
-            owner = called.child("argument") if called is not None else None
-            is_member = owner is not None and owner.kind == "field_expression"
-            name = owner.child("field") if owner is not None and is_member else owner
+            name = _owner_called(taker)
         elif taker.kind == "field_initializer":
             name = taker.children[0]
         elif taker.kind == "init_declarator" and taker.parent is not None:
@@ -509,12 +517,15 @@ class _Target:
     @cached_property
     def _names(self) -> Mapping[str, _Name]:
         """The name that each class gives its node."""
-        found: dict[str, set[_Name]] = {name: set() for name in self._node_classes}
+        names_of_classes: dict[str, set[_Name]] = {name: set() for name in self._node_classes}
         for function in self._unit.functions:
             owner = self._unit.owner_of(function)
-            if owner in found and function.name == owner.rpartition("::")[2]:
-                found[owner] |= set(self._names_in(function))
-        return {name: names.pop() if len(names) == 1 else None for name, names in found.items()}
+            if owner in names_of_classes and function.name == owner.rpartition("::")[2]:
+                names_of_classes[owner] |= set(self._names_in(function))
+        return {
+            name: names.pop() if len(names) == 1 else None
+            for name, names in names_of_classes.items()
+        }
 
     def _names_in(self, constructor: CppFunction) -> Iterator[_Name]:
         """Yield the name that a constructor gives its base class, if that is rclcpp's own."""
@@ -524,7 +535,9 @@ class _Target:
                 written = each.children[0].text if each.children else ""
                 meanings = {*self._unit.meanings(plain(written), scopes)}
                 is_base = bool(meanings & cpp_table().nodes)
-                is_short = any(it.endswith(f"::{written}") for it in cpp_table().nodes)
+                is_short = any(
+                    node_class.endswith(f"::{written}") for node_class in cpp_table().nodes
+                )
                 if is_base or is_short:
                     given = arguments_of(each)
                     yield self._name_given(given[0], constructor) if given else None
@@ -553,8 +566,11 @@ class _Target:
 
     def faults(self) -> Iterator[CodeFault]:
         """Yield what keeps the nodes of the target from doing anything."""
-        created = [it.node if it.node in self._facts else it.class_name for it in self._created]
-        is_known = not any(isinstance(it, Doubt) for key in created for it in self._facts[key])
+        created = [
+            started.node if started.node in self._facts else started.class_name
+            for started in self._created
+        ]
+        is_known = not any(isinstance(fact, Doubt) for key in created for fact in self._facts[key])
         is_read = not self._compiled.unread and self._compiled.target.is_certain
         is_program = self._compiled.target.kind == "executable" and bool(created) and is_known
         yield from cpp_faults(
@@ -583,19 +599,27 @@ class _Target:
     def programs(self, package: Package) -> Iterator[NodeProgram]:
         """Yield the programs that the target is, and those of its components."""
         target = self._compiled.target
-        setup = package.installation
         if target.kind == "executable":
-            mains = [it for it in self._unit.functions if it.name == "main" and not it.owner]
-            nodes = tuple(self._started_by(it) for it in self._created)
+            mains = [
+                function
+                for function in self._unit.functions
+                if function.name == "main" and not function.owner
+            ]
+            nodes = tuple(self._started_by(started) for started in self._created)
             at = mains[0].node.location if mains else self._start
             path = at.path.removeprefix(package.path(""))
             yield NodeProgram(target.name, nodes if mains else (), at, path, "main")
-        for component in target.components:
-            if component.executable and setup is not None:
+        if package.installation is not None:
+            yield from self._programs_of_components(package.installation)
+
+    def _programs_of_components(self, setup: Installation) -> Iterator[NodeProgram]:
+        """Yield the programs that rclcpp_components makes of the target's components."""
+        for component in self._compiled.target.components:
+            if component.executable:
                 name = component.plugin.removeprefix("::")
-                found = [self._node(name)] if name in self._facts else []
+                component_nodes = [self._node(name)] if name in self._facts else []
                 at = setup.location(component.at)
-                yield NodeProgram(component.executable, tuple(found), at, "", "")
+                yield NodeProgram(component.executable, tuple(component_nodes), at, "", "")
 
     def _started_by(self, created: _Created) -> NodeFacts:
         """Return the node that an object is, with the name that its constructor is given."""
@@ -614,3 +638,12 @@ def _is_harmless(taker: str) -> bool:
     """Return whether what is given a node declares and opens nothing that is not listed."""
     short = taker.rpartition("::")[2]
     return taker in ACTIONS or short in METHODS or short in cpp_table().harmless
+
+
+def _owner_called(call: CppNode) -> CppNode | None:
+    """Return the variable or member whose method is called."""
+    called = call.child("function")
+    owner = called.child("argument") if called is not None else None
+    if owner is not None and owner.kind == "field_expression":
+        return owner.child("field")
+    return owner

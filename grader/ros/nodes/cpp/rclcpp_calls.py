@@ -92,8 +92,9 @@ def endpoint_of(
 def filter_subscription(
     type_name: str | None, given: Sequence[CppValue], at: Location
 ) -> Endpoint | None:
-    """Return the subscription of a filter that is given a node, a topic and perhaps a QoS; None
-    where it is given something else.
+    """Return the subscription of a filter that is given a node, a topic and perhaps a QoS.
+
+    The result is None where it is given something else.
     """
     if len(given) not in (2, 3, 4):
         return None
@@ -104,12 +105,12 @@ def filter_subscription(
 
 def message_type(written: str, unit: CppUnit, scopes: Sequence[str]) -> str | None:
     """Return the full name of a message, service or action; None for one that is not known."""
-    found = set()
+    types = set()
     for meaning in unit.meanings(plain(written), scopes):
         match = _MESSAGE.fullmatch(meaning)
         if match is not None:
-            found.add(".".join(match.groups()))
-    return found.pop() if len(found) == 1 else None
+            types.add(".".join(match.groups()))
+    return types.pop() if len(types) == 1 else None
 
 
 def name_of(value: CppValue) -> tuple[str | None, tuple[NamePart, ...]]:
@@ -211,28 +212,38 @@ def _text(value: CppValue) -> str | None:
 
 
 def _converted(value: CppValue, written: str) -> Value:
-    """Return the default of a parameter, as the type of its template argument has it; None where
-    there is none, or a type in its place.
+    """Return the default of a parameter, as the type of its template argument has it.
+
+    The result is None where there is none, or a type in its place.
     """
     if isinstance(value, CppCall) and value.short == "ParameterValue" and len(value.args) == 1:
         value = value.args[0]
     if isinstance(value, CppName) and "PARAMETER_" in value.name:
         return None
-    kind = plain(written).rpartition("::")[2]
-    if isinstance(value, CppCall) and value.short == "vector":
-        items = [*value.args]
-        if len(items) == 1 and isinstance(items[0], list):
-            items = items[0]
-        value = [_scalar(item, plain(value.types[0]) if value.types else "") for item in items]
-    elif isinstance(value, list):
-        inner = written.partition("<")[2].rpartition(">")[0]
-        value = [_scalar(item, plain(inner)) for item in value]
-    else:
-        value = _scalar(value, kind)
-    items = value if isinstance(value, list) else [value]
+    converted = _of_type(value, written)
+    items = converted if isinstance(converted, list) else [converted]
     if all(isinstance(item, SCALARS) or item is None for item in items):
-        return value
+        return converted
     return not_known("the default is computed")
+
+
+def _of_type(value: CppValue, written: str) -> Value:
+    """Return a value, or the items of a list, as the type of a template argument has it."""
+    if isinstance(value, CppCall) and value.short == "vector":
+        return _items_of_vector(value)
+    if isinstance(value, list):
+        inner = written.partition("<")[2].rpartition(">")[0]
+        return [_scalar(item, plain(inner)) for item in value]
+    return _scalar(value, plain(written).rpartition("::")[2])
+
+
+def _items_of_vector(vector: CppCall) -> list[Value]:
+    """Return the items that a vector is made of, of the type of its template argument."""
+    items = [*vector.args]
+    if len(items) == 1 and isinstance(items[0], list):
+        items = items[0]
+    kind = plain(vector.types[0]) if vector.types else ""
+    return [_scalar(item, kind) for item in items]
 
 
 def _scalar(value: CppValue, kind: str) -> CppValue:

@@ -35,6 +35,7 @@ _CERTAIN = frozenset(
 )
 # Names that newer versions of Python define, so that each version finds the same.
 _LATER_BUILTINS = ("PythonFinalizationError", "EncodingWarning", "WindowsError")
+_SPINNING = "rclpy.spin_until_future_complete"
 # Names of groups and executors with which a callback may wait for another one.
 _CONCURRENT = ("MultiThreadedExecutor", "ReentrantCallbackGroup", "MutuallyExclusiveCallbackGroup")
 _CONCURRENT_MODULES = frozenset({"threading", "multiprocessing", "concurrent", "asyncio"})
@@ -42,8 +43,9 @@ _ENDING = frozenset({"sys.exit", "exit", "quit", "os._exit"})
 
 
 class ModuleText(NamedTuple):
-    """A module of which faults are searched: its full name, its code and its parts; `imports` are
-    the full names of what it imports.
+    """A module of which faults are searched: its full name, its code and its parts.
+
+    `imports` are the full names of what it imports.
     """
 
     name: str
@@ -54,8 +56,10 @@ class ModuleText(NamedTuple):
 
 
 class _PackageAttributes(NamedTuple):
-    """The attributes that the modules of a package set, and the texts in them, which hasattr() or
-    getattr() may ask for; not all of them if names may be bound in ways that are not seen.
+    """The attributes that modules of a package set, and the texts in them.
+
+    hasattr() or getattr() may ask for the texts. The attributes are not all of them if names may
+    be bound in ways that are not seen.
     """
 
     stored: Collection[str]
@@ -82,8 +86,10 @@ def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
 def code_faults(
     module: ModuleText, others: Mapping[str, ModuleText], attributes: _PackageAttributes
 ) -> Iterator[CodeFault]:
-    """Yield what is wrong in a module; `others` are all modules of the package, by their names,
-    and `attributes` those of all of them.
+    """Yield what is wrong in a module.
+
+    `others` are all modules of the package, by their names, and `attributes` those of all of
+    them.
     """
     search = _Search(module, others)
     yield from _undefined_names(module.code)
@@ -106,7 +112,7 @@ def _undefined_names(code: Code) -> Iterator[CodeFault]:
         return
     unevaluated = _unevaluated(code.tree)
     said = set[str]()
-    for message in sorted(checker.messages, key=lambda it: (it.lineno, it.col)):
+    for message in sorted(checker.messages, key=lambda fault: (fault.lineno, fault.col)):
         text = message.message % message.message_args
         at = Position(message.lineno, message.col + 1)
         if type(message).__name__ in _CERTAIN and at not in unevaluated and text not in said:
@@ -203,62 +209,68 @@ class _Search:
         self, part: CodePart, owner: ast.ClassDef, known: Collection[str], asked: set[str]
     ) -> Iterator[CodeFault]:
         """Yield those of a method; what is said is added to what the module asks for."""
-        own = {name for node in owner.body for name in _defined_by(node)}
+        own_names = {name for node in owner.body for name in _defined_by(node)}
         for node in certain_nodes(part.node):
             match node:
                 case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Load()):
                     pass
                 case _:
                     continue
-            if name in own or name in known or name in asked or name.startswith("_"):
+            if name in own_names or name in known or name in asked or name.startswith("_"):
                 continue
             asked.add(name)
-            sure = near(name, own.union(known))
-            meant = sure or closest(name, own)
-            hint = f"; did you mean {meant}?" if meant is not None else ""
-            message = f"{owner.name} has no attribute {name}{hint}"
-            end = self._end(node)
-            at = self._code.source.at(end - len(name))
-            fixes = NO_FIXES
-            if sure is not None:
-                fixes = self._rewrite(end - len(name), end, sure)
-            yield CodeFault("undefined name", message, at, fixes=fixes)
+            sure = near(name, own_names.union(known))
+            meant = sure or closest(name, own_names)
+            yield self._undefined_attribute(node, owner.name, meant, is_sure=sure is not None)
+
+    def _undefined_attribute(
+        self, node: ast.Attribute, owner: str, meant: str | None, *, is_sure: bool
+    ) -> CodeFault:
+        """Return that a class has no attribute of a name, with the one that may be meant."""
+        hint = f"; did you mean {meant}?" if meant is not None else ""
+        message = f"{owner} has no attribute {node.attr}{hint}"
+        end = self._end(node)
+        start = end - len(node.attr)
+        fixes = NO_FIXES
+        if is_sure and meant is not None:
+            fixes = self._rewrite(start, end, meant)
+        return CodeFault("undefined name", message, self._code.source.at(start), fixes=fixes)
 
     # --- Callbacks
 
     def called_callbacks(self) -> Iterator[CodeFault]:
         """Yield callbacks that are called in place of passed."""
-        for found in self._registered:
-            if not isinstance(found.given, ast.Call):
+        for registered in self._registered:
+            if not isinstance(registered.given, ast.Call):
                 continue
-            function = self._function(found.given.func, found.part)
+            function = self._function(registered.given.func, registered.part)
             if function is None or function.decorator_list:
                 continue
-            name = dotted(found.given.func)
-            if _lacks_arguments(found.given, function, is_method=name.startswith("self.")):
+            name = dotted(registered.given.func)
+            if _lacks_arguments(registered.given, function, is_method=name.startswith("self.")):
                 what = f"calls {name}() without its arguments"
             elif not _gives_value(function):
                 what = f"is given what {name}() returns, which is None"
             else:
                 continue
-            message = f"{found.by}() {what}; write {name} without the parentheses"
-            at, fixes = self._at(found.given), NO_FIXES
-            if not (found.given.args or found.given.keywords):
+            message = f"{registered.by}() {what}; write {name} without the parentheses"
+            at, fixes = self._at(registered.given), NO_FIXES
+            if not (registered.given.args or registered.given.keywords):
                 start = self._code.source.offset(at.line, at.column)
-                fixes = self._rewrite(start, self._end(found.given), name)
+                fixes = self._rewrite(start, self._end(registered.given), name)
             yield CodeFault("callback is called", message, at, fixes=fixes)
 
     def without_response(self) -> Iterator[CodeFault]:
         """Yield callbacks of services and actions that return nothing."""
         said = set[ast.AST]()
-        for found in self._registered:
-            function = self._function(found.given, found.part)
-            if found.by not in _ANSWERING or function is None or function in said:
+        for registered in self._registered:
+            function = self._function(registered.given, registered.part)
+            if registered.by not in _ANSWERING or function is None or function in said:
                 continue
             said.add(function)
             if function.decorator_list or _is_generator(function):
                 continue
-            what = "response" if found.by == "create_service" else "result"
+            what = "response" if registered.by == "create_service" else "result"
             for node, is_certain in _ends_without_value(function):
                 message = f"{function.name}() ends without returning its {what} here"
                 if node is function:
@@ -266,11 +278,12 @@ class _Search:
                     if not is_certain:
                         message = f"{message} on every path"
                 at = self._at(node)
-                yield CodeFault("no response", message, at, self._at(found.call), is_certain)
+                yield CodeFault("no response", message, at, self._at(registered.call), is_certain)
 
     def waiting_callbacks(self) -> Iterator[CodeFault]:
-        """Yield what callbacks wait for while nothing else can run: with one thread, and one
-        group of callbacks.
+        """Yield what callbacks wait for while nothing else can run.
+
+        Nothing else can run with one thread, and one group of callbacks.
         """
         if self._is_concurrent():
             return
@@ -287,32 +300,37 @@ class _Search:
 
     def _waiting(self, call: ast.Call, name: str, clients: Collection[str]) -> Iterator[CodeFault]:
         called = dotted(call.func)
+        if called == "time.sleep":
+            if "time" in self._module.imports:
+                message = (
+                    f"while time.sleep() in the callback {name}() waits, no other callback runs"
+                )
+                yield CodeFault("sleeps in a callback", message, self._at(call), is_certain=False)
+            return
         owner, _, method = called.rpartition(".")
-        has_timeout = any(it.arg == "timeout_sec" for it in call.keywords) or len(call.args) > 2
-        if method == "call" and owner in clients and not has_timeout:
+        if any(keyword.arg == "timeout_sec" for keyword in call.keywords) or len(call.args) > 2:
+            return
+        if method == "call" and owner in clients:
             message = (
                 f"{called}() in the callback {name}() waits for ever: the answer is only read "
                 "when the callback has ended; use call_async()"
             )
             yield CodeFault("waits in a callback", message, self._at(call))
-        elif method == "spin_until_future_complete" and owner == "rclpy" and not has_timeout:
-            if call.args and dotted(call.args[0]) == "self":
-                message = (
-                    f"spin_until_future_complete() in the callback {name}() waits for ever: the "
-                    "answer is only read when the callback has ended; use add_done_callback()"
-                )
-                yield CodeFault("waits in a callback", message, self._at(call))
-        elif called == "time.sleep" and "time" in self._module.imports:
-            message = f"while time.sleep() in the callback {name}() waits, no other callback runs"
-            yield CodeFault("sleeps in a callback", message, self._at(call), is_certain=False)
+        elif called == _SPINNING and [*map(dotted, call.args[:1])] == ["self"]:
+            message = (
+                f"spin_until_future_complete() in the callback {name}() waits for ever: the "
+                "answer is only read when the callback has ended; use add_done_callback()"
+            )
+            yield CodeFault("waits in a callback", message, self._at(call))
 
     def _reached(self) -> Iterator[ast.FunctionDef | ast.AsyncFunctionDef]:
-        """Yield the callbacks of timers, subscriptions and services, and the own methods that they
-        call.
-        """
+        """Yield the callbacks of timers, subscriptions and services, and own methods they call."""
         seen = set[ast.AST]()
-        pending = [it for it in self._registered if it.by != "ActionServer"]
-        reached = [(self._function(it.given, it.part), it.part) for it in pending]
+        pending = [registered for registered in self._registered if registered.by != "ActionServer"]
+        reached = [
+            (self._function(registered.given, registered.part), registered.part)
+            for registered in pending
+        ]
         while reached:
             function, part = reached.pop(0)
             if function is None or function in seen:
@@ -324,55 +342,62 @@ class _Search:
                     reached.append((self._function(call.func, part), part))
 
     def _is_concurrent(self) -> bool:
-        """Return whether this module, one that it imports or one that imports it may run callbacks
-        at the same time.
+        """Return whether some module may run callbacks at the same time.
+
+        It is this module, one that it imports or one that imports it.
         """
         name = self._module.name
         for module in self._others.values():
-            is_user = any(f"{it}.".startswith(f"{name}.") for it in module.imports)
-            is_used = any(f"{it}.".startswith(f"{module.name}.") for it in self._module.imports)
+            is_user = any(f"{imported}.".startswith(f"{name}.") for imported in module.imports)
+            is_used = any(
+                f"{imported}.".startswith(f"{module.name}.") for imported in self._module.imports
+            )
             if module.name != name and not is_user and not is_used:
                 continue
             text = module.code.source.text
             if any(word in text for word in _CONCURRENT):
                 return True
-            if not _CONCURRENT_MODULES.isdisjoint(it.partition(".")[0] for it in module.imports):
+            if not _CONCURRENT_MODULES.isdisjoint(
+                imported.partition(".")[0] for imported in module.imports
+            ):
                 return True
         return False
 
     # --- Programs
 
     def of_programs(self) -> Iterator[CodeFault]:
-        """Yield that a module makes a node without rclpy.init(), or, with it, a node with callbacks
-        that never run, because nothing spins it.
+        """Yield that a module makes a node without rclpy.init(), or one that nothing spins.
+
+        The latter is a node with callbacks that never run, with rclpy.init().
         """
         reached = self._reached_modules()
         if reached is None:
             return
-        names, loops = set[str](), 0
-        for module in reached:
-            for node in ast.walk(module.code.tree):
-                names.add(getattr(node, "attr", "") or getattr(node, "id", ""))
-                loops += isinstance(node, ast.While)
+        names, loops = _names_and_loops(reached)
         calls = [call for part in self._module.parts if part.of is None for call in part.calls]
         by_name = {dotted(call.func): call for call in reversed(calls)}
-        has_spin = any("spin" in name or "WaitSet" in name or "wait_for" in name for name in names)
-        has_spin |= "AsyncNode" in names  # of rclpy.experimental: its run() is awaited
-        if "rclpy.init" in by_name and self._registered and not has_spin:
+        init, spin = by_name.get("rclpy.init"), by_name.get("rclpy.spin")
+        if init is not None and self._registered and not _may_spin(names):
             message = (
                 "nothing spins the node, so none of its callbacks runs; write rclpy.spin(node)"
             )
-            at = self._at(by_name["rclpy.init"])
-            yield CodeFault("nothing spins", message, at, is_certain=not loops)
-        is_initialised = "init" in names or "context" in self._code.source.text.lower()
-        if "rclpy.spin" in by_name and not is_initialised and not self._is_imported():
+            yield CodeFault("nothing spins", message, self._at(init), is_certain=not loops)
+        if spin is not None and not self._is_initialised(names):
             message = "rclpy.init() is missing, so rclpy makes no node"
-            yield CodeFault("no rclpy.init", message, self._at(by_name["rclpy.spin"]))
+            yield CodeFault("no rclpy.init", message, self._at(spin))
+
+    def _is_initialised(self, names: Collection[str]) -> bool:
+        """Return whether the module, or one that imports it, may initialise rclpy."""
+        if "init" in names or "context" in self._code.source.text.lower():
+            return True
+        return self._is_imported()
 
     def _is_imported(self) -> bool:
         name = self._module.name
-        others = [it for it in self._others.values() if it.name != name]
-        return any(f"{it}.".startswith(f"{name}.") for other in others for it in other.imports)
+        others = [other for other in self._others.values() if other.name != name]
+        return any(
+            f"{imported}.".startswith(f"{name}.") for other in others for imported in other.imports
+        )
 
     def _reached_modules(self) -> list[ModuleText] | None:
         """Return the module and the own ones that it imports; None if others may spin a node."""
@@ -381,11 +406,18 @@ class _Search:
         while pending:
             for full in pending.pop().imports:
                 names = [full, full.rpartition(".")[0]]
-                own = next((self._others[it] for it in names if it in self._others), None)
-                if own is not None:
-                    if own.name not in reached:
-                        reached[own.name] = own
-                        pending.append(own)
+                own_module = next(
+                    (
+                        self._others[module_name]
+                        for module_name in names
+                        if module_name in self._others
+                    ),
+                    None,
+                )
+                if own_module is not None:
+                    if own_module.name not in reached:
+                        reached[own_module.name] = own_module
+                        pending.append(own_module)
                 elif not is_passive(full):
                     return None
         return [*reached.values()]
@@ -434,7 +466,7 @@ def _lacks_arguments(
     call: ast.Call, function: ast.FunctionDef | ast.AsyncFunctionDef, *, is_method: bool
 ) -> bool:
     """Return whether a call certainly gives a function too few arguments."""
-    if any(isinstance(it, ast.Starred) for it in call.args) or any(
+    if any(isinstance(argument, ast.Starred) for argument in call.args) or any(
         keyword.arg is None for keyword in call.keywords
     ):
         return False
@@ -444,20 +476,21 @@ def _lacks_arguments(
 
 
 def _is_generator(function: ast.AST) -> bool:
-    return any(isinstance(it, ast.Yield | ast.YieldFrom) for it in ast.walk(function))
+    return any(isinstance(node, ast.Yield | ast.YieldFrom) for node in ast.walk(function))
 
 
 def _gives_value(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
     if isinstance(function, ast.AsyncFunctionDef) or _is_generator(function):
         return True
-    returns = [it for it in _own_statements(function.body) if isinstance(it, ast.Return)]
-    return any(it.value is not None for it in returns)
+    returns = [inner for inner in _own_statements(function.body) if isinstance(inner, ast.Return)]
+    return any(returned.value is not None for returned in returns)
 
 
 def _ends_without_value(
     function: ast.FunctionDef | ast.AsyncFunctionDef,
 ) -> Iterator[tuple[ast.FunctionDef | ast.AsyncFunctionDef | ast.Return, bool]]:
     """Yield where a function ends without a value: a return, or the function itself for its end.
+
     With each whether it certainly gets there on some path.
     """
     for statement in _own_statements(function.body):
@@ -474,8 +507,9 @@ def _is_none(node: ast.expr | None) -> bool:
 
 
 def _falls_off(body: Sequence[ast.stmt]) -> str:
-    """Return whether statements may come to their end: yes, no, or maybe, where it depends on a
-    condition that may always hold.
+    """Return whether statements may come to their end: yes, no, or maybe.
+
+    Maybe means that it depends on a condition that may always hold.
     """
     last = body[-1]
     match last:
@@ -492,27 +526,27 @@ def _falls_off(body: Sequence[ast.stmt]) -> str:
 
 def _falls_off_plain(statement: ast.stmt) -> str:
     """Return the same for a statement that is a loop, or has no blocks."""
-    found = "yes"
+    ending = "yes"
     match statement:
         case ast.Return() | ast.Raise() | ast.Continue() | ast.Break():
-            found = "no"
+            ending = "no"
         case ast.Expr(value=ast.Call(func=made)) if dotted(made) in _ENDING:
-            found = "no"
+            ending = "no"
         case ast.While(test=ast.Constant(value=value)) if value:
-            has_break = any(isinstance(it, ast.Break) for it in ast.walk(statement))
-            found = "maybe" if has_break else "no"
+            has_break = any(isinstance(inner, ast.Break) for inner in ast.walk(statement))
+            ending = "maybe" if has_break else "no"
         case ast.While() | ast.For() | ast.AsyncFor() | ast.Match():
-            found = "maybe"
-    return found
+            ending = "maybe"
+    return ending
 
 
 def _falls_off_try(statement: ast.Try) -> str:
     if statement.finalbody and _falls_off(statement.finalbody) == "no":
         return "no"
-    found = _falls_off(statement.orelse or statement.body)
+    ending = _falls_off(statement.orelse or statement.body)
     for handler in statement.handlers:
-        found = _either(found, _falls_off(handler.body))
-    return found
+        ending = _either(ending, _falls_off(handler.body))
+    return ending
 
 
 def _either(one: str, other: str) -> str:
@@ -520,3 +554,20 @@ def _either(one: str, other: str) -> str:
         if answer in (one, other):
             return answer
     return "no"
+
+
+def _names_and_loops(modules: Iterable[ModuleText]) -> tuple[set[str], int]:
+    """Return the names and attributes in modules, and how many while loops these have."""
+    names, loops = set[str](), 0
+    for module in modules:
+        for node in ast.walk(module.code.tree):
+            names.add(getattr(node, "attr", "") or getattr(node, "id", ""))
+            loops += isinstance(node, ast.While)
+    return names, loops
+
+
+def _may_spin(names: Collection[str]) -> bool:
+    """Return whether one of the names in a program may spin a node."""
+    if "AsyncNode" in names:  # of rclpy.experimental: its run() is awaited
+        return True
+    return any("spin" in name or "WaitSet" in name or "wait_for" in name for name in names)

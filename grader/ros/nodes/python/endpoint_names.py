@@ -1,5 +1,7 @@
-"""The names of topics, services and actions that Python code makes of what depends on the node as
-it is started: its name, its namespace, and the values of its parameters.
+"""The names of topics, services and actions that Python code makes of values at the start.
+
+These are what depends on the node as it is started: its name, its namespace, and the values of
+its parameters.
 """
 
 import ast
@@ -51,17 +53,8 @@ class Bindings(NamedTuple):
 
 
 def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
-    """Return what the names in a function are bound to once, or the attributes of self in a
-    class.
-    """
+    """Return what names in a function, or attributes of self in a class, are bound to once."""
     ordered = sorted(nodes, key=offset_of)
-    counts = Counter[str]()
-    for node in ordered:
-        match node:
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
-                counts[name] += 1
-            case ast.Attribute(ctx=ast.Store() | ast.Del()):
-                counts[dotted(node)] += 1
     values, loops = dict[str, ast.expr](), dict[str, _Loop]()
     for node in ordered:
         match node:
@@ -73,21 +66,36 @@ def bindings(nodes: Iterable[ast.AST], *, of_self: bool = False) -> Bindings:
             case ast.For() | ast.comprehension():
                 name, loop = _looped(node)
                 loops[name] = loop
-    once = {name for name, count in counts.items() if count == 1}
+    once = _bound_once(ordered)
     if of_self:
         once = {name for name in once if name.startswith("self.")}
     return Bindings(_only(values, once), _only(loops, once))
 
 
-def _only(found: Mapping[str, _Found], names: Collection[str]) -> dict[str, _Found]:
-    return {name: value for name, value in found.items() if name in names}
+def _bound_once(nodes: Iterable[ast.AST]) -> set[str]:
+    """Return the names and attributes that are bound once."""
+    counts = Counter[str]()
+    for node in nodes:
+        match node:
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
+                counts[name] += 1
+            case ast.Attribute(ctx=ast.Store() | ast.Del()):
+                counts[dotted(node)] += 1
+    return {name for name, count in counts.items() if count == 1}
+
+
+def _only(constants: Mapping[str, _Found], names: Collection[str]) -> dict[str, _Found]:
+    return {name: value for name, value in constants.items() if name in names}
 
 
 def _looped(node: ast.For | ast.comprehension) -> tuple[str, _Loop]:
     """Return the name that a loop gives each item of a list; of enumerate() that of the item."""
     first, last = 0, sys.maxsize
     if isinstance(node, ast.For):
-        first, last = node.lineno, max(it.end_lineno or it.lineno for it in node.body)
+        first, last = (
+            node.lineno,
+            max(statement.end_lineno or statement.lineno for statement in node.body),
+        )
     match node.target, node.iter:
         case ast.Tuple(elts=[_, named]), ast.Call(func=ast.Name(id="enumerate"), args=[items]):
             return dotted(named), _Loop(items, first, last)
@@ -101,8 +109,9 @@ class EndpointNames:
         self._known, self._evaluate = known, evaluate
 
     def read(self, node: ast.expr) -> Iterator[_Parts]:
-        """Yield the parts of a name, once for each item of a list in the code that a loop goes
-        through.
+        """Yield the parts of a name.
+
+        A name in a loop through a list in the code is yielded once for each item.
         """
         names = {name.id for name in ast.walk(node) if isinstance(name, ast.Name)}
         for name in sorted(names):
@@ -137,15 +146,15 @@ class EndpointNames:
 
     def _joined(self, parts: Iterable[NamePart]) -> _Parts:
         """Return parts, of which no two texts follow each other."""
-        found: list[NamePart] = []
+        joined: list[NamePart] = []
         for part in parts:
-            if found and found[-1].kind == part.kind == "text":
-                found[-1] = NamePart("text", found[-1].text + part.text)
-            elif len(found) < _MAX_PARTS:
-                found.append(part)
+            if joined and joined[-1].kind == part.kind == "text":
+                joined[-1] = NamePart("text", joined[-1].text + part.text)
+            elif len(joined) < _MAX_PARTS:
+                joined.append(part)
             else:
-                found[-1] = _UNKNOWN
-        return tuple(found)
+                joined[-1] = _UNKNOWN
+        return tuple(joined)
 
     def _parts(
         self, node: ast.expr, items: Mapping[str, ast.expr], depth: int = 0
@@ -260,8 +269,9 @@ class EndpointNames:
         yield NamePart("text", text[start:])
 
     def _parameter(self, node: ast.expr) -> ast.expr | None:
-        """Return the name of the parameter whose value an expression is; None if it is no
-        parameter's.
+        """Return the name of the parameter whose value an expression is.
+
+        The result is None if it is no parameter's.
         """
         match node:
             case ast.Attribute(value=ast.Call(func=made, args=[name, *_]), attr="value"):

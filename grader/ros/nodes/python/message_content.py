@@ -1,5 +1,7 @@
-"""What Python code asks of the content of messages: a time in their header that a synchroniser
-compares, and the encoding of images that cv_bridge converts.
+"""What Python code asks of the content of messages.
+
+A time in their header that a synchroniser compares, and the encoding of images that cv_bridge
+converts.
 """
 
 import ast
@@ -73,11 +75,13 @@ class ContentReader:
                         yield SynchronisedType(type_name.name, by, self._at(made))
 
     def encodings(self) -> Mapping[Location, tuple[ImageEncoding, ...]]:
-        """Return the encodings of images that publishers send, and to which callbacks convert what
-        they get, by the places where these are made; none where one is not known.
+        """Return the encodings that publishers send, and to which callbacks convert images.
+
+        The keys are the places where publishers and subscriptions are made. There are none where
+        one is not known.
         """
         asked = self._encodings_asked()
-        found: dict[Location, list[ImageEncoding | None]] = {}
+        encodings_by_place: dict[Location, list[ImageEncoding | None]] = {}
         for function in self._functions:
             names_encoding = _names_encoding(function.part)
             for call in function.part.calls:
@@ -86,16 +90,14 @@ class ContentReader:
                         made = function.resolve(owner)
                         if isinstance(made, ast.Call) and last_name(made.func) == _PUBLISHES:
                             sent = None if names_encoding else self._sent(function, call)
-                            found.setdefault(self._at(made), []).append(sent)
+                            encodings_by_place.setdefault(self._at(made), []).append(sent)
                     case ast.Attribute(attr="create_subscription"):
                         name = dotted(given_argument(call, 2, "callback") or call)
                         of = function.part.of if name.startswith("self.") else None
-                        found.setdefault(self._at(call), []).extend(asked.get((of, name), ()))
-        known = {}
-        for at, encodings in found.items():
-            if None not in encodings:
-                known[at] = tuple(each for each in encodings if each is not None)
-        return known
+                        encodings_by_place.setdefault(self._at(call), []).extend(
+                            asked.get((of, name), ())
+                        )
+        return _all_known(encodings_by_place)
 
     def _sent(self, function: _BoundFunction, call: ast.Call) -> ImageEncoding | None:
         """Return the encoding of the image that is published."""
@@ -105,8 +107,9 @@ class ContentReader:
         return None
 
     def _encodings_asked(self) -> Mapping[tuple[Location | None, str], list[ImageEncoding]]:
-        """Return the encodings to which functions convert what they are given, by their class and
-        name.
+        """Return the encodings to which functions convert what they are given.
+
+        The keys are their class and name.
         """
         asked: dict[tuple[Location | None, str], list[ImageEncoding]] = {}
         for function in self._functions:
@@ -162,3 +165,14 @@ def _first_argument(part: CodePart) -> str:
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id in names:
             return ""
     return names[0] if names else ""
+
+
+def _all_known(
+    encodings_by_place: Mapping[Location, Sequence[ImageEncoding | None]],
+) -> dict[Location, tuple[ImageEncoding, ...]]:
+    """Return the encodings of the places at which all of them are known."""
+    known = {}
+    for at, encodings in encodings_by_place.items():
+        if None not in encodings:
+            known[at] = tuple(encoding for encoding in encodings if encoding is not None)
+    return known

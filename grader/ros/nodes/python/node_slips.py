@@ -8,7 +8,7 @@ is assumed for the grade; `code_faults` lists what is wrong in any code of a mod
 import ast
 import builtins
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from grader.base.names import near
@@ -31,8 +31,9 @@ _WAITING = frozenset({"threading", "asyncio", "time", "signal", "multiprocessing
 
 
 class Program(NamedTuple):
-    """A program of a module: its name, and the function that it calls; a script calls none, and
-    runs its body as __main__.
+    """A program of a module: its name, and the function that it calls.
+
+    A script calls none, and runs its body as __main__.
     """
 
     name: str
@@ -52,8 +53,8 @@ def node_slips(code: Code, program: Program) -> list[Slip]:
     nodes = [*ast.walk(code.tree)]
     if binds_unseen(nodes):
         return []
-    found = [*_NodeSlips(code, nodes, program).found()]
-    return sorted(found, key=lambda slip: (slip.location.line, slip.location.column))
+    slips = [*_NodeSlips(code, nodes, program).found()]
+    return sorted(slips, key=lambda slip: (slip.location.line, slip.location.column))
 
 
 class _NodeSlips:
@@ -136,9 +137,9 @@ class _NodeSlips:
                 yield from self._called_callbacks(function.owner, statements)
                 pending += self._methods(function.owner, statements)
             for statement in statements:
-                found = [*_calls(statement)]
-                pending += [_Function(self._functions[name]) for name in self._called(found)]
-                for name in {dotted(call.func) for call in found} & self._classes.keys():
+                calls = [*_calls(statement)]
+                pending += [_Function(self._functions[name]) for name in self._called(calls)]
+                for name in {dotted(call.func) for call in calls} & self._classes.keys():
                     made.append((function, statement, name))
         yield from self._without_rclpy(made)
 
@@ -171,7 +172,7 @@ class _NodeSlips:
                 names = {dotted(kind).rpartition(".")[2] for kind in _types(handlers)}
                 return [body, final] if names <= _INTERRUPTS else [final]
             case ast.With(items=items, body=body):
-                is_caught = any("suppress" in dotted(_function_of(it)) for it in items)
+                is_caught = any("suppress" in dotted(_function_of(context)) for context in items)
                 return [] if is_caught else [body]
             case ast.While(test=test, body=body):
                 return [body] if _runs_on(test) else []
@@ -188,39 +189,45 @@ class _NodeSlips:
 
     def _methods(self, owner: ast.ClassDef, statements: Sequence[ast.stmt]) -> Iterator[_Function]:
         """Yield the methods that statements of a method call, or let be called."""
-        own = {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
+        methods = _methods_of(owner)
         for statement in statements:
             for call in _calls(statement):
                 name = dotted(call.func)
-                if name.startswith("self.") and name[5:] in own:
-                    yield _Function(own[name[5:]], owner)
+                if name.startswith("self.") and name[5:] in methods:
+                    yield _Function(methods[name[5:]], owner)
                 callback = _callback(call)
-                if callback is not None and dotted(callback)[5:] in own:
+                if callback is not None and dotted(callback)[5:] in methods:
                     message = ""
                     if name.endswith("create_subscription") and call.args:
                         message = self._full_name(call.args[0])
-                    yield _Function(own[dotted(callback)[5:]], owner, message)
+                    yield _Function(methods[dotted(callback)[5:]], owner, message)
 
     def _undefined(self, statements: Sequence[ast.AST]) -> Iterator[Slip]:
         """Yield the names that are not defined, where it is sure what is meant."""
-        for statement in statements if not self._has_star else ():
+        if self._has_star:
+            return
+        for statement in statements:
             for node in _certain_parts(statement):
                 if not isinstance(node, ast.Name) or not isinstance(node.ctx, ast.Load):
                     continue
-                name = node.id
-                if name in self._known or name in _GLOBAL or self._names_left == 0:
+                if node.id in self._known or node.id in _GLOBAL or self._names_left == 0:
                     continue
-                self._known.add(name)
+                self._known.add(node.id)
                 self._names_left -= 1
-                reaction = f"the name {name} is not defined"
-                module = _IMPORTED.get(name) or _package_of_message(name)
-                meant = near(name, self._bound | self._imports.keys())
-                if name in _MODULES:
-                    yield from self._with_import(node, f"import {name}", reaction)
-                elif module is not None:
-                    yield from self._with_import(node, f"from {module} import {name}", reaction)
-                elif meant is not None:
-                    yield self._replaced(node, name, meant, reaction)
+                yield from self._undefined_name(node)
+
+    def _undefined_name(self, node: ast.Name) -> Iterator[Slip]:
+        """Yield that a name is not defined, if it is sure what is meant."""
+        name = node.id
+        reaction = f"the name {name} is not defined"
+        module = _IMPORTED.get(name) or _package_of_message(name)
+        meant = near(name, self._bound | self._imports.keys())
+        if name in _MODULES:
+            yield from self._with_import(node, f"import {name}", reaction)
+        elif module is not None:
+            yield from self._with_import(node, f"from {module} import {name}", reaction)
+        elif meant is not None:
+            yield self._replaced(node, name, meant, reaction)
 
     def _with_import(self, node: ast.Name, code: str, reaction: str) -> Iterator[Slip]:
         for first in self._code.tree.body:
@@ -232,27 +239,29 @@ class _NodeSlips:
 
     def _wrong_fields(self, function: _Function, statements: Sequence[ast.stmt]) -> Iterator[Slip]:
         """Yield the fields that a message does not have."""
-        counts = Counter(
-            node.id
-            for node in ast.walk(function.node)
-            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store | ast.Del)
-        )
+        types = self._types_bound_once(function, statements)
+        for statement in statements:
+            for node in _certain_parts(statement):
+                if not isinstance(node, ast.Attribute) or not isinstance(node.value, ast.Name):
+                    continue
+                name = node.value.id
+                if name in types:
+                    yield from self._wrong_field(node, types[name])
+
+    def _types_bound_once(
+        self, function: _Function, statements: Sequence[ast.stmt]
+    ) -> dict[str, str]:
+        """Return the types of the messages in variables that a function binds once."""
         types: dict[str, str] = {}
         parameters = [node.arg for node in ast.walk(function.node) if isinstance(node, ast.arg)]
-        counts.update(parameters)
         if function.message and len(parameters) == 2:
             types[parameters[1]] = function.message
         for statement in statements:
             match statement:
                 case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=made, args=[])):
                     types[name] = self._full_name(made)
-        for statement in statements:
-            for node in _certain_parts(statement):
-                if not isinstance(node, ast.Attribute) or not isinstance(node.value, ast.Name):
-                    continue
-                name = node.value.id
-                if counts[name] == 1 and name in types:
-                    yield from self._wrong_field(node, types[name])
+        counts = Counter(parameters) + _count_stored(function.node)
+        return {name: full for name, full in types.items() if counts[name] == 1}
 
     def _wrong_field(self, node: ast.Attribute, kind: str) -> Iterator[Slip]:
         messages = python_table().messages
@@ -273,41 +282,44 @@ class _NodeSlips:
         """Yield the attributes of self that are like one that the class has, and not defined."""
         if owner.decorator_list:
             return
-        own = {node.name for node in owner.body if isinstance(node, ast.FunctionDef)}
-        for node in self._nodes:
-            match node:
-                case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Name(id=name, ctx=ast.Store()):
-                    own.add(name)
-        own |= python_table().node_attributes
-        seen = {*own}
+        own_names = self._attributes_of(owner)
+        seen = {*own_names}
         for statement in statements:
             for node in _certain_parts(statement):
                 if not isinstance(node, ast.Attribute) or not isinstance(node.ctx, ast.Load):
                     continue
-                if len(seen) > len(own) + _MAX_NAMES:
+                if len(seen) > len(own_names) + _MAX_NAMES:
                     return
                 name = node.attr
                 if dotted(node) != f"self.{name}" or name in seen or name.startswith("_"):
                     continue
                 seen.add(name)
-                alike = [other for other in own if other.strip("_") == name.strip("_")]
-                meant = alike[0] if len(alike) == 1 else near(name, own)
+                meant = _meant_attribute(name, own_names)
                 if meant is not None:
                     reaction = f"{owner.name} has no attribute {name}"
                     yield self._replaced(node, name, meant, reaction)
+
+    def _attributes_of(self, owner: ast.ClassDef) -> set[str]:
+        """Return the attributes that a class of a node may have, as far as names say."""
+        names = {*_methods_of(owner)}
+        for node in self._nodes:
+            match node:
+                case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Name(id=name, ctx=ast.Store()):
+                    names.add(name)
+        return names | python_table().node_attributes
 
     def _called_callbacks(
         self, owner: ast.ClassDef, statements: Sequence[ast.stmt]
     ) -> Iterator[Slip]:
         """Yield callbacks that are called where they should be given."""
-        own = {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
+        methods = _methods_of(owner)
         for statement in statements:
             for call in _calls(statement):
                 given = _callback(call)
                 if not isinstance(given, ast.Call) or given.args or given.keywords:
                     continue
                 name = dotted(given.func)
-                method = own.get(name.removeprefix("self."))
+                method = methods.get(name.removeprefix("self."))
                 if method is None or method.decorator_list or _gives_value(method):
                     continue
                 what = dotted(call.func).rpartition(".")[2]
@@ -322,7 +334,7 @@ class _NodeSlips:
         for method in owner.body:
             if not isinstance(method, ast.FunctionDef) or method.name != "__init__":
                 continue
-            names = {getattr(it, "attr", getattr(it, "id", "")) for it in ast.walk(method)}
+            names = {getattr(inner, "attr", getattr(inner, "id", "")) for inner in ast.walk(method)}
             if names.isdisjoint(("__init__", "super")):
                 code = f'super().__init__("{self._program.name.removesuffix(".py")}")'
                 reaction = f"super().__init__() is missing in the class {owner.name}"
@@ -336,17 +348,26 @@ class _NodeSlips:
         [(function, statement, name)] = made
         if function.owner is not None:
             return
-        names = {getattr(it, "attr", getattr(it, "id", "")) for it in self._nodes}
+        names = {getattr(node, "attr", getattr(node, "id", "")) for node in self._nodes}
         if "init" not in names and "context" not in text.lower():
             reaction = "rclpy.init() is missing, so that rclpy makes no node"
             code = "rclpy.init()"
             yield from self._before(function.node.body, f"{code}; ", statement, reaction, code)
-        waits = any(isinstance(it, ast.While | ast.For | ast.AsyncFor) for it in self._nodes)
+        if not self._may_run_on(self._classes[name]):
+            yield from self._without_spin(statement, name)
+
+    def _may_run_on(self, node_class: ast.ClassDef) -> bool:
+        """Return whether a program may spin or wait, or its node has no callbacks."""
+        waits = any(isinstance(node, ast.While | ast.For | ast.AsyncFor) for node in self._nodes)
         modules = {full.partition(".")[0] for full in self._imports.values()}
-        inside = ast.walk(self._classes[name])
+        if "spin" in self._code.source.text or waits or modules & _WAITING:
+            return True
+        inside = ast.walk(node_class)
         called = {getattr(node, "attr", getattr(node, "id", "")) for node in inside}
-        if "spin" in text or waits or modules & _WAITING or called.isdisjoint(CALLBACKS):
-            return
+        return called.isdisjoint(CALLBACKS)
+
+    def _without_spin(self, statement: ast.stmt, name: str) -> Iterator[Slip]:
+        """Yield that the statement that makes a node of a class does not spin it."""
         reaction = "rclpy.spin() is missing, so that the program ends at once"
         match statement:
             case ast.Expr(value=ast.Call() as call) if dotted(call.func) == name:
@@ -502,7 +523,27 @@ def _callback(call: ast.Call) -> ast.expr | None:
 
 def _package_of_message(name: str) -> str | None:
     """Return the module of the only well-known message of a name."""
-    found = [full for full in python_table().messages if full.rpartition(".")[2] == name]
-    if len(found) == 1:
-        return found[0].rpartition(".")[0]
+    matches = [full for full in python_table().messages if full.rpartition(".")[2] == name]
+    if len(matches) == 1:
+        return matches[0].rpartition(".")[0]
     return None
+
+
+def _meant_attribute(name: str, own_names: Collection[str]) -> str | None:
+    """Return the attribute that a name surely means: but for underscores, else a similar one."""
+    alike = [other for other in own_names if other.strip("_") == name.strip("_")]
+    return alike[0] if len(alike) == 1 else near(name, own_names)
+
+
+def _methods_of(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:
+    """Return the methods of a class by their names."""
+    return {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
+
+
+def _count_stored(function: ast.AST) -> Counter[str]:
+    """Return how often a function sets or deletes each variable."""
+    return Counter(
+        node.id
+        for node in ast.walk(function)
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store | ast.Del)
+    )

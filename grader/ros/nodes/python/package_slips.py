@@ -1,5 +1,6 @@
-"""The slips in the files of a package: what its build, its launch files, or what reads its YAML
-refuses, and what keeps its programs from running.
+"""The slips in the files of a package, and what keeps its programs from running.
+
+They are what its build, its launch files, or what reads its YAML refuses.
 """
 
 import ast
@@ -92,8 +93,9 @@ def _argument_slips(installation: Installation, code: Code) -> Iterator[Slip]:
 def _name_slips(
     package: Package, installation: Installation, code: Code, name: str
 ) -> Iterator[Slip]:
-    """Yield where setup.py has another name than package.xml, whose name the files of the package
-    have.
+    """Yield where setup.py has another name than package.xml.
+
+    The files of the package have the name of package.xml.
     """
     written = installation.name
     if not written or not name or written == name or f"resource/{name}" not in package.tree.files:

@@ -1,5 +1,6 @@
-"""The nodes of a package that are written in Python: what they declare and open, read from the text
-and never run.
+"""The nodes of a package that are written in Python: what they declare and open.
+
+The text is read and never run.
 
 Only what is written as a text, number or constant is known.
 What is opened under a condition is listed as well; actions and the topics of tf2 are not.
@@ -149,44 +150,77 @@ _Fact = Endpoint | NodeParameter | NodeFrame | Timer | Doubt | _Name
 
 def read_nodes(package: Package) -> PackageNodes:
     """Return the nodes in the Python modules that a build of a package installs. Never raises."""
+    modules, unread = _read_modules(package)
+    doubts = [Doubt("the file is not read", Location(package.path(path), 1, 1)) for path in unread]
+    kinds = _derived_classes(modules)
+    nodes = [node for module in modules.values() for node in module.read_nodes(kinds)]
+    doubts += (doubt for module in modules.values() for doubt in module.doubts)
+    programs = []
+    for program in _programs(package, modules, nodes):
+        read, doubts_of_program = _without_stopped(package, program, unread)
+        programs.append(read)
+        doubts += doubts_of_program
+    return _joined_nodes(modules.values(), nodes, programs, doubts)
+
+
+def _without_stopped(
+    package: Package, program: NodeProgram, unread: Collection[str]
+) -> tuple[NodeProgram, list[Doubt]]:
+    """Return a program, without its nodes if it stops before it makes them; and why it stops."""
+    slips = _slips_of(package, program)
+    if slips is None:
+        doubt = Doubt("not all programs are read", program.location)
+        return program._replace(nodes=()), [doubt]
+    syntax = unreadable_module(package, program.path) if program.path in unread else None
+    read = program._replace(nodes=() if slips else program.nodes, syntax=syntax)
+    return read, [Doubt(slip.reaction, slip.location) for slip in slips]
+
+
+def _read_modules(package: Package) -> tuple[dict[str, "_Module"], list[str]]:
+    """Return the modules that a build installs, by their names, and the files that are not read."""
     modules: dict[str, _Module] = {}
-    doubts: list[Doubt] = []
-    unread: set[str] = set()
+    unread: list[str] = []
     for name, path in _module_paths(package).items():
         code = read_module(package, path)
         if code is None:
-            unread.add(path)
-            doubts.append(Doubt("the file is not read", Location(package.path(path), 1, 1)))
+            unread.append(path)
         else:
             is_package = path.endswith("/__init__.py")
             modules[name] = _Module(code, name, package.work, is_package=is_package)
-    bases = {full: found for module in modules.values() for full, found in module.bases.items()}
+    return modules, unread
+
+
+def _derived_classes(modules: Mapping[str, "_Module"]) -> set[str]:
+    """Return the full names of the classes of nodes, rclpy's own ones and those of modules."""
+    bases: dict[str, Sequence[str | None]] = {}
+    for module in modules.values():
+        bases |= module.bases
     derived: dict[str | None, list[str]] = {}  # classes by each of their bases
-    for full, found in bases.items():
-        for base in found:
+    for full, own_bases in bases.items():
+        for base in own_bases:
             derived.setdefault(base, []).append(full)
     kinds, reached = set(NODE_CLASSES), [*NODE_CLASSES]
     while reached:
         more = [full for full in derived.get(reached.pop(), ()) if full not in kinds]
         kinds.update(more)
         reached += more
-    nodes = [node for module in modules.values() for node in module.read_nodes(kinds)]
-    doubts += (doubt for module in modules.values() for doubt in module.doubts)
-    programs = []
-    for program in _programs(package, modules, nodes):
-        slips = _slips_of(package, program)
-        if slips is None:
-            doubts.append(Doubt("not all programs are read", program.location))
-            programs.append(program._replace(nodes=()))
-            continue
-        doubts += [Doubt(slip.reaction, slip.location) for slip in slips]
-        syntax = unreadable_module(package, program.path) if program.path in unread else None
-        programs.append(program._replace(nodes=() if slips else program.nodes, syntax=syntax))
-    is_loose = any(module.has_loose_declarations for module in modules.values())
-    imports = [found for module in modules.values() for found in module.type_imports()]
-    uses = [use for module in modules.values() for use in module.field_uses()]
-    synchronised = [it for module in modules.values() for it in module.synchronised_types()]
-    faults, is_searched = _faults_of([module.text() for module in modules.values()])
+    return kinds
+
+
+def _joined_nodes(
+    modules: Collection["_Module"],
+    nodes: Sequence[NodeFacts],
+    programs: Sequence[NodeProgram],
+    doubts: Sequence[Doubt],
+) -> PackageNodes:
+    """Return the nodes of a package with what its modules import and use, and their faults."""
+    is_loose = any(module.has_loose_declarations for module in modules)
+    imports = [type_import for module in modules for type_import in module.type_imports()]
+    uses = [use for module in modules for use in module.field_uses()]
+    synchronised: list[SynchronisedType] = []
+    for module in modules:
+        synchronised += module.synchronised_types()
+    faults, is_searched = _faults_of([module.text() for module in modules])
     return PackageNodes(
         nodes=tuple(nodes),
         programs=tuple(programs),
@@ -219,11 +253,11 @@ def _faults_of(modules: Sequence[ModuleText]) -> tuple[list[CodeFault], bool]:
 
 def program_slips(package: Package) -> Iterator[Slip]:
     """Yield the slips for which a program in Python stops, or does nothing."""
-    found: dict[Edits, Slip] = {}
+    slips: dict[Edits, Slip] = {}
     for program in _programs(package, {}, ()):
         for slip in _slips_of(package, program) or ():
-            found.setdefault(slip.edits, slip)
-    yield from found.values()
+            slips.setdefault(slip.edits, slip)
+    yield from slips.values()
 
 
 def _slips_of(package: Package, program: NodeProgram) -> list[Slip] | None:
@@ -238,8 +272,9 @@ def _slips_of(package: Package, program: NodeProgram) -> list[Slip] | None:
 
 
 def _module_paths(package: Package) -> dict[str, str]:
-    """Return the files of the installed modules by their full names; those of installed programs
-    by their paths.
+    """Return the files of the installed modules, and those of installed programs.
+
+    Modules are listed by their full names, programs by their paths.
     """
     setup = package.installation
     if setup is None:
@@ -304,16 +339,25 @@ def _created_by(
     module: str,
     function: str,
 ) -> tuple[NodeFacts, ...]:
-    """Return the nodes that a function creates, also in those that it calls; without a name, the
-    module's body. None are known where too many functions call others.
+    """Return the nodes that a function creates, also in those that it calls.
+
+    Without a name, the function is the module's body. None are known where too many functions
+    call others.
 
     `nodes` are those at a place, and those of a class by its full name.
     """
-    found: dict[Location, NodeFacts] = {}
+    created: dict[Location, NodeFacts] = {}
     pending, seen = [f"{module}.{function}"], set[str]()
     while pending:
         name = pending.pop(0)
-        owner = next((modules[it] for it in (name.rpartition(".")[0], name) if it in modules), None)
+        owner = next(
+            (
+                modules[module_name]
+                for module_name in (name.rpartition(".")[0], name)
+                if module_name in modules
+            ),
+            None,
+        )
         if name in seen or owner is None:
             continue
         seen.add(name)
@@ -321,18 +365,22 @@ def _created_by(
         if not budget.take_of_whole(_OF_CALL * (1 + len(calls))):
             return ()
         for called, at in calls:
-            found |= {it.location: it for it in (*nodes.get(at, ()), *nodes.get(called, ()))}
+            created |= {
+                node.location: node for node in (*nodes.get(at, ()), *nodes.get(called, ()))
+            }
             pending.append(called)
-    return tuple(found.values())
+    return tuple(created.values())
 
 
 def _find_calls(nodes: Sequence[ast.AST]) -> list[ast.Call]:
-    return sorted((it for it in nodes if isinstance(it, ast.Call)), key=offset_of)
+    return sorted((node for node in nodes if isinstance(node, ast.Call)), key=offset_of)
 
 
 class _Module:
-    """A module: first its scopes and the bases of its classes, then, once all nodes are known,
-    their calls.
+    """A module.
+
+    First its scopes and the bases of its classes are read, then, once all nodes are known, their
+    calls.
     """
 
     def __init__(self, code: Code, name: str, work: Budget, *, is_package: bool) -> None:
@@ -383,10 +431,10 @@ class _Module:
         ]
         self._classes[at] = full
         self._class_nodes[at] = node
-        own = own_nodes(node)
-        constants = self._constants.bound(own, Scope({}, scope)).names
+        nodes_of_class = own_nodes(node)
+        constants = self._constants.bound(nodes_of_class, Scope({}, scope)).names
         attributes = Scope({f"self.{name}": value for name, value in constants.items()}, scope)
-        for method in own:
+        for method in nodes_of_class:
             if not isinstance(method, ast.FunctionDef | ast.AsyncFunctionDef):
                 continue
             nodes = [*ast.walk(method)]
@@ -403,10 +451,20 @@ class _Module:
         """Return the nodes, once the full names of all classes of nodes are known."""
         for at, full in self._classes.items():
             if full in kinds:
-                is_own = NODE_CLASSES.issuperset(self.bases[full])
-                self._facts[at] = (
-                    [] if is_own else [Doubt("what another base class does is not added", at)]
-                )
+                self._facts[at] = []
+                if not NODE_CLASSES.issuperset(self.bases[full]):
+                    doubt = Doubt("what another base class does is not added", at)
+                    self._facts[at].append(doubt)
+        self._read_calls()
+        if self._constants.budget.is_spent:
+            self.doubts.append(
+                Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
+            )
+        encodings = self._content.encodings() if self._uses("cv_bridge") else {}
+        return [self._node(at, facts, encodings) for at, facts in self._facts.items()]
+
+    def _read_calls(self) -> None:
+        """Add the nodes that calls make, then the facts that calls add to nodes."""
         calls = [(part, call) for part in self._parts for call in part.calls]
         for part, call in calls:
             if self._called(part, call) in _CREATES:
@@ -420,12 +478,6 @@ class _Module:
                     facts.append(
                         Doubt("another node takes the parameters of the process", self._at(call))
                     )
-        if self._constants.budget.is_spent:
-            self.doubts.append(
-                Doubt("the module is too long to evaluate", Location(self._code.source.path, 1, 1))
-            )
-        encodings = self._content.encodings() if self._uses("cv_bridge") else {}
-        return [self._node(at, facts, encodings) for at, facts in self._facts.items()]
 
     def synchronised_types(self) -> Iterator[SynchronisedType]:
         """Yield the types of the messages that synchronisers compare."""
@@ -498,9 +550,7 @@ class _Module:
         )
 
     def calls_in(self, function: str) -> Sequence[tuple[str, Location]]:
-        """Return the full name and place of each call in a function of the module, or in its
-        body.
-        """
+        """Return the full name and place of each call in a function of the module, or its body."""
         return self._calls_by_function.get(function, ())
 
     @cached_property
@@ -514,19 +564,20 @@ class _Module:
 
     def _called(self, part: CodePart, call: ast.Call) -> str:
         first, dot, rest = dotted(call.func).partition(".")
-        found = constant_in(part.scope, first)
-        if isinstance(found, QualifiedName):
-            return f"{found.name}{dot}{rest}"
+        constant = constant_in(part.scope, first)
+        if isinstance(constant, QualifiedName):
+            return f"{constant.name}{dot}{rest}"
         return ""
 
     def _argument(self, part: CodePart, call: ast.Call, position: int, name: str) -> Value:
-        """Return an argument of a call; None where it is missing, Unknown where * or ** may give
-        it.
+        """Return an argument of a call.
+
+        The result is None where it is missing, Unknown where * or ** may give it.
         """
-        if any(isinstance(it, ast.Starred) for it in call.args[: position + 1]):
+        if any(isinstance(argument, ast.Starred) for argument in call.args[: position + 1]):
             return Unknown("it is unpacked", position_of(call))
         given = given_argument(call, position, name)
-        if given is None and any(it.arg is None for it in call.keywords):
+        if given is None and any(keyword.arg is None for keyword in call.keywords):
             return Unknown("it is unpacked", position_of(call))
         return self._constants.value_of(given, part.scope)
 
@@ -548,7 +599,7 @@ class _Module:
             return
         names = EndpointNames(self._bindings_around(part), partial(self._value_in, part.scope))
         for parts in names.read(given):
-            kinds = {it.kind for it in parts}
+            kinds = {name_part.kind for name_part in parts}
             if kinds == {"text"}:
                 yield parts[0].text, ()
             else:
@@ -688,23 +739,29 @@ class _Module:
         elif method == "declare_parameters":
             yield from _declared(argument(0, "namespace"), argument(1, "parameters"), at)
         else:
-            is_declared = method == "declare_parameter"
-            default = argument(1, "value") if is_declared else None
-            is_plain = argument(2, "descriptor") is None
-            yield NodeParameter(
-                _text(argument(0, "name")),
-                _default(default),
-                at,
-                is_declared,
-                is_plain,
-                is_needed=method not in _READS_IF_DECLARED,
-                is_unset=isinstance(default, QualifiedName) and _default(default) is None,
-            )
+            yield self._parameter(part, call, method)
+
+    def _parameter(self, part: CodePart, call: ast.Call, method: str) -> NodeParameter:
+        """Return the parameter that a method declares or reads."""
+        argument = partial(self._argument, part, call)
+        is_declared = method == "declare_parameter"
+        default = argument(1, "value") if is_declared else None
+        is_plain = argument(2, "descriptor") is None
+        return NodeParameter(
+            _text(argument(0, "name")),
+            _default(default),
+            self._at(call),
+            is_declared,
+            is_plain,
+            is_needed=method not in _READS_IF_DECLARED,
+            is_unset=isinstance(default, QualifiedName) and _default(default) is None,
+        )
 
 
 def _has_alias(tree: ast.Module) -> bool:
-    """Return whether a method that declares parameters is named and not called, so that another
-    name may call it.
+    """Return whether a method that declares parameters is named and not called.
+
+    Another name may then call it.
     """
     called = {node.func for node in every_node(tree) if isinstance(node, ast.Call)}
     return any(
@@ -727,7 +784,7 @@ def _default(value: Value) -> Value:
     if is_rclpy and ".Parameter.Type." in value.name:
         return None
     items = value if isinstance(value, list | tuple) else [value]
-    is_known = all(isinstance(it, SCALARS) or it is None for it in items)
+    is_known = all(isinstance(scalar, SCALARS) or scalar is None for scalar in items)
     if is_known:
         return value
     return Unknown("the default is computed", getattr(value, "at", START))
@@ -770,8 +827,9 @@ def _qos(value: Value) -> Qos:
 
 
 def _policy(value: Value) -> str | None:
-    """Return a policy by its name in rclpy.qos, as ReliabilityPolicy.BEST_EFFORT; None where it is
-    not known.
+    """Return a policy by its name in rclpy.qos, as ReliabilityPolicy.BEST_EFFORT.
+
+    The result is None where it is not known.
     """
     if not isinstance(value, QualifiedName):
         return None

@@ -18,8 +18,9 @@ _OLDER_FORM = re.compile("^ignition[.]msgs(?=[.])")
 
 
 class BridgeRow(NamedTuple):
-    """What a bridge takes from a topic on one side to one on the other, without the first slash of
-    the names.
+    """What a bridge takes from a topic on one side to one on the other.
+
+    The names have no first slash.
     """
 
     ros: str

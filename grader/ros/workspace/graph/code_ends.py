@@ -82,8 +82,9 @@ def _has_parameter(endpoint: Endpoint) -> bool:
 
 
 def _full_name(node: StartedNode, name: str | None) -> str:
-    """Return the full name of an end of a node; _ANY for one that is not known. A remapping may
-    replace a name of which a part is not known.
+    """Return the full name of an end of a node; _ANY for one that is not known.
+
+    A remapping may replace a name of which a part is not known.
     """
     if name is None or (_ANY in name and node.remaps != ()):
         return _ANY
@@ -94,8 +95,9 @@ def _full_name(node: StartedNode, name: str | None) -> str:
 
 
 def frames_of(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str | None, NodeFrame]]:
-    """Yield the frames that an own node names as it is started, each with its name; None for one
-    that is not known. Raises NotDecided.
+    """Yield the frames that an own node names as it is started, each with its name.
+
+    It is None for one that is not known. Raises NotDecided.
     """
     own_node = workspace.code.own_node(node)
     if own_node is None or not own_node.frames:
@@ -125,14 +127,15 @@ def _values_given(
     )
     if given.unknown:
         return {}
-    return {**values, **{name: it.value for name, it in given.values.items()}}
+    return {**values, **{name: given_value.value for name, given_value in given.values.items()}}
 
 
 def _names(
     endpoint: Endpoint | NodeFrame, node: StartedNode, values: Mapping[str, Value]
 ) -> Sequence[str | None]:
-    """Return the names that an endpoint or frame has in the code of a node; None for one of which
-    nothing is known.
+    """Return the names that an endpoint or frame has in the code of a node.
+
+    The result is None for one of which nothing is known.
     """
     if endpoint.name is not None or not endpoint.parts:
         return [endpoint.name]

@@ -10,8 +10,9 @@ from grader.ros.xml.parsing import Element
 
 
 class GazeboTopic(NamedTuple):
-    """A topic of a sensor or a system, without the first slash, and the last word of the type of
-    its messages.
+    """A topic of a sensor or a system, and the last word of the type of its messages.
+
+    The topic has no first slash.
     """
 
     name: str
@@ -21,9 +22,7 @@ class GazeboTopic(NamedTuple):
 
 
 def gazebo_topics(workspace: Workspace) -> Iterator[GazeboTopic]:
-    """Yield the topics that are named in the robot, in models and in worlds, and whose types are
-    known.
-    """
+    """Yield the topics that the robot, models and worlds name, and whose types are known."""
     for root, place in roots(workspace):
         for sensor in root.iter("sensor"):
             for child in sensor.iterchildren("topic"):
@@ -44,8 +43,9 @@ def _plain_topic(element: Element) -> str:
 
 
 def sensor_topics(sensor: Element, element: Element) -> Iterator[tuple[str, str]]:
-    """Yield the topics that a sensor of a known type makes of the one in its <topic>, with the
-    types of their messages.
+    """Yield the topics that a sensor makes of the one in its <topic>, with the types of messages.
+
+    The type of the sensor is a known one.
     """
     types, name = gazebo().sensor.get(sensor.get("type", "")), _plain_topic(element)
     if types is None or not name:
@@ -66,8 +66,6 @@ def system_of(plugin: Element) -> str:
 
 
 def roots(workspace: Workspace) -> Iterator[tuple[Element, Callable[[Element], Location]]]:
-    """Yield the roots of the robots and of the models and worlds, each with where its elements
-    are written.
-    """
+    """Yield the roots of robots, models and worlds, each with where its elements are written."""
     yield from ((robot.root, robot.place) for robot in workspace.robots.known)
     yield from ((file.root, file.location) for file in workspace.texts.sdf_files)

@@ -1,5 +1,6 @@
-"""What runs after launch files are launched: nodes, their parameters, ends and transforms. What
-`ros2 node list`, `param dump`, `topic info --verbose` and `view_frames` would show.
+"""What runs after launch files are launched: nodes, their parameters, ends and transforms.
+
+What `ros2 node list`, `param dump`, `topic info --verbose` and `view_frames` would show.
 """
 
 from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
@@ -26,8 +27,9 @@ _READ: tuple[EndSource, ...] = ("code", "controller")
 
 @dataclass(frozen=True, eq=False)
 class Graph:
-    """What runs after each launch file of a workspace is launched on its own. `graph_of` makes it
-    once; the rules of topics, services, messages and transforms ask it.
+    """What runs after each launch file of a workspace is launched on its own.
+
+    `graph_of` makes it once; the rules of topics, services, messages and transforms ask it.
 
     The iterators charge the budget of the workspace for what they yield, and raise NotDecided.
     """
@@ -87,8 +89,9 @@ class Graph:
         return [other for other in others if (other.launch, other.type) == key]
 
     def bridged(self, ends: Iterable[End]) -> Iterator[tuple[End, BridgeRow]]:
-        """Yield each row of a bridge, also of one that nothing starts, with the ends from which it
-        takes messages, and those to which it brings some.
+        """Yield each row of a bridge with the ends from and to which it takes messages.
+
+        This includes the rows of bridges that nothing starts.
         """
         by_name = grouped(ends, lambda end: end.name)
         for row in bridge_rows(self.workspace):

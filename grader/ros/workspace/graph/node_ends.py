@@ -1,5 +1,6 @@
-"""The ends of topics, services and actions that nodes open as launch files start them: those of own
-code, of controllers, of bridges and of well-known programs.
+"""The ends of topics, services and actions that nodes open as launch files start them.
+
+The nodes are those of own code, controllers, bridges and well-known programs.
 """
 
 from collections.abc import Iterator
@@ -90,8 +91,9 @@ def _topics_of_program(
 def _type_by_parameter(
     workspace: Workspace, package: Package, node: StartedNode, row: CommandRow
 ) -> str | None:
-    """Return the type with which a program publishes a topic, which a parameter of it decides; None
-    where that is not known.
+    """Return the type with which a program publishes a topic, which a parameter of it decides.
+
+    The result is None where that is not known.
     """
     parameters = workspace.parameters.given_to(package, node)
     if parameters.unknown:

@@ -1,5 +1,6 @@
-"""The controllers of ros2_control that parameter files define and spawners start, and the topics
-that these open.
+"""The controllers that parameter files define and spawners start, and the topics of these.
+
+They are controllers of ros2_control.
 """
 
 from collections.abc import Iterator, Mapping
@@ -36,20 +37,22 @@ class Controller(NamedTuple):
 
 @lru_cache(maxsize=2)
 def named_sections(workspace: Workspace) -> tuple[tuple[tuple[str, ...], YamlNode], ...]:
-    """Return the parameters of nodes, also those that are inside of others, which is another
-    mistake.
+    """Return the parameters of nodes, also those inside of others.
+
+    A section inside of another one is another mistake.
     """
-    found: list[tuple[tuple[str, ...], YamlNode]] = []
+    sections: list[tuple[tuple[str, ...], YamlNode]] = []
     for _, tree in workspace.installed.trees:
         for keys, node in sections_in(tree):
             if keys:
-                found += [(keys, node), *sections_in(node, keys)]
-    return tuple(found)
+                sections += [(keys, node), *sections_in(node, keys)]
+    return tuple(sections)
 
 
 def parameters_of_controllers(workspace: Workspace) -> Mapping[str, YamlNode]:
-    """Return the parameters in the sections of parameter files, by the last names of their nodes,
-    some of which are controllers.
+    """Return the parameters in the sections of parameter files, by the last names of their nodes.
+
+    Some of these nodes are controllers.
     """
     return {keys[-1].rpartition("/")[2]: node for keys, node in named_sections(workspace)}
 
@@ -57,7 +60,7 @@ def parameters_of_controllers(workspace: Workspace) -> Mapping[str, YamlNode]:
 @lru_cache(maxsize=2)
 def defined_controllers(workspace: Workspace) -> tuple[Controller, ...]:
     """Return the controllers that parameter files define, with their types."""
-    found: list[Controller] = []
+    controllers: list[Controller] = []
     for keys, section in named_sections(workspace):
         name = keys[-1].rpartition("/")[2]
         # The type is in a section of the controller manager, or in their own, for a spawner.
@@ -69,15 +72,16 @@ def defined_controllers(workspace: Workspace) -> tuple[Controller, ...]:
             kind = node.get("type")
             if kind is not None and kind.text is not None and "/" in kind.text:
                 has_file = node.get("params_file") is not None
-                found.append(Controller(controller, kind, kind.location, has_file))
-    return tuple(found)
+                controllers.append(Controller(controller, kind, kind.location, has_file))
+    return tuple(controllers)
 
 
 def controller_endpoints(
     workspace: Workspace, launch: int, node: StartedNode
 ) -> Iterator[tuple[str, Endpoint]]:
-    """Yield the topics of the controllers in the process of a node, those that its launch file
-    spawns, each with the name of its controller.
+    """Yield the topics of the controllers in a node's process, each with its controller's name.
+
+    The controllers are those that the launch file of the node spawns.
     """
     if node.executable != CONTROL_NODE or node.namespace is None or node.remaps is None:
         return
@@ -115,8 +119,9 @@ def _topics_of(
 def spawned_controllers(
     workspace: Workspace, launch: int
 ) -> dict[str | None, tuple[tuple[str, ...], ...]]:
-    """Return the controllers that the spawners of a launch file start, by their names, each with
-    its remappings.
+    """Return the controllers that the spawners of a launch file start, with their remappings.
+
+    The keys are the names of the controllers.
     """
     remaps: dict[str | None, tuple[tuple[str, ...], ...]] = {}
     for number, spawner in workspace.launches.launched:

@@ -1,5 +1,6 @@
-"""The transforms that nodes publish, or may publish, as launch files start them: what
-`ros2 run tf2_tools view_frames` would show.
+"""The transforms that nodes publish, or may publish, as launch files start them.
+
+They are what `ros2 run tf2_tools view_frames` would show.
 """
 
 from collections.abc import Iterator
@@ -75,8 +76,9 @@ def edges_in(workspace: Workspace, launch: int) -> Iterator[Edge]:
 
 
 def is_zero_rotation(node: StartedNode) -> bool:
-    """Return whether a node certainly publishes a static transform that tf2 ignores, with the
-    quaternion 0 0 0 0.
+    """Return whether a node certainly publishes a static transform that tf2 ignores.
+
+    Its quaternion is 0 0 0 0.
     """
     is_static = (node.package, node.executable) == STATIC_PUBLISHER
     return is_static and _is_certain(node) and has_zero_rotation(node)
@@ -122,8 +124,9 @@ def _is_certain(node: StartedNode) -> bool:
 
 
 def _edges_of_code(workspace: Workspace, launch: int, node: StartedNode) -> Iterator[Edge]:
-    """Yield the transforms of own code. Which of its frames is in which one is not known: each is
-    connected with the first.
+    """Yield the transforms of own code.
+
+    Which of its frames is in which one is not known: each is connected with the first.
     """
     first = ""
     for name, frame in frames_of(workspace, node):
@@ -133,8 +136,9 @@ def _edges_of_code(workspace: Workspace, launch: int, node: StartedNode) -> Iter
 
 
 def _edges_of_robots(workspace: Workspace, launch: int, *, is_certain: bool) -> Iterator[Edge]:
-    """Yield the joints of the robots, which robot_state_publisher publishes; for certain where it
-    is known of which robot.
+    """Yield the joints of the robots, which robot_state_publisher publishes.
+
+    It is certain where it is known of which robot.
     """
     is_one = len(workspace.robots.known) == 1 and not workspace.robots.may_be_others
     for known_robot in workspace.robots.known:
@@ -171,8 +175,9 @@ def _broadcast_by_controllers(workspace: Workspace, launch: int) -> Iterator[Edg
 
 
 def _broadcast_by_gazebo(workspace: Workspace, launch: int, bridge: StartedNode) -> Iterator[Edge]:
-    """Yield the transforms of systems of Gazebo that a bridge publishes on /tf, where these name
-    their frames.
+    """Yield the transforms of systems of Gazebo that a bridge publishes on /tf.
+
+    The systems are those that name their frames.
     """
     if bridge.namespace not in ("", "/"):
         return
@@ -193,8 +198,9 @@ def _broadcast_by_gazebo(workspace: Workspace, launch: int, bridge: StartedNode)
 
 
 def _frames_of_system(plugin: Element) -> tuple[str, str] | None:
-    """Return parent and child of the transform that a system of Gazebo publishes; None if it does
-    not name both.
+    """Return parent and child of the transform that a system of Gazebo publishes.
+
+    The result is None if it does not name both.
     """
     frames = gazebo().system.get(system_of(plugin), NO_SYSTEM).transform
     if frames is None:
@@ -205,8 +211,9 @@ def _frames_of_system(plugin: Element) -> tuple[str, str] | None:
 
 
 def _broadcast(kind: str, given: NodeParameters) -> Iterator[tuple[str, str]]:
-    """Yield parent and child of the transforms that a program or a controller publishes with its
-    parameters.
+    """Yield parent and child of the transforms that a program or controller publishes.
+
+    The parameters of the program or controller name them.
     """
     for row in transforms_of(kind):
         parts = [row.on, row.parent, row.child, *row.if_equal]

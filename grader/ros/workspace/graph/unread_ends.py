@@ -1,5 +1,6 @@
-"""Whether something that is not read may open an end. Only where nothing may, another end of its
-name is in vain.
+"""Whether something that is not read may open an end.
+
+Only where nothing may, another end of its name is in vain.
 """
 
 from fnmatch import fnmatchcase
@@ -25,8 +26,9 @@ class Sought(NamedTuple):
 
 
 def is_own_type(workspace: Workspace, kind: str | None) -> bool:
-    """Return whether a package of the workspace defines a type, and only its own programs know it:
-    none relays what others send.
+    """Return whether a type is one of the workspace that only its own programs know.
+
+    A package of the workspace defines it, and none relays what others send.
     """
     if any(package_row(node.package).relays for _, node in workspace.launches.nodes):
         return False
@@ -97,8 +99,9 @@ def _may_be_of_other_package(workspace: Workspace, node: StartedNode, sought: So
 def _may_publish_unread(
     workspace: Workspace, package: Package, node: StartedNode, sought: Sought
 ) -> bool:
-    """Return whether an own program whose nodes are not known may publish a topic, as its texts
-    say.
+    """Return whether an own program whose nodes are not known may publish a topic.
+
+    Its texts say so.
     """
     texts = [source.text for source in workspace.texts.sources_of(package, _SOURCES)]
     last = sought.name.rpartition("/")[2]

@@ -1,5 +1,6 @@
-"""All names of a workspace where they are written, for editors: what defines a name, and what else
-uses it.
+"""All names of a workspace where they are written, for editors.
+
+They are what defines a name, and what else uses it.
 
 The facts that are compared say what is wrong. Here are more uses than those: what the reader of
 robots, xacro or a launch file itself reports makes no finding of a workspace. Nothing of this is
@@ -40,28 +41,33 @@ class WorkspaceNames:
         self.names = tuple(sorted(dict.fromkeys(names), key=_order))
         self._by_path: dict[str, list[WrittenName]] = {}
         self._alike: dict[tuple[str, str], list[WrittenName]] = {}
-        for it in self.names:
-            self._by_path.setdefault(it.location.path, []).append(it)
-            self._alike.setdefault(_key(it), []).append(it)
+        for written in self.names:
+            self._by_path.setdefault(written.location.path, []).append(written)
+            self._alike.setdefault(_key(written), []).append(written)
 
     def at(self, path: str, line: int, column: int) -> tuple[WrittenName, ...]:
-        """Return the names at a place of a file, the shortest first: a made one may hold others,
-        and a macro gives one place several names.
+        """Return the names at a place of a file, the shortest first.
+
+        A made name may hold others, and a macro gives one place several names.
         """
-        found = [it for it in self._by_path.get(path, ()) if it.covers(path, line, column)]
-        return tuple(sorted(found, key=_length))
+        names = [
+            written for written in self._by_path.get(path, ()) if written.covers(path, line, column)
+        ]
+        return tuple(sorted(names, key=_length))
 
     def same_as(self, one: WrittenName) -> tuple[WrittenName, ...]:
-        """Return all places of a name: those of its owner, and those that share a place with them,
-        as robots do that include one file.
+        """Return all places of a name.
+
+        They are those of its owner, and those that share a place with them, as robots do that
+        include one file.
         """
         alike = self._alike.get(_key(one), [])
         owners, count = {one.owner}, 0
         while count < len(owners):
             count = len(owners)
-            places = {it.location for it in alike if it.owner in owners}
-            owners |= {it.owner for it in alike if it.location in places}
-        return tuple(it for it in alike if it.owner in owners)
+            places = {other.location for other in alike if other.owner in owners}
+            owners |= {other.owner for other in alike if other.location in places}
+        return tuple(other for other in alike if other.owner in owners)
 
 
 def read_names(workspace: Workspace, facts: Iterable[Fact]) -> WorkspaceNames:
@@ -75,10 +81,10 @@ def read_names(workspace: Workspace, facts: Iterable[Fact]) -> WorkspaceNames:
     names += names_in_xacro(workspace.urdfs, workspace.robots.xacro_sources)
     names += names_in_launch_files(workspace)
     names += names_in_yaml(workspace)
-    written = {(_key(it), it.role, it.location) for it in names}
-    for found in _names_of_facts(workspace, facts):
-        if (_key(found), found.role, found.location) not in written:
-            names.append(found)
+    written = {(_key(known_name), known_name.role, known_name.location) for known_name in names}
+    for addition in _names_of_facts(workspace, facts):
+        if (_key(addition), addition.role, addition.location) not in written:
+            names.append(addition)
     return WorkspaceNames(_owned(workspace, names))
 
 
@@ -98,8 +104,9 @@ def _order(name: WrittenName) -> tuple[str, int, int, str, str, str]:
 
 
 def _names_of_facts(workspace: Workspace, facts: Iterable[Fact]) -> Iterator[WrittenName]:
-    """Yield the names of facts at what is written of them; none of what no file of the workspace
-    has.
+    """Yield the names of facts at what is written of them.
+
+    There are none for what no file of the workspace has.
     """
     source_of = reader_of(lambda path: workspace.tree.read(path, _MAX_TEXT))
     for fact in facts:
@@ -115,8 +122,9 @@ def _names_of_facts(workspace: Workspace, facts: Iterable[Fact]) -> Iterator[Wri
 
 
 def _is_of_no_place(fact: Definition | Use) -> bool:
-    """Return whether a fact is a definition that no place has, or that is a use where it stands:
-    what passes an argument declares it to the comparison of names.
+    """Return whether a fact is a definition that no place has, or that is a use where it stands.
+
+    Such a use is an argument that is passed, which is declared to the comparison of names.
     """
     is_known_frame = fact.kind == "frame" and fact.name in shared_names().frames
     is_argument = fact.kind in ("launch argument", "xacro argument")
@@ -124,8 +132,9 @@ def _is_of_no_place(fact: Definition | Use) -> bool:
 
 
 def _owned(workspace: Workspace, names: Sequence[WrittenName]) -> Iterator[WrittenName]:
-    """Yield names, those that no robot has with the robots that are meant: of their package, else
-    all that define them.
+    """Yield names, those that no robot has with the robots that are meant.
+
+    These are the robots of their package, else all that define them.
     """
     owners: dict[tuple[str, str], dict[str, None]] = defaultdict(dict)
     for name in names:

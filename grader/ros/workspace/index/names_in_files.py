@@ -14,19 +14,20 @@ _MAX_TEXT = 4 * 1024 * 1024  # bytes of a file
 
 
 def names_in_launch_files(workspace: Workspace) -> Iterator[WrittenName]:
-    """Yield the arguments in launch files, whose owner is the installed file, as it is of those
-    that includes pass.
+    """Yield the arguments in launch files, whose owner is the installed file.
+
+    It is also the owner of the arguments that includes pass.
     """
     for package, path, _ in workspace.launches.files:
         data = package.tree.read(path, _MAX_TEXT)
         if data is None:
             continue
-        source, found = argument_names(data, package.path(path))
+        source, argument_uses = argument_names(data, package.path(path))
         for owner in workspace.launches.targets_of(package, path) or (source.path,):
-            for it in found:
-                role: Role = "definition" if it.is_definition else "use"
-                span = it.start, it.end
-                yield written_name(source, span, "launch argument", it.name, role, owner)
+            for argument in argument_uses:
+                role: Role = "definition" if argument.is_definition else "use"
+                span = argument.start, argument.end
+                yield written_name(source, span, "launch argument", argument.name, role, owner)
 
 
 def names_in_yaml(workspace: Workspace) -> Iterator[WrittenName]:
@@ -36,16 +37,14 @@ def names_in_yaml(workspace: Workspace) -> Iterator[WrittenName]:
             if key in workspace.installed.typed_sections:
                 yield _name_of_key(mapping, key)
     for package in workspace.packages:
-        for path in [it for it in package.tree.files if it.endswith(".rviz")]:
+        for path in [file for file in package.tree.files if file.endswith(".rviz")]:
             data = package.tree.read(path, _MAX_TEXT)
             with suppress(YamlFault):
                 yield from _frames_of_rviz(read_yaml(data or b"", package.path(path)))
 
 
 def _keys_with_parameters(tree: YamlNode) -> Iterator[tuple[str, YamlNode]]:
-    """Yield the keys that have parameters of ROS below them, each with the mapping that it is
-    in.
-    """
+    """Yield the keys that have parameters of ROS below them, each with its mapping."""
     visits, waiting = Visits(), [tree]
     while waiting:
         mapping = waiting.pop()

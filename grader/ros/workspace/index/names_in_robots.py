@@ -35,8 +35,9 @@ _ATTRIBUTES = tuple(dict.fromkeys(attribute for _, _, attribute in _NAMED))
 
 
 def names_in_robots(urdfs: Sequence[Read]) -> Iterator[WrittenName]:
-    """Yield the names in robots, each robot with its path as the owner; of xacro where they are
-    written, and as they are after expansion.
+    """Yield the names in robots, each robot with its path as the owner.
+
+    Names of xacro are yielded where they are written, and as they are after expansion.
     """
     for urdf in urdfs:
         reading = urdf.reading
@@ -62,8 +63,10 @@ def _names_in_robot(urdf: Read, root: Element) -> Iterator[WrittenName]:
 
 
 def _named_by(element: Element, attribute: str, joints: Collection[str | None]) -> _Named | None:
-    """Return what an attribute names: also a joint, in a reference of Gazebo, and a material that
-    is defined in a visual, to which ROS 2 adds its color.
+    """Return what an attribute names.
+
+    It may be a joint in a reference of Gazebo, or a material that is defined in a visual, to
+    which ROS 2 adds its color.
     """
     parent = element.getparent()
     assert parent is not None

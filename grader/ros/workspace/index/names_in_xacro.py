@@ -1,9 +1,10 @@
-"""The names of xacro in files as they are written: arguments, properties, macros with their
-parameters, and where they are used.
+"""The names of xacro in files as they are written, and where they are used.
+
+They are those of arguments, properties, and macros with their parameters.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import NamedTuple
 
@@ -30,8 +31,9 @@ _PREFIX = "xacro:"
 
 
 class _XacroName(NamedTuple):
-    """A name in a file; `scope` is the macro that it belongs to, empty outside of macros. Of an
-    argument in a macro call, only the name of the macro is known: `called`.
+    """A name in a file; `scope` is the macro that it belongs to, empty outside of macros.
+
+    Of an argument in a macro call, only the name of the macro is known: `called`.
     """
 
     kind: str
@@ -62,8 +64,9 @@ class _Document(NamedTuple):
 
 
 def names_in_xacro(urdfs: Sequence[Read], others: Sequence[Source]) -> Iterator[WrittenName]:
-    """Yield the names of xacro in the files of each robot, with its path as the owner; then those
-    of other files, each on its own.
+    """Yield the names of xacro in the files of each robot, and then in other files.
+
+    The owner is the path of the robot; each of the other files is on its own.
     """
     known: dict[str, _Document] = {}
     for urdf in urdfs:
@@ -86,22 +89,40 @@ def _names_of_owner(documents: Sequence[_Document], owner: str) -> Iterator[Writ
     scopes = {macro.name: macro.scope for document in documents for macro in document.macros}
     properties: set[str] = set()
     for document in documents:
-        properties |= {it.name for it in document.names if it.kind == "xacro property"}
+        properties |= {
+            defined.name for defined in document.names if defined.kind == "xacro property"
+        }
     for document in documents:
-        source = document.source
-        for it in document.names:
-            scope = it.scope
-            if it.called is not None:
-                scope = scopes.get(it.called, "")
-                if not scope:
-                    continue  # no file of this owner has the macro
-            yield written_name(source, it.span, it.kind, it.name, it.role, scope or owner)
-        for it in document.loose:
-            scope = _scope_at(document.macros, it.span[0], it.name)
-            if scope:
-                yield written_name(source, it.span, "xacro parameter", it.name, "use", scope)
-            elif it.name in properties:
-                yield written_name(source, it.span, "xacro property", it.name, "use", owner)
+        yield from _names_of_tags(document, owner, scopes)
+        yield from _names_in_expressions(document, owner, properties)
+
+
+def _names_of_tags(
+    document: _Document, owner: str, scopes: Mapping[str, str]
+) -> Iterator[WrittenName]:
+    """Yield the names of a file whose kind is known; `scopes` are those of macros."""
+    for used in document.names:
+        scope = used.scope
+        if used.called is not None:
+            scope = scopes.get(used.called, "")
+            if not scope:
+                continue  # no file of this owner has the macro
+        yield written_name(
+            document.source, used.span, used.kind, used.name, used.role, scope or owner
+        )
+
+
+def _names_in_expressions(
+    document: _Document, owner: str, properties: Collection[str]
+) -> Iterator[WrittenName]:
+    """Yield the names in expressions of a file: parameters of the macro around, or properties."""
+    source = document.source
+    for used in document.loose:
+        scope = _scope_at(document.macros, used.span[0], used.name)
+        if scope:
+            yield written_name(source, used.span, "xacro parameter", used.name, "use", scope)
+        elif used.name in properties:
+            yield written_name(source, used.span, "xacro property", used.name, "use", owner)
 
 
 def _read_document(root: XacroNode) -> _Document:
@@ -111,19 +132,19 @@ def _read_document(root: XacroNode) -> _Document:
     for node in walk(root):
         names += _names_in_tag(node, macros)
     loose: list[_XacroName] = []
-    text = _COMMENT.sub(lambda found: " " * len(found[0]), source.text)
+    text = _COMMENT.sub(lambda comment: " " * len(comment[0]), source.text)
     for piece in _PIECE.finditer(text):
         if piece["argument"] is not None:
             names.append(
                 _XacroName("xacro argument", piece["argument"], "use", piece.span("argument"))
             )
         elif piece["expression"] is not None:
-            for found in _IN_EXPRESSION.finditer(text, *piece.span("expression")):
-                if found["argument"] is not None:
-                    span = found.span("argument")
-                    names.append(_XacroName("xacro argument", found["argument"], "use", span))
-                elif found["name"] is not None:
-                    loose.append(_XacroName("", found["name"], "use", found.span("name")))
+            for match in _IN_EXPRESSION.finditer(text, *piece.span("expression")):
+                if match["argument"] is not None:
+                    span = match.span("argument")
+                    names.append(_XacroName("xacro argument", match["argument"], "use", span))
+                elif match["name"] is not None:
+                    loose.append(_XacroName("", match["name"], "use", match.span("name")))
     return _Document(source, tuple(names), tuple(loose), macros)
 
 
@@ -134,19 +155,19 @@ def _macros(root: XacroNode) -> Iterator[_Macro]:
             continue
         source, start = node.place.written
         name = node.attributes.get("name", "").removeprefix(_PREFIX)
-        own = {found[1] for found in _PARAMETER.finditer(node.attributes.get("params", ""))}
+        parameters = {match[1] for match in _PARAMETER.finditer(node.attributes.get("params", ""))}
         for inner in walk(node):
             if inner.tag == "xacro:property" and "scope" not in inner.attributes:
-                own.add(inner.attributes.get("name", ""))
+                parameters.add(inner.attributes.get("name", ""))
         end = markup.element_end(source.text, start)
-        yield _Macro(name, f"{source.path}#{name}", start, end, frozenset(own))
+        yield _Macro(name, f"{source.path}#{name}", start, end, frozenset(parameters))
 
 
 def _names_in_tag(node: XacroNode, macros: Sequence[_Macro]) -> Iterator[_XacroName]:
     """Yield the names that a tag of xacro defines, and those that it uses, but for expressions."""
     source, start = node.place.written
     text = source.text
-    written = {it.name: it.value for it in markup.attributes(text, start)}
+    written = {attribute.name: attribute.value for attribute in markup.attributes(text, start)}
     if node.tag == "xacro:macro":
         yield from _names_of_macro(source, written)
     elif node.tag == "xacro:call" and "macro" in written:
@@ -155,16 +176,20 @@ def _names_in_tag(node: XacroNode, macros: Sequence[_Macro]) -> Iterator[_XacroN
     elif node.tag.startswith(_PREFIX) and node.tag not in HANDLERS:
         yield from _names_in_call(text, start, node.tag, written)
     elif "name" in written:
-        own = written["name"]
-        name = text[slice(*own)]
+        name = text[slice(*written["name"])]
         scope = "" if "scope" in written else _scope_at(macros, start, name)
-        if node.tag == "xacro:arg":
-            yield _XacroName("xacro argument", name, "definition", own)
-        elif node.tag == "xacro:property":
-            kind = "xacro parameter" if scope else "xacro property"
-            yield _XacroName(kind, name, "definition", own, scope)
-        elif node.tag == "xacro:insert_block" and scope:
-            yield _XacroName("xacro parameter", name, "use", own, scope)
+        yield from _name_of_tag(node.tag, name, written["name"], scope)
+
+
+def _name_of_tag(tag: str, name: str, span: Span, scope: str) -> Iterator[_XacroName]:
+    """Yield the name in the attribute of an argument, a property or an inserted block."""
+    if tag == "xacro:arg":
+        yield _XacroName("xacro argument", name, "definition", span)
+    elif tag == "xacro:property":
+        kind = "xacro parameter" if scope else "xacro property"
+        yield _XacroName(kind, name, "definition", span, scope)
+    elif tag == "xacro:insert_block" and scope:
+        yield _XacroName("xacro parameter", name, "use", span, scope)
 
 
 def _names_of_macro(source: Source, written: Mapping[str, Span]) -> Iterator[_XacroName]:
@@ -173,9 +198,9 @@ def _names_of_macro(source: Source, written: Mapping[str, Span]) -> Iterator[_Xa
     name = source.text[start:end].removeprefix(_PREFIX)
     if name:
         yield _XacroName("xacro macro", name, "definition", (end - len(name), end))
-    for found in _PARAMETER.finditer(source.text, *written.get("params", (0, 0))):
+    for match in _PARAMETER.finditer(source.text, *written.get("params", (0, 0))):
         scope = f"{source.path}#{name}"
-        yield _XacroName("xacro parameter", found[1], "definition", found.span(1), scope)
+        yield _XacroName("xacro parameter", match[1], "definition", match.span(1), scope)
 
 
 def _names_in_call(

@@ -49,14 +49,14 @@ def _packages(workspace: Workspace, _: str) -> Iterable[str]:
 
 
 def _programs(workspace: Workspace, owner: str) -> Iterable[str]:
-    found = [*programs_of(owner)]
+    programs = [*programs_of(owner)]
     for package in _owners(workspace, owner):
         folder = f"lib/{package.name}/"
         setup = package.installation
         installed = package.known_programs.targets if setup is not None else ()
-        found += (path.removeprefix(folder) for path in installed if path.startswith(folder))
-        found += (package.known_programs.listed or ()) if setup is not None else ()
-    return found
+        programs += (path.removeprefix(folder) for path in installed if path.startswith(folder))
+        programs += (package.known_programs.listed or ()) if setup is not None else ()
+    return programs
 
 
 def _launch_files(workspace: Workspace, owner: str) -> Iterable[str]:
@@ -73,13 +73,13 @@ def _files(workspace: Workspace, owner: str) -> Iterable[str]:
 
 
 def _owners(workspace: Workspace, owner: str) -> Iterable[Package]:
-    return (it for it in workspace.packages if not owner or it.name == owner)
+    return (package for package in workspace.packages if not owner or package.name == owner)
 
 
 def _interfaces(part: str) -> Callable[[Workspace, str], Iterable[str]]:
     def find(workspace: Workspace, owner: str) -> Iterable[str]:
-        own = workspace.code.interfaces.get(owner)
-        names = [*own.types] if own is not None else []
+        own_interfaces = workspace.code.interfaces.get(owner)
+        names = [*own_interfaces.types] if own_interfaces is not None else []
         names += known_interfaces(owner, workspace.releases) or ()
         start = f"{part}."
         return (name.removeprefix(start) for name in names if name.startswith(start))

@@ -1,5 +1,6 @@
-"""The parameters of the node that a section of a parameter file is for: own nodes, controllers and
-well-known nodes.
+"""The parameters of the node that a section of a parameter file is for.
+
+The nodes are own nodes, controllers and well-known nodes.
 """
 
 from collections.abc import Iterator
@@ -22,7 +23,7 @@ def parameters_below(workspace: Workspace, section: str, prefix: str) -> list[st
         section: The name of the node or controller.
         prefix: The keys of the tables around, each with a dot.
     """
-    names = [it.name or "" for it in _own_parameters(workspace, section)]
+    names = [parameter.name or "" for parameter in _own_parameters(workspace, section)]
     node = _known_node(workspace, section)
     if node is not None:
         names += (row.name for row in rows_of(node, _release_of(workspace)))
@@ -32,11 +33,11 @@ def parameters_below(workspace: Workspace, section: str, prefix: str) -> list[st
 
 def parameter_text(workspace: Workspace, section: str, name: str) -> str:
     """Return what is known of a parameter of a node, a fact a line; empty where nothing is."""
-    for own in _own_parameters(workspace, section):
-        if own.name == name:
-            where = f"declared at {own.location.file_and_line}"
-            is_known = own.default is not None and not isinstance(own.default, Unknown)
-            return f"default: {own.default}\n{where}" if is_known else where
+    for parameter in _own_parameters(workspace, section):
+        if parameter.name == name:
+            where = f"declared at {parameter.location.file_and_line}"
+            is_known = parameter.default is not None and not isinstance(parameter.default, Unknown)
+            return f"default: {parameter.default}\n{where}" if is_known else where
     node = _known_node(workspace, section)
     known = node_rows(node) if node is not None else None
     row = row_for(node, name, _release_of(workspace)) if node is not None else None
@@ -49,12 +50,13 @@ def _own_parameters(workspace: Workspace, section: str) -> Iterator[NodeParamete
     for package in workspace.code.by_package.values():
         for node in package.nodes:
             if node.name == section:
-                yield from (it for it in node.parameters if it.is_declared)
+                yield from (parameter for parameter in node.parameters if parameter.is_declared)
 
 
 def _known_node(workspace: Workspace, section: str) -> str | None:
-    """Return the well-known node that has a section: by the type of a controller, else by the name
-    that a node usually has.
+    """Return the well-known node that has a section.
+
+    It is found by the type of a controller, else by the name that a node usually has.
     """
     for controller in defined_controllers(workspace):
         if controller.name == section:
@@ -68,8 +70,9 @@ def _release_of(workspace: Workspace) -> Release | None:
 
 
 def _key_behind(name: str, prefix: str) -> str:
-    """Return the part of a parameter's name behind a prefix; empty where the name does not begin
-    so, or where any key may be.
+    """Return the part of a parameter's name behind a prefix.
+
+    The result is empty where the name does not begin so, or where any key may be.
     """
     tables, parts = prefix.split(".")[:-1], name.split(".")
     for table, part in zip(tables, parts, strict=False):

@@ -75,8 +75,9 @@ _QUOTES = re.compile(r'''(?i:[rbuf]{0,2}|u8)("""|\'\'\'|"|')''')
 
 
 def span_of_name(source: Source, where: Location, kind: str, name: str, role: Role) -> Span | None:
-    """Return the span of a name, or of the expression that makes it, in what begins at a place;
-    None where the name is not written there.
+    """Return the span of a name, or of the expression that makes it, in what begins at a place.
+
+    The result is None where the name is not written there.
     """
     if (kind, role) == ("node", "definition"):
         kind = _STARTED
@@ -98,16 +99,16 @@ def _part(text: str, span: Span, name: str) -> Span | None:
         return span
     bare = name.strip("/")
     if "$" in written or "{" in written:
-        plain = _EXPRESSION.sub(lambda found: "$" * len(found[0]), written)
+        plain = _EXPRESSION.sub(lambda expression: "$" * len(expression[0]), written)
         alone = re.search(rf"(?<!\S)/?({re.escape(bare)})(?!\S)", plain) if bare else None
         if alone is None:
             return span
         return start + alone.start(1), start + alone.end(1)
-    found = re.search(rf"(?<![\w.-]){re.escape(bare)}(?![\w-]|\.\w)", written) if bare else None
-    if found is None:
+    match = re.search(rf"(?<![\w.-]){re.escape(bare)}(?![\w-]|\.\w)", written) if bare else None
+    if match is None:
         return None
-    slash = name.startswith("/") and written.startswith("/", max(0, found.start() - 1))
-    return start + found.start() - int(slash and found.start() > 0), start + found.end()
+    slash = name.startswith("/") and written.startswith("/", max(0, match.start() - 1))
+    return start + match.start() - int(slash and match.start() > 0), start + match.end()
 
 
 # --- XML
@@ -125,18 +126,11 @@ def _in_markup(source: Source, start: int, kind: str, name: str) -> Span | None:
 
 
 def _in_tag(text: str, start: int, kind: str, name: str) -> Span | None:
-    """Return where a name is in an element: in an attribute, in its text, or in an argument that an
-    include passes.
+    """Return where a name is in an element.
+
+    It is in an attribute, in its text, or in an argument that an include passes.
     """
-    found = {it.name: it.value for it in markup.attributes(text, start)}
-    order = [key for key in (*_USUAL.get(kind, ()), *_IN_XML) if key in found]
-    values = [found[key] for key in dict.fromkeys([*order, *found])]
-    if kind == _STARTED:
-        values = [found["name"]] if "name" in found else []
-    head, is_empty = markup.head_end(text, start)
-    if not is_empty:
-        content = re.compile(r"\s*([^<]*?)\s*(?=<)").match(text, head)
-        values += [content.span(1)] if content is not None and content[1] else []
+    values = _values_in_tag(text, start, kind)
     for span in values:
         if text[slice(*span)] == name:
             return span
@@ -149,11 +143,27 @@ def _in_tag(text: str, start: int, kind: str, name: str) -> Span | None:
     return None
 
 
+def _values_in_tag(text: str, start: int, kind: str) -> list[Span]:
+    """Return the values of an element in which a name may be, the usual attributes first."""
+    spans = {attribute.name: attribute.value for attribute in markup.attributes(text, start)}
+    if kind == _STARTED:
+        values = [spans["name"]] if "name" in spans else []
+    else:
+        order = [key for key in (*_USUAL.get(kind, ()), *_IN_XML) if key in spans]
+        values = [spans[key] for key in dict.fromkeys([*order, *spans])]
+    head, is_empty = markup.head_end(text, start)
+    if not is_empty:
+        content = re.compile(r"\s*([^<]*?)\s*(?=<)").match(text, head)
+        if content is not None and content[1]:
+            values.append(content.span(1))
+    return values
+
+
 def _passed_in_element(text: str, start: int, name: str) -> Span | None:
     end = min(markup.element_end(text, start), start + _MAX_CALL)
     passed = re.compile(rf"<arg\b[^<>]*?\bname\s*=\s*[\"']({re.escape(name)})[\"']")
-    found = passed.search(text, start, end)
-    return found.span(1) if found is not None else None
+    match = passed.search(text, start, end)
+    return match.span(1) if match is not None else None
 
 
 # --- YAML
@@ -188,9 +198,9 @@ def _key_above(text: str, start: int, name: str) -> Span | None:
         line = _LINE.match(text, line_start)
         if line is not None and len(line["indent"]) <= around:
             is_beside = is_item and line["dash"] and len(line["indent"]) == around
-            found = key.match(text, line.end("indent"))
-            if found is not None and found.end() <= start and not is_beside:
-                return found.span(2)
+            match = key.match(text, line.end("indent"))
+            if match is not None and match.end() <= start and not is_beside:
+                return match.span(2)
             if not is_beside:
                 is_item = bool(line["dash"])
                 around = len(line["indent"]) - int(not is_item)
@@ -220,8 +230,9 @@ def _in_code(source: Source, start: int, kind: str, name: str) -> Span | None:
 
 
 def _in_call(text: str, start: int, kind: str, name: str) -> Span | None:
-    """Return the text of a call that is a name, in the usual argument if several are; else the
-    first that has it as a word.
+    """Return the text of a call that is a name.
+
+    It is in the usual argument if several are; else it is the first that has it as a word.
     """
     first: Span | None = None
     word: Span | None = None
@@ -245,16 +256,17 @@ def _given_to_xacro(text: str, start: int, name: str) -> Span | None:
     given = re.compile(rf"(?<![\w.-]){re.escape(name)}(?=\s*:=)")
     keys: list[Span] = []
     for _, span in _texts_in_call(text, start):
-        found = given.search(text, *span)
-        if found is not None:
-            return found.span()
+        match = given.search(text, *span)
+        if match is not None:
+            return match.span()
         keys += [span] if text[slice(*span)] == name else []
     return keys[0] if keys else None
 
 
 def _texts_in_call(text: str, start: int) -> Iterator[tuple[str, Span]]:
-    """Yield the texts in a call, or up to the end of a statement of C++, each with the keyword of
-    its argument.
+    """Yield the texts in a call, each with the keyword of its argument.
+
+    In C++, it is all up to the end of a statement.
     """
     depth, keyword, has_opened = 0, "", False
     for token in _TOKEN_OF_CALL.finditer(text, start, start + _MAX_CALL):

@@ -38,8 +38,9 @@ class GivenFiles:
 
     @cached_property
     def files(self) -> Mapping[str, list[StartedNode]]:
-        """The parameter files, by their paths in the workspace, with the nodes that are given
-        them.
+        """The parameter files with the nodes that are given them.
+
+        The keys are the paths of the files in the workspace.
         """
         nodes: dict[str, list[StartedNode]] = {}
         for _, node in self.launches.nodes:
@@ -56,8 +57,9 @@ class GivenFiles:
 
     @cached_property
     def owners(self) -> Mapping[str, list[NodeParameters]]:
-        """The parameters that nodes and controllers are given, by their names without
-        namespaces.
+        """The parameters that nodes and controllers are given.
+
+        The keys are the names of the nodes without namespaces.
         """
         owners: dict[str, list[NodeParameters]] = {}
         for package, launch in self.launches.roots:
@@ -68,21 +70,15 @@ class GivenFiles:
                     shared += node.parameters or ()
             shared += self.robots.given_in_gazebo
             for node in launch.nodes:
-                name = self.code.name_of(node)
-                if name == MANAGER or (name is not None and node.package != MANAGER):
-                    given = self.read_given(package, node, name)
+                for name, given in _given_by(self, package, node, shared):
                     owners.setdefault(name, []).append(given)
-                for controller in _spawned_by(node):
-                    files = (*shared, *(controller.parameters or ()))
-                    started = controller._replace(parameters=files)
-                    given = self.read_given(package, started, "")
-                    owners.setdefault(controller.node_name or "", []).append(given)
         return owners
 
     @cached_property
     def controller_files(self) -> frozenset[str]:
-        """The parameter files, by their paths in the workspace, that Gazebo and spawners give
-        controllers.
+        """The parameter files that Gazebo and spawners give controllers.
+
+        The keys are the paths of the files in the workspace.
         """
         given = [*self.robots.given_in_gazebo]
         for _, node in self.launches.nodes:
@@ -96,8 +92,9 @@ class GivenFiles:
         return self.read(package, node, self.code.name_of(node) or "")
 
     def read(self, package: Package, node: StartedNode, name: str) -> NodeParameters:
-        """Return the parameters that a node gets that is called so in its program. Raises
-        NotDecided.
+        """Return the parameters that a node gets that is called so in its program.
+
+        Raises NotDecided.
         """
         return parameters_of(node, partial(self.open, package), name, self._read_tables)
 
@@ -115,8 +112,9 @@ class GivenFiles:
         return self._charged(self._search(package, path, False))
 
     def open_given(self, package: Package, path: str) -> tuple[bytes, str] | None:
-        """Return a parameter file that a launch file of a package gives, as `open_meant` does, and
-        nothing in one that surely is nowhere. Raises NotDecided.
+        """Return a parameter file that a launch file of a package gives, as `open_meant` does.
+
+        There is nothing in one that surely is nowhere. Raises NotDecided.
         """
         return self._charged(self._search(package, path, True))
 
@@ -137,13 +135,26 @@ class GivenFiles:
         return self._find_given(package, path) if is_given else open_meant(package, path)
 
     def _find_given(self, package: Package, path: str) -> tuple[bytes, str] | None:
-        found = open_meant(package, path, absent_are_empty=True)
+        opened = open_meant(package, path, absent_are_empty=True)
         owner = package.find(share_parts(f"{PREFIX}/{path}")[0])
-        if found is None and owner is not None and are_installs_known(owner):
+        if opened is None and owner is not None and are_installs_known(owner):
             return (b"", path) if self.texts.is_nowhere(owner, path) else None
-        return found
+        return opened
 
 
 def _spawned_by(node: StartedNode) -> Sequence[StartedNode]:
     """Return the controllers that a node starts, if it is a spawner whose arguments are known."""
     return (controllers_of(node) or ()) if node.executable in SPAWNERS else ()
+
+
+def _given_by(
+    files: GivenFiles, package: Package, node: StartedNode, shared: Sequence[GivenParameters]
+) -> Iterator[tuple[str, NodeParameters]]:
+    """Yield the parameters of a node, and of the controllers that it spawns, by names."""
+    name = files.code.name_of(node)
+    if name == MANAGER or (name is not None and node.package != MANAGER):
+        yield name, files.read_given(package, node, name)
+    for controller in _spawned_by(node):
+        given = (*shared, *(controller.parameters or ()))
+        started = controller._replace(parameters=given)
+        yield controller.node_name or "", files.read_given(package, started, "")

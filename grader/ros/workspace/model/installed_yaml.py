@@ -25,14 +25,15 @@ class InstalledFiles:
 
     @cached_property
     def yaml(self) -> Mapping[str, YamlNode | YamlFault]:
-        """The YAML files that are no launch files, by their paths in the workspace; or why one
-        is not read.
+        """The YAML files that are no launch files, or why one is not read.
+
+        The keys are the paths of the files in the workspace.
         """
         files: dict[str, YamlNode | YamlFault] = {}
         for package in self.folder.packages:
             paths = [path for path in package.tree.files if path.endswith((".yaml", ".yml"))]
             launched = {path for owner, path, _ in self.launches.files if owner is package}
-            for path in read_paths(package, (it for it in paths if it not in launched)):
+            for path in read_paths(package, (file for file in paths if file not in launched)):
                 whole_path, data = package.path(path), package.tree.read(path, MAX_YAML)
                 if data is not None:
                     files[whole_path] = self.folder.recall(_read_yaml, data, whole_path)
@@ -47,8 +48,9 @@ class InstalledFiles:
                 yield (path, node)
 
     def source_of(self, path: str) -> str | None:
-        """Return the file of the workspace that is installed at a path, which begins with the
-        prefix's stand-in.
+        """Return the file of the workspace that is installed at a path.
+
+        The path begins with the stand-in of the prefix.
         """
         inside = posixpath.normpath(path).removeprefix(f"{PREFIX}/")
         return self._sources_of_installed.get(inside)
@@ -58,8 +60,9 @@ class InstalledFiles:
         return path in self._sources_of_installed
 
     def tree_at(self, path: str) -> YamlNode | None:
-        """Return the YAML file that is installed at a path, which begins with the prefix's
-        stand-in.
+        """Return the YAML file that is installed at a path.
+
+        The path begins with the stand-in of the prefix.
         """
         tree = self.yaml.get(self.source_of(path) or "")
         return tree if isinstance(tree, YamlNode) else None

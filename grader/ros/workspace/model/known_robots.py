@@ -63,7 +63,7 @@ class Robots:
     @cached_property
     def known(self) -> tuple[KnownRobot, ...]:
         """The robots of which everything is known."""
-        return tuple(found for urdf in self.urdfs if (found := _known_robot(urdf)) is not None)
+        return tuple(robot for urdf in self.urdfs if (robot := _known_robot(urdf)) is not None)
 
     @property
     def may_be_others(self) -> bool:
@@ -83,8 +83,9 @@ class Robots:
 
     @property
     def has_controller_manager(self) -> bool:
-        """Return whether a launch file starts a controller manager, or the robot has one in
-        Gazebo.
+        """Return whether a launch file or the robot starts a controller manager.
+
+        The robot has one in Gazebo.
         """
         is_started = any(node.executable == CONTROL_NODE for _, node in self.launches.nodes)
         return is_started or self.has_controllers_in_gazebo
@@ -93,7 +94,9 @@ class Robots:
     def has_controllers_in_gazebo(self) -> bool:
         """Whether a robot has a controller manager in Gazebo."""
         for robot in self.known:
-            if any("ros2_control" in it.get("filename", "") for it in robot.root.iter("plugin")):
+            if any(
+                "ros2_control" in plugin.get("filename", "") for plugin in robot.root.iter("plugin")
+            ):
                 return True
         return False
 
@@ -104,7 +107,11 @@ class Robots:
             return None
         interfaces: dict[str, tuple[frozenset[str], Location]] = {}
         for robot in self.known:
-            for joint in [it for system in robot.systems for it in system.iterchildren("joint")]:
+            for joint in [
+                joint_element
+                for system in robot.systems
+                for joint_element in system.iterchildren("joint")
+            ]:
                 name, added = joint.get("name", ""), joint.iterchildren("command_interface")
                 before, at = interfaces.get(name, (frozenset[str](), robot.place(joint)))
                 interfaces[name] = (before.union(each.get("name", "") for each in added), at)
@@ -112,8 +119,9 @@ class Robots:
 
     @property
     def has_all_interfaces(self) -> bool:
-        """Return whether `command_interfaces` are those of every robot, also under other
-        arguments of xacro.
+        """Return whether `command_interfaces` are those of every robot.
+
+        This includes the robots under other arguments of xacro.
         """
         if not self.known or self.may_be_others:
             return False
@@ -130,13 +138,14 @@ class Robots:
         """The files that the robots are made of, by their paths; empty where none is known."""
         files: set[str] = set()
         for robot in self.known:
-            files |= {robot.path, *(robot.place(it).path for it in robot.root.iter("*"))}
+            files |= {robot.path, *(robot.place(element).path for element in robot.root.iter("*"))}
         return frozenset(files)
 
     @cached_property
     def xacro_sources(self) -> tuple[Source, ...]:
-        """The texts of the xacro files and URDFs, and of the files of other endings that these
-        include.
+        """The texts of the xacro files and URDFs, and of what they include.
+
+        Included files may have other endings.
         """
         sources: list[Source] = []
         for package in self.folder.packages:

@@ -23,8 +23,9 @@ class Launches:
 
     @cached_property
     def files(self) -> tuple[tuple[Package, str, Launch], ...]:
-        """The launch files, each with its package and its path in it; without those of tests and of
-        ROS 1.
+        """The launch files, each with its package and its path in it.
+
+        Those of tests and of ROS 1 are left out.
         """
         launches: list[tuple[Package, str, Launch]] = []
         for package in self.folder.packages:
@@ -39,7 +40,11 @@ class Launches:
         """The packages with launch files of ROS 1, and the paths of these."""
         for package in self.folder.packages:
             paths = read_paths(package, package.launch_files)
-            of_ros1 = [it for it in paths if self._kind_of_launch(package, it) == "ROS 1"]
+            of_ros1 = [
+                launch_path
+                for launch_path in paths
+                if self._kind_of_launch(package, launch_path) == "ROS 1"
+            ]
             if of_ros1:
                 yield package, of_ros1
 
@@ -51,8 +56,9 @@ class Launches:
 
     @property
     def nodes(self) -> tuple[tuple[Package, StartedNode], ...]:
-        """The nodes that launch files start, or may start: those that no other launch file
-        includes. Raises NotDecided.
+        """The nodes that launch files start, or may start.
+
+        The launch files are those that no other one includes. Raises NotDecided.
         """
         self.folder.charge(1 + len(self._nodes))
         return self._nodes
@@ -67,11 +73,11 @@ class Launches:
         included: set[str] = set()
         for _, _, launch in self.files:
             included |= {passed.path for passed in launch.passed}
-        found = []
+        root_launches = []
         for package, path, launch in self.files:
             if included.isdisjoint(self.targets_of(package, path)):
-                found.append((package, launch))
-        return tuple(found)
+                root_launches.append((package, launch))
+        return tuple(root_launches)
 
     def targets_of(self, package: Package, source: str) -> Sequence[str]:
         """Return the paths below the prefix at which a build installs a file of a package."""

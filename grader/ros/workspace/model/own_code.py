@@ -1,6 +1,4 @@
-"""What the code of the workspace's packages opens and declares, and the interfaces that they
-define.
-"""
+"""What the workspace's packages open, declare and define in their code and interfaces."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -28,8 +26,9 @@ _NO_CODE = frozenset(
 
 @dataclass(frozen=True, eq=False)
 class OwnCode:
-    """What the code of the workspace's packages opens and declares, and the interfaces that they
-    define.
+    """What the code of packages opens and declares, and the interfaces that packages define.
+
+    The packages are those of the workspace.
     """
 
     folder: WorkspaceFolder
@@ -48,19 +47,21 @@ class OwnCode:
 
     @cached_property
     def interfaces(self) -> Mapping[str, PackageInterfaces]:
-        """The messages, services and actions of the packages, by the names of these. Of a name that
-        several packages have nothing is known.
+        """The messages, services and actions of the packages, by the names of these.
+
+        Of a name that several packages have nothing is known.
         """
-        found = {}
+        interfaces_by_package = {}
         for package in self.folder.packages:
             is_one = self.folder.counts[package.name] < 2
             unknown = PackageInterfaces(is_complete=False)
-            found[package.name] = read_interfaces(package) if is_one else unknown
-        return found
+            interfaces_by_package[package.name] = read_interfaces(package) if is_one else unknown
+        return interfaces_by_package
 
     def own_node(self, node: StartedNode) -> NodeFacts | None:
-        """Return the Python node of the workspace that a program starts, if it starts one that
-        is known.
+        """Return the Python node of the workspace that a program starts.
+
+        The result is None if it starts none that is known.
         """
         owner = self.folder.package_of(node)
         if owner is None or owner.name not in self.by_package:
@@ -71,8 +72,8 @@ class OwnCode:
     def _nodes_by_program(self) -> Mapping[tuple[str, str], NodeFacts]:
         """The Python nodes by their packages and programs, of programs with one node."""
         programs: dict[tuple[str, str], list[Sequence[NodeFacts]]] = {}
-        for package, found in self.by_package.items():
-            for program in found.programs:
+        for package, code in self.by_package.items():
+            for program in code.programs:
                 programs.setdefault((package, program.name), []).append(program.nodes)
         nodes: dict[tuple[str, str], NodeFacts] = {}
         for key, of_programs in programs.items():
@@ -93,22 +94,24 @@ class OwnCode:
 
     def name_in_program(self, node: StartedNode) -> str | None:
         """Return the name that the program of a node gives it; None where it is not known."""
-        own = self.own_node(node)
-        if own is not None:
-            return own.name
+        facts = self.own_node(node)
+        if facts is not None:
+            return facts.name
         return program_row(node.package, node.executable).name
 
     def children_of(self, name: str) -> frozenset[str]:
-        """Return the nodes that a node of another package makes in its process, and that read
-        its parameters.
+        """Return the nodes that a node of another package makes in its process.
+
+        They read its parameters.
         """
         children = frozenset(children_by_node().get(name, ()))
         return children | self.installed.typed_sections if name == MANAGER else children
 
 
 def _program_texts(package: Package) -> tuple[tuple[str, bytes | None], ...]:
-    """Return the files of a package, each with its bytes unless its ending says that it has no
-    code.
+    """Return the files of a package, each with its bytes.
+
+    It has None in place of the bytes if its ending says that it has no code.
     """
     texts: list[tuple[str, bytes | None]] = []
     for path, file in package.tree.files.items():
@@ -118,22 +121,22 @@ def _program_texts(package: Package) -> tuple[tuple[str, bytes | None], ...]:
 
 
 def _nodes_of(package: Package) -> PackageNodes:
-    found = read_nodes(package)
+    nodes = read_nodes(package)
     setup = package.installation
     if setup is None or not any(target.sources for target in setup.targets):
-        return found
+        return nodes
     from grader.ros.nodes.cpp.cpp_nodes import read_cpp_nodes  # late: few workspaces have C++
 
     compiled = read_cpp_nodes(package)
-    return found._replace(
-        nodes=(*found.nodes, *compiled.nodes),
-        programs=(*found.programs, *compiled.programs),
-        doubts=(*found.doubts, *compiled.doubts),
-        has_loose_declarations=found.has_loose_declarations or compiled.has_loose_declarations,
-        imports=(*found.imports, *compiled.imports),
-        field_uses=(*found.field_uses, *compiled.field_uses),
-        faults=(*found.faults, *compiled.faults),
-        synchronised=(*found.synchronised, *compiled.synchronised),
+    return nodes._replace(
+        nodes=(*nodes.nodes, *compiled.nodes),
+        programs=(*nodes.programs, *compiled.programs),
+        doubts=(*nodes.doubts, *compiled.doubts),
+        has_loose_declarations=nodes.has_loose_declarations or compiled.has_loose_declarations,
+        imports=(*nodes.imports, *compiled.imports),
+        field_uses=(*nodes.field_uses, *compiled.field_uses),
+        faults=(*nodes.faults, *compiled.faults),
+        synchronised=(*nodes.synchronised, *compiled.synchronised),
         loose_frames=compiled.loose_frames,
         texts=compiled.texts,
         cpp_files=compiled.cpp_files,

@@ -55,19 +55,17 @@ _MAX_FILES, _MAX_SIZE = 60, 128 * 1024  # of one kind; bytes
 
 
 def stated_releases(tree: Tree) -> StatedReleases:
-    """Return the releases that files of a workspace state: its containers, workflows and README,
-    else other texts, else images of Ubuntu.
+    """Return the releases that files of a workspace state.
+
+    The files are its containers, workflows and README, else other texts, else images of Ubuntu.
     """
     every = [*tree.files.values()]
     settings = [file for file in every if _is_container(file.name.lower())]
     settings += tree.settings()
     readmes = [file for file in every if file.name.lower().startswith("readme")]
-    # An archive of a repository has all files in one folder.
-    depth = len({path.partition("/")[0] for path in tree.files}) == 1
-    highest = [file for file in readmes if file.path.count("/") <= depth]
     texts = [file for file in every if file.suffix in (".md", ".sh", ".bash")]
     levels: list[list[_Reader]] = [
-        [(settings, _in_setting_of_every_branch), (highest, _in_prose)],
+        [(settings, _in_setting_of_every_branch), (_highest(tree, readmes), _in_prose)],
         [(settings, _in_setting)],
         [(readmes, _in_prose)],
         [(texts, _in_prose)],
@@ -78,6 +76,12 @@ def stated_releases(tree: Tree) -> StatedReleases:
         if stated.releases:
             return stated
     return StatedReleases()
+
+
+def _highest(tree: Tree, files: Sequence[File]) -> list[File]:
+    """Return the files beside the packages; an archive of a repository has all in one folder."""
+    depth = len({path.partition("/")[0] for path in tree.files}) == 1
+    return [file for file in files if file.path.count("/") <= depth]
 
 
 _Reader = tuple[Sequence[File], Callable[[str], set[str]]]  # files, and what finds releases in them
@@ -117,10 +121,10 @@ def _read(files: Sequence[File]) -> Iterator[tuple[str, str]]:
 
 def _names_in(pattern: re.Pattern[str], text: str) -> set[str]:
     """Return the releases in what a pattern matches."""
-    found: set[str] = set()
+    releases: set[str] = set()
     for match in pattern.finditer(text):
-        found.update(name.lower() for name in _RELEASE.findall(match[0]))
-    return found
+        releases.update(name.lower() for name in _RELEASE.findall(match[0]))
+    return releases
 
 
 def _in_setting(text: str) -> set[str]:
@@ -134,22 +138,23 @@ def _in_setting_of_every_branch(text: str) -> set[str]:
 
 
 def _in_prose(text: str) -> set[str]:
-    """Return the releases that a README states, but for those that are on other branches, and those
-    that the work was ported from.
+    """Return the releases that a README states.
+
+    Those that are on other branches, and those that the work was ported from, are left out.
     """
-    found: set[str] = set()
+    releases: set[str] = set()
     text = _ORIGIN.sub(lambda match: f"ROS 2 {match['to'] or ''}", text)
     for line in text.splitlines():
-        found |= (_in_setting(line) | _names_in(_SENTENCE, line)) - _names_in(_BRANCH, line)
-    return found
+        releases |= (_in_setting(line) | _names_in(_SENTENCE, line)) - _names_in(_BRANCH, line)
+    return releases
 
 
 def _by_ubuntu(text: str) -> set[str]:
     """Return the releases for the images of Ubuntu that a Dockerfile or a workflow names."""
-    found: set[str] = set()
+    releases: set[str] = set()
     for version in _UBUNTU.findall(text):
-        found.update(_OF_UBUNTU[version])
-    return found
+        releases.update(_OF_UBUNTU[version])
+    return releases
 
 
 def releases_in_path(path: str) -> list[Release]:

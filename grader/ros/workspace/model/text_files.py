@@ -1,6 +1,4 @@
-"""The texts of the files of packages, in which names are searched, and the XML files of Gazebo
-and MoveIt.
-"""
+"""The texts of packages in which names are searched, and XML files of Gazebo and MoveIt."""
 
 import posixpath
 import re
@@ -32,8 +30,9 @@ _COMMENT_LINE = re.compile(r"(?:^|(?<=\s))#[^\n]*")
 
 @dataclass(frozen=True, eq=False)
 class TextFiles:
-    """The texts of the files of packages, in which names are searched, and the XML files of Gazebo
-    and MoveIt. Each file is read once.
+    """The texts of the files of packages, and the XML files of Gazebo and MoveIt.
+
+    Names are searched in the texts. Each file is read once.
     """
 
     folder: WorkspaceFolder
@@ -50,7 +49,9 @@ class TextFiles:
 
     def _xml_files(self, endings: tuple[str, ...]) -> Iterator[XmlFile]:
         for package in self.folder.packages:
-            for path in [it for it in package.tree.files if it.endswith(endings)][:_MAX_FILES]:
+            for path in [file for file in package.tree.files if file.endswith(endings)][
+                :_MAX_FILES
+            ]:
                 with suppress(InputError, XmlFault):
                     data = package.tree.files[path].read(MAX_YAML)
                     yield XmlFile(data, Source(package.path(path), data.decode("utf-8", "replace")))
@@ -106,9 +107,11 @@ class TextFiles:
     def has_plugin(self, name: str) -> bool:
         """Return whether a package describes a plugin of this name for pluginlib."""
         sources = (
-            it for package in self.folder.packages for it in self.sources_of(package, (".xml",))
+            source
+            for package in self.folder.packages
+            for source in self.sources_of(package, (".xml",))
         )
-        return any(f'name="{name}"' in it.text for it in sources)
+        return any(f'name="{name}"' in source.text for source in sources)
 
     def is_nowhere(self, owner: Package, target: str) -> bool:
         """Return whether a file of text that the package does not have is surely nowhere.
@@ -161,8 +164,9 @@ def _without_xml_comments(text: str) -> str:
 
 
 def read_paths(package: Package, paths: Iterable[str]) -> list[str]:
-    """Return the paths of a package's files that are read: no tests, none of packages in it, and
-    not too many.
+    """Return the paths of a package's files that are read.
+
+    These are no tests, none of packages in it, and not too many.
     """
     unread = ("test/", *package.inner)
     return [path for path in paths if not path.startswith(unread)][:_MAX_FILES]

@@ -29,9 +29,7 @@ def may_be_offered(workspace: Workspace, interface: str) -> bool:
 
 @lru_cache(maxsize=4)
 def may_vary(workspace: Workspace, *tags: str) -> bool:
-    """Return whether joints, or what elements of some tags say, may be others under other
-    arguments.
-    """
+    """Return whether joints, or elements of some tags, may be others under other arguments."""
     sources = workspace.robots.xacro_sources
     if not any("$(arg" in source.text for source in sources):
         return False
@@ -48,8 +46,10 @@ def may_vary(workspace: Workspace, *tags: str) -> bool:
 
 @lru_cache(maxsize=4)
 def names_under_arguments(workspace: Workspace, tag: str) -> frozenset[str]:
-    """Return the names in elements of xacro that stand under a condition or in a file that an
-    argument chooses, and those that arguments are a part of; with * for what is computed.
+    """Return the names in elements of xacro that depend on arguments.
+
+    They stand under a condition, stand in a file that an argument chooses, or have arguments as a
+    part; with * for what is computed.
     """
     sources = workspace.robots.xacro_sources
     if not any("$(arg" in source.text for source in sources):
@@ -83,8 +83,9 @@ def _computing_words(text: str) -> frozenset[str]:
 
 
 def _dependent(sources: tuple[Source, ...]) -> frozenset[str]:
-    """Return the properties and the parameters of macros that arguments may give a value; `arg`
-    stands for the arguments themselves.
+    """Return the properties and parameters of macros that arguments may give a value.
+
+    The name `arg` stands for the arguments themselves.
     """
     given: list[tuple[str, frozenset[str]]] = []  # names, with the words of their values
     for source in sources:

@@ -20,8 +20,9 @@ from grader.ros.workspace.model.workspace_folder import WorkspaceFolder
 
 @dataclass(frozen=True, eq=False)
 class Workspace:
-    """The packages of a folder with their robots, as the readers of names see them. Each file is
-    read once.
+    """The packages of a folder with their robots, as the readers of names see them.
+
+    Each file is read once.
 
     `OpenedWorkspace` makes it. Its parts read one another from the top: folder, texts, launches,
     installed, robots, code, parameters.

@@ -56,8 +56,9 @@ class WorkspaceFolder:
 
     @cached_property
     def packages(self) -> tuple[Package, ...]:
-        """The packages that a build of the workspace has: the best of each name, without those
-        that colcon ignores.
+        """The packages that a build of the workspace has: the best of each name.
+
+        Those that colcon ignores are left out.
         """
         packages = []
         for package in self.found_packages:
@@ -67,8 +68,9 @@ class WorkspaceFolder:
         return tuple(packages)
 
     def means_one(self, package: Package, name: str) -> bool:
-        """Return whether a name in a file of a package certainly means one package: its own, or
-        the only one.
+        """Return whether a name in a file of a package certainly means one package.
+
+        This is its own package, or the only one.
         """
         return name in package.names or self.counts[name] < 2
 
@@ -104,5 +106,9 @@ class WorkspaceFolder:
     @cached_property
     def counts(self) -> Counter[str]:
         """How many packages have a name, without those that are ignored and backups."""
-        used = [it for it in self.found_packages if not it.ignored_by and not is_backup(it.folder)]
+        used = [
+            package
+            for package in self.found_packages
+            if not package.ignored_by and not is_backup(package.folder)
+        ]
         return Counter(package.name for package in used)

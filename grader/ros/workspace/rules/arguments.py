@@ -23,8 +23,9 @@ _XACRO_ARGUMENT = re.compile(
 
 
 def argument_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the arguments that launch files and xacro declare, and those that includes and Command
-    pass.
+    """Yield the arguments that launch files and xacro declare, or that others pass.
+
+    Includes and Command pass them.
     """
     for package, path, launch in workspace.launches.files:
         start = Location(package.path(path), 1, 1)
@@ -45,8 +46,9 @@ def argument_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _included_arguments(workspace: Workspace, launch: Launch, owner: str) -> Iterator[Fact]:
-    """Yield the arguments of launch files outside the workspace, which a launch file passes on by
-    including them.
+    """Yield the arguments of outside launch files, which a launch file passes on.
+
+    It passes them on by including files outside the workspace.
     """
     for passed in launch.passed:
         names = launch_arguments().get(passed.path)
@@ -79,15 +81,20 @@ def _xacro_arguments(workspace: Workspace) -> Iterator[Fact]:
         if _includes_others(workspace, source):
             yield Open("xacro argument")
     for _, _, launch in workspace.launches.files:
-        for file in launch.named("urdf", "read"):
-            path = (file.path or "").removeprefix(f"{PREFIX}/")
-            if file.by == "xacro" and workspace.installed.has_file(path):
-                # What includes the file declare is known where all of it was expanded.
-                source_path = workspace.installed.source_of(file.path or "")
-                is_expanded = source_path in workspace.robots.files
-                for name, _ in file.arguments:
-                    at, said = file.location, "Command of xacro"
-                    yield Use("xacro argument", name, at, said, optional=not is_expanded)
+        yield from _passed_to_xacro(workspace, launch)
+
+
+def _passed_to_xacro(workspace: Workspace, launch: Launch) -> Iterator[Use]:
+    """Yield the arguments that a launch file passes to xacro with the files of the workspace."""
+    for file in launch.named("urdf", "read"):
+        path = (file.path or "").removeprefix(f"{PREFIX}/")
+        if file.by == "xacro" and workspace.installed.has_file(path):
+            # What includes the file declare is known where all of it was expanded.
+            source_path = workspace.installed.source_of(file.path or "")
+            is_expanded = source_path in workspace.robots.files
+            for name, _ in file.arguments:
+                at, said = file.location, "Command of xacro"
+                yield Use("xacro argument", name, at, said, optional=not is_expanded)
 
 
 def _includes_others(workspace: Workspace, source: Source) -> bool:

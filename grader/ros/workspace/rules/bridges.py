@@ -1,6 +1,4 @@
-"""Bridges between Gazebo and ROS: the rows of ros_gz_bridge, compared with the topics that Gazebo
-has.
-"""
+"""Bridges between Gazebo and ROS: rows of ros_gz_bridge compared with topics of Gazebo."""
 
 import posixpath
 import re
@@ -53,8 +51,9 @@ _WITHOUT_SENSORS = ("sun", "ground_plane", "ground plane")
 
 
 def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield rows with types or directions that no bridge has, those of topics that Gazebo does not
-    have, and clocks.
+    """Yield rows with types or directions that no bridge has, missing topics and clocks.
+
+    The topics are those that Gazebo does not have.
     """
     yield from _unreadable_files(workspace)
     yield from _incomplete_rows(workspace)
@@ -148,14 +147,15 @@ def _nameless_sensors(
             types = gazebo().sensor.get(sensor.get("type", ""), NO_SENSOR)
             gz_type = f"gz.msgs.{types.topic}"
             if gz_type not in named and next(sensor.iterchildren("topic"), None) is None:
-                found = _NamelessSensor(sensor.get("name", ""), gz_type, place(sensor))
-                nameless.setdefault(gz_type, found)
+                nameless_sensor = _NamelessSensor(sensor.get("name", ""), gz_type, place(sensor))
+                nameless.setdefault(gz_type, nameless_sensor)
     return nameless
 
 
 def _without_topic(row: BridgeRow, nameless: Mapping[str, _NamelessSensor]) -> Iterator[Mismatch]:
-    """Yield that the only sensor with the messages of a row has no <topic>. A model that is not in
-    the workspace may publish it.
+    """Yield that the only sensor with the messages of a row has no <topic>.
+
+    A model that is not in the workspace may publish it.
     """
     sensor = nameless.get(row.gz_type)
     if sensor is None or not row.is_published:
@@ -169,8 +169,9 @@ def _without_topic(row: BridgeRow, nameless: Mapping[str, _NamelessSensor]) -> I
 
 
 def _incomplete_rows(workspace: Workspace) -> Iterator[Mismatch]:
-    """Yield the rows in files of bridges that name a topic and lack a key, which a bridge leaves
-    out.
+    """Yield the rows in files of bridges that name a topic and lack a key.
+
+    A bridge leaves out such a row.
     """
     for path in sorted(bridge_files(workspace)):
         tree = workspace.installed.yaml.get(path)
@@ -237,8 +238,9 @@ def _no_type(workspace: Workspace, row: BridgeRow) -> Iterator[Mismatch]:
 
 
 def bridge_files(workspace: Workspace) -> set[str]:
-    """Return the files with rows that launch files give to bridges, by their paths in the
-    workspace.
+    """Return the files with rows that launch files give to bridges.
+
+    The keys are the paths of the files in the workspace.
     """
     files = set()
     for path in _files_named(workspace):
@@ -262,8 +264,9 @@ def _files_named(workspace: Workspace) -> Iterator[Any]:
 
 
 def _conversions(row: BridgeRow, gazebo_types: set[str]) -> Iterator[Mismatch]:
-    """Yield that no bridge converts a type into the other one. Where the topics of Gazebo have the
-    type of the row, the other one is wrong.
+    """Yield that no bridge converts a type into the other one.
+
+    Where the topics of Gazebo have the type of the row, the other one is wrong.
     """
     fitting = _fitting_types(row)
     if not fitting or row.gz_type in fitting:
@@ -304,8 +307,9 @@ def _fitting_types(row: BridgeRow) -> list[str]:
 def _wrong_direction(
     row: BridgeRow, message: str, right: str, related: Location | None = None
 ) -> Mismatch:
-    """Return that a row has the wrong direction, with the right one; in an argument it is a
-    character.
+    """Return that a row has the wrong direction, with the right one.
+
+    In an argument, the direction is a character.
     """
     at = row.direction_location
     either = corrections(row.direction, at, right) if at != row.location else ()
@@ -329,8 +333,9 @@ def _opposite_direction(row: BridgeRow, topics: list[GazeboTopic]) -> Iterator[M
 
 
 def _type_of_topic(row: BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismatch]:
-    """Yield that a topic of Gazebo has messages of another type. That no bridge converts the type
-    is another mistake.
+    """Yield that a topic of Gazebo has messages of another type.
+
+    That no bridge converts the type is another mistake.
     """
     types = [f"gz.msgs.{topic.type}" for topic in topics]
     if types and row.gz_type in _fitting_types(row) and row.gz_type not in types:
@@ -344,8 +349,10 @@ def _type_of_topic(row: BridgeRow, topics: list[GazeboTopic]) -> Iterator[Mismat
 def _not_there(
     row: BridgeRow, unused: Sequence[GazeboTopic], *, is_known: bool
 ) -> Iterator[Mismatch]:
-    """Yield that Gazebo does not have the topic of a row, while no row has one of the same type
-    that it has. A sensor that is not read may publish it, unless there is a similar one.
+    """Yield that Gazebo does not have the topic of a row.
+
+    Nothing is said where a row has one of the same type that Gazebo has. A sensor that is not
+    read may publish the topic, unless there is a similar one.
     """
     fitting: dict[str, Location] = {}
     for topic in unused:
@@ -368,14 +375,11 @@ def _not_there(
 
 def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]:
     """Yield that a node waits for the time of the simulation, and no bridge takes it from Gazebo.
+
     Nothing is said where a bridge, or an included launch file, may have more rows.
     """
     used = [row for row in rows if row.is_used]
-    has_bridge = any(node.package == BRIDGE for _, node in workspace.launches.nodes)
-    has_clock = any(row.ros == "clock" for row in rows)
-    if not has_bridge or not used or has_clock or _is_open(workspace):
-        return
-    if _may_include_bridge(workspace):
+    if _is_clock_bridged(workspace, rows, used):
         return
     for node, sim_time in graph_of(workspace).given("use_sim_time"):
         # A launch file may give a text of which ROS makes a boolean.
@@ -388,6 +392,17 @@ def _no_clock(workspace: Workspace, rows: list[BridgeRow]) -> Iterator[Mismatch]
             return
 
 
+def _is_clock_bridged(
+    workspace: Workspace, rows: Sequence[BridgeRow], used: Sequence[BridgeRow]
+) -> bool:
+    """Return whether a bridge may take the clock from Gazebo, or no bridge is started."""
+    has_bridge = any(node.package == BRIDGE for _, node in workspace.launches.nodes)
+    has_clock = any(row.ros == "clock" for row in rows)
+    if not has_bridge or not used or has_clock:
+        return True
+    return _is_open(workspace) or _may_include_bridge(workspace)
+
+
 def _may_include_bridge(workspace: Workspace) -> bool:
     """Return whether a launch file includes one of another package that may have a bridge."""
     for _, launch in workspace.launches.roots:
@@ -398,8 +413,9 @@ def _may_include_bridge(workspace: Workspace) -> bool:
 
 
 def _named_topics(workspace: Workspace) -> set[str]:
-    """Return every topic that the robot, models and worlds name, and those that Gazebo derives from
-    them.
+    """Return every topic that the robot, models and worlds name, and those derived by Gazebo.
+
+    Gazebo derives topics from those that are named.
     """
     topics: set[str] = set()
     for root, _ in roots(workspace):

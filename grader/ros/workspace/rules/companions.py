@@ -1,5 +1,6 @@
-"""Nodes that need others: who publishes joint states and the clock, who publishes the robot, and
-which nodes have one name.
+"""Nodes that need others, such as a publisher of joint states, the clock or the robot.
+
+Nodes that have one name are compared here as well.
 """
 
 import re
@@ -204,8 +205,10 @@ def _no_clock(workspace: Workspace) -> Iterator[Mismatch]:
 
 
 def _may_have_clock(workspace: Workspace) -> bool:
-    """Return whether something may publish /clock: a node, a launch file or a command that is not
-    read, or what a page tells people to start.
+    """Return whether something may publish /clock.
+
+    It may be a node, a launch file or a command that is not read, or what a page tells people to
+    start.
     """
     if _is_bridged(workspace, _CLOCK):
         return True
@@ -246,8 +249,9 @@ def _says_clock(text: str) -> bool:
 
 
 def _is_told(workspace: Workspace) -> bool:
-    """Return whether a page or a script of the workspace says how to start a simulation, or a
-    program that is not started uses the type of the time.
+    """Return whether the workspace says how to start a simulation, or uses the time.
+
+    A page or a script says it, or a program that is not started uses the type of the time.
     """
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, _PAGES):

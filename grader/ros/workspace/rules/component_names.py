@@ -1,5 +1,6 @@
-"""Components that launch files load: whether their packages register them, and whether something
-starts their containers.
+"""Components that launch files load: whether their packages register them.
+
+It is compared as well whether something starts their containers.
 """
 
 import re
@@ -99,8 +100,9 @@ def _may_register(text: str) -> bool:
 
 
 def _no_container(workspace: Workspace, launch: Launch) -> Iterator[Mismatch]:
-    """Yield the containers that a launch file asks for and does not start, though it starts
-    others. What may start more leaves open which there are.
+    """Yield the containers that a launch file asks for and does not start, though it starts others.
+
+    What may start more leaves open which there are.
     """
     started = _containers(workspace, launch) if launch.components else None
     if not started:
@@ -119,8 +121,9 @@ def _no_container(workspace: Workspace, launch: Launch) -> Iterator[Mismatch]:
 
 
 def _containers(workspace: Workspace, launch: Launch) -> dict[str, Location] | None:
-    """Return the nodes of a launch file that may be containers, by their full names; None where
-    not all of them are known, or none is a container.
+    """Return the nodes of a launch file that may be containers, by their full names.
+
+    The result is None where not all of them are known, or none is a container.
     """
     containers: dict[str, Location] = {}
     for container in launch.containers:

@@ -1,6 +1,4 @@
-"""Controllers of ros2_control: their YAML, their actions and topics, and the interfaces of their
-joints.
-"""
+"""Controllers of ros2_control: their YAML, actions, topics and interfaces of joints."""
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
@@ -46,9 +44,7 @@ _MAX_KEYS = 2  # of joints; steering controllers have those of an older release 
 
 
 def controller_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the controllers that YAML files define, their types, sections and interfaces, and those
-    of actions.
-    """
+    """Yield the controllers, types, sections and interfaces in YAML files, and those of actions."""
     controllers = list(defined_controllers(workspace))
     if not controllers:
         return
@@ -74,8 +70,9 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _no_hardware(workspace: Workspace) -> Iterator[Mismatch]:
-    """Yield that a controller manager is started, while no robot has <ros2_control>. Nothing is
-    said where a robot may have more than is read.
+    """Yield that a controller manager is started, while no robot has <ros2_control>.
+
+    Nothing is said where a robot may have more than is read.
     """
     robots = workspace.robots
     if robots.command_interfaces is not None or not robots.has_all_interfaces:
@@ -124,8 +121,9 @@ def _meant_type(written: str, same_class: Sequence[str], *, is_known: bool) -> s
 
 
 def _may_have_type(workspace: Workspace, written: str, *, is_known: bool) -> bool:
-    """Return whether something has, or may have, a controller of a type; `is_known` says whether
-    all types of its package are.
+    """Return whether something has, or may have, a controller of a type.
+
+    `is_known` says whether all types of its package are known.
     """
     if is_known_controller(written) or releases_with("controller", written):
         return True
@@ -141,8 +139,9 @@ def _may_have_type(workspace: Workspace, written: str, *, is_known: bool) -> boo
 def _no_parameters(
     workspace: Workspace, controller: Controller, sections: Mapping[str, YamlNode]
 ) -> Iterator[Mismatch]:
-    """Yield that a controller that needs joints has no parameters: neither a section of its name,
-    nor one of all nodes, nor a file of its own.
+    """Yield that a controller that needs joints has no parameters.
+
+    It has neither a section of its name, nor one of all nodes, nor a file of its own.
     """
     needs_joints = bool(controller_row(controller.type.text).joints)
     if needs_joints and "**" not in sections and not controller.has_file:
@@ -167,8 +166,10 @@ def _no_list(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
 
 
 def _claimed_twice(controller: Controller, section: YamlNode) -> Iterator[Mismatch]:
-    """Yield the command interfaces that a controller claims twice. Steering controllers, which
-    have the parameters of an older release as well, claim those of one release.
+    """Yield the command interfaces that a controller claims twice.
+
+    Steering controllers, which have the parameters of an older release as well, claim those of
+    one release.
     """
     needed = controller_row(controller.type.text).joints
     if len(needed) > _MAX_KEYS:
@@ -189,8 +190,9 @@ def _claimed_twice(controller: Controller, section: YamlNode) -> Iterator[Mismat
 def _section_corrections(
     workspace: Workspace, controller: Controller, sections: Mapping[str, YamlNode]
 ) -> tuple[Correction, ...]:
-    """Return the correction of the name of a controller above its parameters, or of the key
-    ros__parameters there.
+    """Return the correction of a controller's name above its parameters.
+
+    It may also correct the key ros__parameters there.
     """
     meant = closest(controller.name, sections)
     if meant is not None:
@@ -208,9 +210,7 @@ def _section_corrections(
 def _needed_in(
     section: YamlNode, needed: Mapping[str, str]
 ) -> Iterator[tuple[YamlNode, list[str]]]:
-    """Yield the joints in the parameters of a controller, each with the command interfaces that it
-    needs.
-    """
+    """Yield the joints in a controller's parameters, with the command interfaces it needs."""
     for key, wanted in needed.items():
         names = [wanted]
         if wanted.startswith("="):
@@ -243,8 +243,9 @@ def needed_interfaces(workspace: Workspace) -> frozenset[str]:
 def _no_interface(
     workspace: Workspace, controller: Controller, section: YamlNode
 ) -> Iterator[Mismatch]:
-    """Yield the command interfaces that a controller needs of a joint, and <ros2_control> does not
-    have.
+    """Yield the command interfaces that a controller needs and <ros2_control> does not have.
+
+    They are those of a joint.
 
     Names that are no joints of a robot are mistakes of frames. A joint without <ros2_control> is
     said only where the robot has no more than is read.

@@ -1,5 +1,6 @@
-"""Dependencies: the packages that files of a package name, and whether its package.xml declares
-them.
+"""Dependencies: the packages that a package's files name, and whether it declares them.
+
+They are declared in its package.xml.
 """
 
 import re
@@ -42,8 +43,9 @@ def dependency_facts(workspace: Workspace) -> Iterator[Fact]:
 def _undeclared(
     workspace: Workspace, package: Package, manifest: Manifest, used: Mapping[str, Location]
 ) -> Iterator[Mismatch]:
-    """Yield the packages that are used and that package.xml does not declare. Those that packages
-    of the workspace bring, which are declared, rosdep installs.
+    """Yield the packages that are used and that package.xml does not declare.
+
+    Those that packages of the workspace bring, which are declared, rosdep installs.
     """
     declared = _declared(package)
     brought: set[str] = set()

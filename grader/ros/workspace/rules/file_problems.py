@@ -1,5 +1,6 @@
-"""What is wrong in the files of a workspace's packages, each on its own: what stops a build or a
-launch file, and RViz files.
+"""What is wrong in the files of a workspace's packages, each on its own.
+
+It is what stops a build or a launch file, and what is wrong in RViz files.
 """
 
 from collections.abc import Iterator
@@ -42,8 +43,9 @@ def _file_problems(workspace: Workspace) -> Iterator[Problem]:
 
 
 def _launch_problems(workspace: Workspace) -> Iterator[Problem]:
-    """Yield what is wrong in launch files, but for programs that do not exist, which is also a name
-    that does not agree.
+    """Yield what is wrong in launch files, but for programs that do not exist.
+
+    A missing program is also a name that does not agree.
     """
     roots = {id(launch) for _, launch in workspace.launches.roots}
     mismatches = read_agreement(workspace).mismatches
@@ -89,10 +91,15 @@ def _build_problems(workspace: Workspace) -> Iterator[Problem]:
 
 
 def listed_problems(workspace: Workspace) -> list[Problem]:
-    """Return what is wrong in the files, each once, without what is not evaluated, which is only
-    counted.
+    """Return what is wrong in the files, each once.
+
+    What is not evaluated is left out; it is only counted.
     """
-    return [it for it in dict.fromkeys(_file_problems(workspace)) if it.kind not in _COUNTED]
+    return [
+        problem
+        for problem in dict.fromkeys(_file_problems(workspace))
+        if problem.kind not in _COUNTED
+    ]
 
 
 def ros1_problem(package: Package) -> Problem:
@@ -102,17 +109,12 @@ def ros1_problem(package: Package) -> Problem:
 
 
 def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
-    """Return a launch file that no other one surely includes, without the faults that its caller
-    may correct: who starts it gives it values, and a file that may include it declares arguments;
-    and without those of arguments that a stated release has.
+    """Return a launch file that no other one surely includes, without some faults.
+
+    These are the faults that its caller may correct, and those of arguments that a stated release
+    has. Who starts the file gives it values, and a file that may include it declares arguments.
     """
-    name = path.rpartition("/")[2]
-    try:
-        count = sum(name in text for text in workspace.texts.searched_launch_texts())
-        is_named = count > (name in launch.source.text)
-    except NotDecided:
-        is_named = True
-    is_closed = not is_named and not any(it.unknown for _, _, it in workspace.launches.files)
+    is_closed = not _may_be_included(workspace, path.rpartition("/")[2], launch)
     faults = []
     for fault in launch.in_releases(workspace.releases).faults:
         having = releases_with("argument", fault.argument) if fault.argument else ()
@@ -121,6 +123,17 @@ def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
         if fault.lacks == "" or (fault.lacks == "declaration" and is_closed):
             faults.append(fault)
     return launch._replace(faults=tuple(faults), syntax=None)
+
+
+def _may_be_included(workspace: Workspace, name: str, launch: Launch) -> bool:
+    """Return whether a text names a launch file, or a launch file is not known as a whole."""
+    try:
+        count = sum(name in text for text in workspace.texts.searched_launch_texts())
+    except NotDecided:
+        return True
+    if count > (name in launch.source.text):
+        return True
+    return any(any_launch.unknown for _, _, any_launch in workspace.launches.files)
 
 
 def _rviz_problems(package: Package, path: str) -> Iterator[Problem]:

@@ -1,6 +1,4 @@
-"""Files: the paths that launch files, xacro and YAML name, and whether a build installs a file
-there.
-"""
+"""Files: the paths that launch files, xacro and YAML name, and whether they are installed."""
 
 import posixpath
 import re
@@ -64,13 +62,13 @@ def file_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def _faults_of(workspace: Workspace, every: Iterable["_NamedPath"]) -> Iterator[Fact]:
     """Yield the paths that are compared, and then what is wrong with them."""
-    found: dict[tuple[str, Location], _NamedPath] = {}
+    first_named: dict[tuple[str, Location], _NamedPath] = {}
     for named in every:
         yield Compared("files", posixpath.normpath(named.path).removeprefix(f"{PREFIX}/"))
-        first = found.setdefault((named.path, named.location), named)
+        first = first_named.setdefault((named.path, named.location), named)
         if named.is_needed:
-            found[named.path, named.location] = first._replace(is_needed=True)
-    for named in found.values():
+            first_named[named.path, named.location] = first._replace(is_needed=True)
+    for named in first_named.values():
         for fact in _fault_of(workspace, named):
             if isinstance(fact, Mismatch) and not named.is_read:
                 yield fact._replace(is_certain=False)
@@ -79,8 +77,9 @@ def _faults_of(workspace: Workspace, every: Iterable["_NamedPath"]) -> Iterator[
 
 
 class _NamedPath(NamedTuple):
-    """A path below the prefix, with the package whose file names it, and whether it is certainly
-    looked for.
+    """A path below the prefix, with the package whose file names it.
+
+    It says whether the path is certainly looked for.
 
     `is_needed`: whether a program certainly reads the file and never writes it; `is_output`:
     whether an own node, which is given the path, may write it.
@@ -96,8 +95,8 @@ class _NamedPath(NamedTuple):
 
 def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
     """Yield the paths that are named."""
-    for package, own, launch in workspace.launches.files:
-        yield from _paths_in_launch_file(workspace, package, own, launch)
+    for package, own_path, launch in workspace.launches.files:
+        yield from _paths_in_launch_file(workspace, package, own_path, launch)
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, (".xacro", ".urdf", ".yaml")):
             is_read = (
@@ -112,13 +111,13 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
 
 
 def _paths_in_launch_file(
-    workspace: Workspace, package: Package, own: str, launch: Launch
+    workspace: Workspace, package: Package, own_path: str, launch: Launch
 ) -> Iterator[_NamedPath]:
     """Yield the paths that a launch file of a package names."""
     beside = None
     # From the folder of the sources, a launch file finds what is beside it.
-    if own not in package.installed.values():
-        beside = f"{PREFIX}/{package.share}{posixpath.dirname(own)}/"
+    if own_path not in package.installed.values():
+        beside = f"{PREFIX}/{package.share}{posixpath.dirname(own_path)}/"
     for text in _texts_of(workspace, launch):
         paths = _PATH.findall(text.text or "")
         uri = _URI.fullmatch(text.text or "")
@@ -158,7 +157,9 @@ class _Text(NamedTuple):
 def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
     """Yield the texts of a launch file that may name files."""
     for passed in launch.passed:
-        is_own = any(passed.path.startswith(own.share) for own in workspace.packages)
+        is_own = any(
+            passed.path.startswith(own_package.share) for own_package in workspace.packages
+        )
         for name, value in passed.values:
             is_needed = bool(passed.when) and not is_own and name in names_of_read_files()
             yield _Text(value, passed.location, is_needed=is_needed)
@@ -169,8 +170,9 @@ def _texts_of(workspace: Workspace, launch: Launch) -> Iterator[_Text]:
 
 
 def _texts_given(node: StartedNode, *, is_own: bool) -> Iterator[_Text]:
-    """Yield the texts that a node is given. The launch file that includes it may never start it,
-    whatever the arguments.
+    """Yield the texts that a node is given.
+
+    The launch file that includes it may never start it, whatever the arguments.
     """
     is_read = node.when is not False or not node.included_by
     for word in node.arguments or ():
@@ -213,8 +215,9 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
 
 
 def _no_package(workspace: Workspace, named: _NamedPath) -> Iterator[Mismatch]:
-    """Yield that the package of a path is a misspelt one of the workspace. Others may be installed;
-    of a well-known one it is compared which launch files it has.
+    """Yield that the package of a path is a misspelt one of the workspace.
+
+    Others may be installed; of a well-known one it is compared which launch files it has.
     """
     package, at = named.package, named.location
     name, rest = share_parts(named.path)
@@ -286,22 +289,24 @@ def _no_folder(owner: Package, inside: str, missing: str, at: Location) -> Itera
 def _folder_corrections(
     target: str, elsewhere: str, at: Location, start: Location
 ) -> tuple[Correction, ...]:
-    """Return the correction of the one folder in which a path differs from that at which the file
-    is installed.
+    """Return the correction of the one folder in which a path differs from an installed one.
+
+    The other path is the one at which the file is installed.
     """
     if target.count("/") != elsewhere.count("/"):
         return ()
     pairs = zip(target.split("/"), elsewhere.split("/"), strict=True)
-    differing = [(own, other) for own, other in pairs if own != other]
+    differing = [(own_part, other) for own_part, other in pairs if own_part != other]
     if len(differing) != 1:
         return ()
-    [(own, other)] = differing
-    return corrections(own, at, other, start)
+    [(own_part, other)] = differing
+    return corrections(own_part, at, other, start)
 
 
 def _install_corrections(setup: Installation, file: str, start: Location) -> tuple[Correction, ...]:
-    """Return the correction of a path in setup.py or CMakeLists.txt that does not exist, into one
-    that has the file.
+    """Return the correction of a path in setup.py or CMakeLists.txt that does not exist.
+
+    The corrected path has the file.
     """
     wrong = [stop.path for stop in setup.stops]
     wrong += [posixpath.dirname(empty.pattern) for empty in setup.empty]
@@ -324,7 +329,7 @@ def _map_images(workspace: Workspace) -> Iterator[Fact]:
             continue
         workspace.charge(len(files) + cost_of_guess(len(files)))
         folder, name = posixpath.split(wanted)
-        beside = [it for it in files if posixpath.dirname(it) == folder and it != path]
+        beside = [file for file in files if posixpath.dirname(file) == folder and file != path]
         meant = closest(name, map(posixpath.basename, beside))
         guess = f"; did you mean {meant!r}?" if meant else ""
         message = f"the image of the map, {image.text!r}, does not exist{guess}"

@@ -1,6 +1,4 @@
-"""The room that Nav2 plans with: the radius and the footprint of a costmap against the robot's
-shapes.
-"""
+"""The room that Nav2 plans with: a costmap's radius and footprint against the robot's shapes."""
 
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
@@ -56,8 +54,9 @@ class _Room(NamedTuple):
 
 
 def footprint_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the costmaps for which the robot is smaller than it is. Where there are several robots,
-    it may be the footprint of one that it has room for.
+    """Yield the costmaps for which the robot is smaller than it is.
+
+    Where there are several robots, it may be the footprint of one that it has room for.
     """
     rooms = [*_rooms(workspace)]
     robots = workspace.robots.known
@@ -69,9 +68,8 @@ def footprint_facts(workspace: Workspace) -> Iterator[Fact]:
     for room in rooms:
         workspace.charge(_OF_LINK * sum(links))
         yield Compared("values")
-        reaches = [_beyond(room, robot) for robot in robots]
-        beyond = [reach for reach in reaches if reach is not None]
-        if len(beyond) == len(robots):
+        beyond = [_beyond(room, robot) for robot in robots]
+        if beyond[0] is not None and None not in beyond:
             yield _too_small(room, robots[0], beyond[0])
 
 
@@ -140,8 +138,9 @@ def _beyond(room: _Room, known: KnownRobot) -> _Reach | None:
 
 
 def _shapes_of_base(robot: Configuration, base: str) -> Iterator[tuple[str, PlacedShape]]:
-    """Yield the shapes of known size that stay with the base: those of its own body and of wheels,
-    not of arms.
+    """Yield the shapes of known size that stay with the base.
+
+    These are the shapes of its own body and of wheels, not of arms.
     """
     for link in robot.robot.links:
         with suppress(MissingElement):

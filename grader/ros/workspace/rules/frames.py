@@ -1,9 +1,8 @@
-"""Frames and joints: those of the robot and of static transforms, and where other files name
-them.
-"""
+"""Frames and joints of the robot and of static transforms, and where files name them."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from itertools import pairwise, product
 from typing import NamedTuple
 
@@ -14,7 +13,7 @@ from grader.ros.known.gazebo_rows import gazebo
 from grader.ros.known.package_rows import frame_parameters, package_row
 from grader.ros.known.shared_names import shared_names
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.nodes.node_facts import NodeFacts, NodeFrame, NodeProgram
+from grader.ros.nodes.node_facts import NodeFacts, NodeFrame, NodeProgram, PackageNodes
 from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
@@ -52,10 +51,13 @@ _OWN_FRAMES = re.compile(
 
 
 def frame_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the frames and joints that are defined, and those that YAML, SRDF, Gazebo and
-    transforms name.
+    """Yield the frames and joints that are defined, and those that files name.
+
+    The files are YAML, SRDF, those of Gazebo and those of transforms.
     """
-    robots = [found.robot for found in workspace.robots.known if found.robot.links]
+    robots = [
+        known_robot.robot for known_robot in workspace.robots.known if known_robot.robot.links
+    ]
     if not robots:
         return
     for robot in robots:
@@ -71,8 +73,8 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
         if is_parameters(tree):
             for value in values_in(tree):
                 yield from _in_yaml(value, is_of_controller=not controllers.isdisjoint(value.keys))
-    for found in workspace.robots.known:
-        yield from _in_robot(found)
+    for known_robot in workspace.robots.known:
+        yield from _in_robot(known_robot)
     yield from _odometry_frames(workspace, robots)
     yield from _sensor_frames(workspace, robots)
 
@@ -93,8 +95,9 @@ def _place(location: LazyLocation | None) -> Location:
 
 
 def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
-    """Yield that there may be other names: of other robots, under other arguments, and of programs
-    that may publish frames.
+    """Yield that there may be other names.
+
+    They may be of other robots, under other arguments, or of programs that may publish frames.
     """
     if workspace.robots.may_be_others:
         yield from (Open("frame"), Open("link"), Open("joint"), Open("group"))
@@ -111,10 +114,15 @@ def openings(workspace: Workspace) -> Iterator[Open | Pattern]:
         yield Open("frame")
 
 
+def _named_in_code(named: Sequence["_NamedFrame"], above: Collection[str]) -> Iterator[Fact]:
+    """Yield frames of code, but for those that are looked up above a static transform."""
+    for each in named:
+        if each.frame.use != "looks up" or each.name not in above:
+            yield _definition_or_use(each)
+
+
 def _may_be_published(workspace: Workspace) -> bool:
-    """Return whether a program, code or a system of Gazebo may publish frames that are not
-    known.
-    """
+    """Return whether a program, code or a system of Gazebo may publish unknown frames."""
     packages = {package.name for package in workspace.packages}
     for _, node in workspace.launches.nodes:
         if "frames" not in package_row(node.package).without and node.package not in packages:
@@ -124,29 +132,39 @@ def _may_be_published(workspace: Workspace) -> bool:
     for text in workspace.texts.python_texts:
         if any(word in text for word in _BROADCASTING):
             return True
+    return _POSES in _systems_of_gazebo(workspace)
+
+
+def _systems_of_gazebo(workspace: Workspace) -> set[str]:
+    """Return the systems that robots, models and worlds load."""
     systems: set[str] = set()
     for root, _ in roots(workspace):
         systems |= {system_of(plugin) for plugin in root.iter("plugin")}
-    return _POSES in systems
+    return systems
 
 
 def _may_publish(workspace: Workspace, package: Package) -> bool:
-    """Return whether the programs that CMake makes may publish frames that are not known: the
-    frames of programs that are started are.
+    """Return whether the programs that CMake makes may publish unknown frames.
+
+    The frames of programs that are started are known.
     """
     setup = package.installation
     if not package.is_cmake or setup is None or not setup.programs:
         return False
     nodes = workspace.code.by_package[package.name]
-    read = {program.name for program in nodes.programs if program.nodes}
     programs = {path.rpartition("/")[2] for path in setup.programs}
-    if nodes.doubts or nodes.loose_frames or not programs <= read:
-        return True
-    if any(map(_may_open_transforms, nodes.nodes)):
+    if not _are_read(nodes, programs) or any(map(_may_open_transforms, nodes.nodes)):
         return True
     started = {(node.package, node.executable) for _, node in workspace.launches.nodes}
     others = [each for each in nodes.programs if (package.name, each.name) not in started]
     return any(map(_publishes_frame, others))
+
+
+def _are_read(nodes: PackageNodes, programs: AbstractSet[str]) -> bool:
+    """Return whether the nodes of programs, and all frames that these name, are known."""
+    if nodes.doubts or nodes.loose_frames:
+        return False
+    return programs <= {program.name for program in nodes.programs if program.nodes}
 
 
 def _publishes_frame(program: NodeProgram) -> bool:
@@ -177,9 +195,7 @@ def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[F
     if named:
         yield from _prefixed_frames(workspace)
         yield from _frames_of_others(workspace)
-    for each in named:
-        if each.frame.use != "looks up" or each.name not in above:
-            yield _definition_or_use(each)
+    yield from _named_in_code(named, above)
     yield from _misspelt_roots(named, robots)
     yield from _frames_in_fields(workspace)
 
@@ -243,8 +259,9 @@ class _NamedFrame(NamedTuple):
 
 
 def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> Iterator[Mismatch]:
-    """Yield frames that are published, and that are like the root of a robot that nothing puts
-    anywhere. It is certain for a node that is started, with one robot.
+    """Yield frames that are published, and are like the root of a robot that nothing places.
+
+    It is certain for a node that is started, with one robot.
     """
     publishing = [each for each in named if each.frame.use == "publishes"]
     placed = {each.name for each in publishing}
@@ -300,8 +317,9 @@ def _frames_of_static(node: StartedNode) -> tuple[str, str] | None:
 
 
 def _second_parents(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Mismatch]:
-    """Yield static transforms that give a link of the robot a second parent. It is certain for a
-    node that is started, with one robot.
+    """Yield static transforms that give a link of the robot a second parent.
+
+    It is certain for a node that is started, with one robot.
     """
     joints = {joint.child: joint for robot in robots for joint in robot.joints}
     for _, node in workspace.launches.nodes:
@@ -321,8 +339,9 @@ def _second_parents(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[M
 
 
 def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
-    """Yield the joints and frames that a parameter names; what a node of another kind calls joints
-    may be others.
+    """Yield the joints and frames that a parameter names.
+
+    What a node of another kind calls joints may be other things.
     """
     key = value.keys[-1] if value.keys else ""
     names = {node.location: text for text, node in value.texts() if "$" not in text}
@@ -375,8 +394,9 @@ def _in_element(robot: KnownRobot, element: Element) -> Iterator[Fact]:
 
 
 def _odometry_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Fact]:
-    """Yield the frames that systems of Gazebo publish: those that they name, and by default those
-    below the model's.
+    """Yield the frames that systems of Gazebo publish.
+
+    They are those that the systems name, and by default those below the model's.
     """
     created = _created_models(workspace)
     defaults = [*gazebo().odometry_frames]
@@ -407,6 +427,7 @@ def _created_models(workspace: Workspace) -> set[str]:
 
 def _sensor_frames(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[Use]:
     """Yield the frames of the sensors of models that are a robot as well: these have a link of it.
+
     Their own links and frames are ignored, since Gazebo may publish them.
     """
     links = {link.name for robot in robots for link in robot.links}

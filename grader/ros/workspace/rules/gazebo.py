@@ -1,5 +1,6 @@
-"""Gazebo: the topics of sensors and systems in the robot and in worlds, and what launch files
-ask of the simulation.
+"""Gazebo: the topics of sensors and systems, and what launch files ask of the simulation.
+
+The sensors and systems are those in the robot and in worlds.
 """
 
 import re
@@ -55,8 +56,9 @@ def _is_creator(node: StartedNode) -> bool:
 
 
 def _missing_systems(workspace: Workspace, file: XmlFile, world: Element) -> Iterator[Mismatch]:
-    """Yield the systems that a world of its own systems lacks for sensors in it and in the
-    robot.
+    """Yield the systems that a world lacks for sensors in it and in the robot.
+
+    The world has systems of its own.
 
     Gazebo loads its default systems in a world without any. Which one of several robots is created
     in the world is not evaluated.
@@ -99,8 +101,9 @@ def _values_of_options(node: StartedNode) -> Mapping[str, str]:
 
 
 def _created_in_world(node: StartedNode, worlds: Mapping[str, XmlFile]) -> Iterator[Mismatch]:
-    """Yield that a robot is created in a world of another name than the only one that launch files
-    name.
+    """Yield that a robot is created in another world than the one that launch files name.
+
+    The name is compared where launch files name only one world.
     """
     wanted = _values_of_options(node).get("world")
     if wanted is None or len(worlds) != 1 or wanted in worlds:
@@ -116,8 +119,9 @@ def _created_in_world(node: StartedNode, worlds: Mapping[str, XmlFile]) -> Itera
 
 
 def _options_given(node: StartedNode) -> list[str] | None:
-    """Return the options that the program that creates robots gets; None where not all are
-    known.
+    """Return the options that the program that creates robots gets.
+
+    The result is None where not all are known.
     """
     words = node.arguments
     if words is None or None in words:
@@ -160,6 +164,7 @@ def _created_from_nothing(node: StartedNode) -> Iterator[Mismatch]:
 
 def _created_from_topic(workspace: Workspace, node: StartedNode) -> Iterator[Mismatch]:
     """Yield that no robot_state_publisher publishes the topic from which a robot is created.
+
     Nothing is said where more nodes may be started, or one of them may publish the topic.
     """
     topic = _values_of_options(node).get("topic")

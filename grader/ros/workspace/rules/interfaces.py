@@ -1,5 +1,6 @@
-"""Interfaces: the files of messages, services and actions, what generates code of them, and the
-types and fields that nodes use.
+"""Interfaces: the files of messages, services and actions, and the types that nodes use.
+
+Also what generates code of the files, and the fields that nodes use.
 """
 
 from collections.abc import Iterator, Sequence
@@ -55,16 +56,16 @@ _OF_ONE_FOLDER: frozenset[Release] = frozenset({"foxy", "galactic"})
 def interface_facts(workspace: Workspace) -> Iterator[Fact]:
     """Yield what is wrong with interfaces, and types and fields that are used and do not exist."""
     for package in workspace.packages:
-        own = workspace.code.interfaces[package.name]
-        if own.location is None and not own.unlisted:
+        interfaces = workspace.code.interfaces[package.name]
+        if interfaces.location is None and not interfaces.unlisted:
             continue
         yield Compared("interfaces")
-        if not own.is_complete:
+        if not interfaces.is_complete:
             reason = f"which interfaces {package.name!r} generates is not evaluated"
             yield Undecided("interfaces", reason)
-        yield from _no_group(package, own)
-        yield from _unreadable_files(own)
-        yield from _types_of_fields(workspace, package, own)
+        yield from _no_group(package, interfaces)
+        yield from _unreadable_files(interfaces)
+        yield from _types_of_fields(workspace, package, interfaces)
     for package in workspace.packages:
         yield from _used_types(workspace, package)
         for use in workspace.code.by_package[package.name].field_uses:
@@ -75,38 +76,40 @@ def interface_facts(workspace: Workspace) -> Iterator[Fact]:
 # --- Files and CMakeLists.txt
 
 
-def _no_group(package: Package, own: PackageInterfaces) -> Iterator[Mismatch]:
-    """Yield that package.xml does not say that a package has interfaces. Nothing is said of one
-    that is not read whole, or that ROS 2 refuses.
+def _no_group(package: Package, interfaces: PackageInterfaces) -> Iterator[Mismatch]:
+    """Yield that package.xml does not say that a package has interfaces.
+
+    Nothing is said of one that is not read whole, or that ROS 2 refuses.
     """
     manifest = package.manifest
     if manifest is None or manifest.unread or manifest.refusals:
         return
-    if own.needs_group and _GROUP not in manifest.groups:
+    if interfaces.needs_group and _GROUP not in manifest.groups:
         message = (
             f"package.xml needs <member_of_group>{_GROUP}</member_of_group>: without it, "
             "rosidl_generate_interfaces() stops the build"
         )
-        yield Mismatch(INTERFACE_GROUP, message, manifest.name_location, own.location)
+        yield Mismatch(INTERFACE_GROUP, message, manifest.name_location, interfaces.location)
 
 
-def _unreadable_files(own: PackageInterfaces) -> Iterator[Mismatch]:
+def _unreadable_files(interfaces: PackageInterfaces) -> Iterator[Mismatch]:
     """Yield what rosidl cannot read in the files of interfaces."""
-    for found in own.types.values():
-        for fault in found.interface.faults:
+    for own_type in interfaces.types.values():
+        for fault in own_type.interface.faults:
             message = f"rosidl cannot read the file: {fault.message}"
             either = corrections(fault.written, fault.location, fault.meant)
             yield Mismatch(INTERFACE_FILE, message, fault.location, corrections=either)
 
 
 def _types_of_fields(
-    workspace: Workspace, package: Package, own: PackageInterfaces
+    workspace: Workspace, package: Package, interfaces: PackageInterfaces
 ) -> Iterator[Mismatch]:
-    """Yield that nothing defines the type of a field, or that CMakeLists.txt does not name its
-    package.
+    """Yield that nothing defines the type of a field.
+
+    Or CMakeLists.txt does not name the package of the type.
     """
-    for found in own.types.values():
-        for section in found.interface.sections:
+    for own_type in interfaces.types.values():
+        for section in own_type.interface.sections:
             for field in section.fields.values():
                 workspace.charge(1)
                 kind, at = field.type, field.location
@@ -116,30 +119,32 @@ def _types_of_fields(
                 if absent is not None:
                     yield absent
                 elif kind.package != package.name:
-                    yield from _no_dependency(workspace, own, field, at)
+                    yield from _no_dependency(workspace, interfaces, field, at)
 
 
 def _no_dependency(
-    workspace: Workspace, own: PackageInterfaces, field: InterfaceField, at: Location
+    workspace: Workspace, interfaces: PackageInterfaces, field: InterfaceField, at: Location
 ) -> Iterator[Mismatch]:
-    """Yield that CMakeLists.txt does not name the package of the type of a field. Nothing is said
-    where not all is known that it names, and for releases that have all headers in one folder.
+    """Yield that CMakeLists.txt does not name the package of the type of a field.
+
+    Nothing is said where not all is known that it names, and for releases that have all headers
+    in one folder.
     """
-    if not own.is_complete or _OF_ONE_FOLDER.intersection(workspace.releases):
+    if not interfaces.is_complete or _OF_ONE_FOLDER.intersection(workspace.releases):
         return
-    reached = _reached(workspace, own)
+    reached = _reached(workspace, interfaces)
     if reached is not None and field.type.package not in reached:
         message = (
             f"the field {field.name} has a type of {field.type.package}, which DEPENDENCIES of "
             "rosidl_generate_interfaces() does not name: the build stops"
         )
-        yield Mismatch(INTERFACE_DEPENDENCY, message, at, own.location)
+        yield Mismatch(INTERFACE_DEPENDENCY, message, at, interfaces.location)
 
 
-def _reached(workspace: Workspace, own: PackageInterfaces) -> set[str] | None:
+def _reached(workspace: Workspace, interfaces: PackageInterfaces) -> set[str] | None:
     """Return the packages whose messages an interface may use; None if not all are known."""
     exports = cmake_words().exports
-    pending, reached = [*own.dependencies, *_IMPLICIT], set[str]()
+    pending, reached = [*interfaces.dependencies, *_IMPLICIT], set[str]()
     while pending:
         name = pending.pop()
         if name in reached:
@@ -173,9 +178,9 @@ def is_absent(workspace: Workspace, name: str) -> bool:
     package, _, own_name = name.partition(".")
     if "_" in own_name:
         return False  # of a section or an event, which rosidl generates too
-    own = workspace.code.interfaces.get(package)
-    if own is not None:
-        return own.is_complete and own_name not in own.types
+    interfaces = workspace.code.interfaces.get(package)
+    if interfaces is not None:
+        return interfaces.is_complete and own_name not in interfaces.types
     known = known_interfaces(package, workspace.releases)
     if known is None or own_name in known:
         return False
@@ -191,23 +196,31 @@ def _no_type(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
     package, _, own_name = name.partition(".")
     kind, _, short = own_name.partition(".")
     shown = f"there is no type {package}/{kind}/{short}"
-    own = workspace.code.interfaces.get(package)
-    if own is not None and own_name in own.unlisted:
+    interfaces = workspace.code.interfaces.get(package)
+    if interfaces is not None and own_name in interfaces.unlisted:
         reason = f"rosidl_generate_interfaces() of {package} does not name its file"
-        if own.location is None:
+        if interfaces.location is None:
             reason = f"{package} does not call rosidl_generate_interfaces()"
-        return Mismatch(INTERFACE_TYPE, f"{shown}: {reason}", at, own.location)
-    if own is not None:
-        names = [*own.types]
+        return Mismatch(INTERFACE_TYPE, f"{shown}: {reason}", at, interfaces.location)
+    if interfaces is not None:
+        names = [*interfaces.types]
     else:
         names = [*(known_interfaces(package, workspace.releases) or {})]
     workspace.charge(len(names))
-    change = find_change(package, own_name, workspace.releases) if own is None else ""
+    change = find_change(package, own_name, workspace.releases) if interfaces is None else ""
     if change:
         return Mismatch(INTERFACE_TYPE, f"{shown} {change}", at)
+    return _no_type_among(names, shown, f"{package}/", own_name, at)
+
+
+def _no_type_among(
+    names: Sequence[str], shown: str, folder: str, own_name: str, at: Location
+) -> Mismatch:
+    """Return that a package has no type of a name, with one of another kind or a similar one."""
+    kind, _, short = own_name.partition(".")
     for other in names:
         if other.partition(".")[2] == short:
-            hint = f"there is {package}/{other.replace('.', '/')}"
+            hint = f"there is {folder}{other.replace('.', '/')}"
             return Mismatch(INTERFACE_TYPE, f"{shown}; {hint}", at)
     of_kind = [each.partition(".")[2] for each in names if each.startswith(f"{kind}.")]
     return _no_type_of_kind(shown, short, of_kind, at)
@@ -226,11 +239,9 @@ def _no_type_of_kind(shown: str, name: str, names: Sequence[str], at: Location) 
 
 
 def _used_types(workspace: Workspace, package: Package) -> Iterator[Fact]:
-    """Yield the types that the code of a package imports, or opens something with, and that do not
-    exist.
-    """
+    """Yield the types that a package's code imports or opens, and that do not exist."""
     nodes = workspace.code.by_package[package.name]
-    used = {found.name: found.location for found in reversed(nodes.imports)}
+    used = {used_type.name: used_type.location for used_type in reversed(nodes.imports)}
     for node in nodes.nodes:
         for endpoint in node.endpoints:
             if endpoint.type is not None and endpoint.type.count(".") == 2:
@@ -245,10 +256,12 @@ def _used_types(workspace: Workspace, package: Package) -> Iterator[Fact]:
 
 
 def _find_interface(workspace: Workspace, package: str, name: str) -> Interface | None:
-    own = workspace.code.interfaces.get(package)
-    if own is not None:
-        found = own.types.get(name)
-        return found.interface if found is not None and not found.interface.faults else None
+    interfaces = workspace.code.interfaces.get(package)
+    if interfaces is not None:
+        own_type = interfaces.types.get(name)
+        return (
+            own_type.interface if own_type is not None and not own_type.interface.faults else None
+        )
     return (known_interfaces(package, workspace.releases) or {}).get(name)
 
 
@@ -256,9 +269,7 @@ def _find_interface(workspace: Workspace, package: str, name: str) -> Interface 
 
 
 def _used_field(workspace: Workspace, use: FieldUse) -> Iterator[Fact]:
-    """Yield that a type does not have a field that is used, or that it is set to a value of another
-    type.
-    """
+    """Yield that a type has no field that is used, or that it gets a value of another type."""
     package, kind, name, *sections = use.type.split(".")
     section_name, path = "".join(sections), use.path
     if section_name == _GOAL_HANDLE:
@@ -307,8 +318,9 @@ def _is_of_python(section: InterfaceSection, attribute: str) -> bool:
 def _no_field(
     workspace: Workspace, shown: str, section: InterfaceSection, attribute: str, at: Location
 ) -> Iterator[Mismatch]:
-    """Yield that a type does not have a field or a constant that code uses. Items of lists, and
-    what the classes of Python have besides, are no fields.
+    """Yield that a type does not have a field or a constant that code uses.
+
+    Items of lists, and what the classes of Python have besides, are no fields.
     """
     if attribute == ITEM or _is_of_python(section, attribute):
         return

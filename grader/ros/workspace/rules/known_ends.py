@@ -1,5 +1,7 @@
-"""Topics of well-known programs and of displays: whether what is published there has their type,
-whether their inputs are published at all, and whether remappings replace names that they have.
+"""Topics of well-known programs and displays, compared with what is published there.
+
+It is compared whether they have the type of these, whether inputs are published at all, and
+whether remappings replace names that they have.
 """
 
 import re
@@ -43,8 +45,9 @@ _ByTopic = Mapping[str, Sequence[End]]  # the ends that publish a topic
 
 
 def known_end_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield topics that well-known programs and displays cannot read, and names that these do not
-    have.
+    """Yield topics that well-known programs and displays cannot read, and wrong names.
+
+    A wrong name is one that the program or display does not have.
     """
     graph = graph_of(workspace)
     published = graph.certain("publisher", "code", "controller", "bridge", "program")
@@ -70,8 +73,9 @@ def _other_type(published: Sequence[End], wanted: str) -> End | None:
 def _other_types(
     program: KnownProgram, inputs: Sequence[_Input], published: _ByTopic
 ) -> Iterator[Fact]:
-    """Yield the topics that a program reads, by itself or as its parameters say, and that are
-    published with another type only.
+    """Yield the topics that a program reads and that are published with another type only.
+
+    The program reads them by itself, or as its parameters say.
     """
     node = program.node
     read = []
@@ -110,8 +114,9 @@ def _inputs(workspace: Workspace, program: KnownProgram) -> list[_Input]:
 def _not_published(
     workspace: Workspace, node: StartedNode, inputs: Sequence[_Input], published: _ByTopic
 ) -> Iterator[Mismatch]:
-    """Yield the inputs that nothing publishes, while others publish one other topic of their type
-    that the node does not read.
+    """Yield the inputs that nothing publishes, while others publish one that is not read.
+
+    Others publish one other topic of their type that the node does not read.
     """
     topics = {each.topic for each in inputs}
     for each in inputs:
@@ -129,8 +134,9 @@ def _not_published(
 def _only_unread(
     workspace: Workspace, node: StartedNode, wanted: str, published: _ByTopic, read: set[str]
 ) -> End | None:
-    """Return what others than a node publish with a type, and it does not read; None if that is
-    not one topic.
+    """Return what others than a node publish with a type, and it does not read.
+
+    The result is None if that is not one topic.
     """
     workspace.charge(len(published))
     of_type: list[End] = []
@@ -152,17 +158,19 @@ def _may_be_published(workspace: Workspace, topic: str) -> bool:
 
 
 def _other_remappings(node: StartedNode, row: ProgramRow) -> Iterator[Mismatch]:
-    """Yield the remappings of names that surely stand for one that a program has. What has a colon,
-    or begins with __, is no topic.
+    """Yield the remappings of names that surely stand for one that a program has.
+
+    What has a colon, or begins with __, is no topic.
     """
     names = [*row.subscriptions, *row.publishers, *row.names]
     replaced = [rule[0].removeprefix("~/").strip("/") for rule in node.remaps or ()]
     left = [name for name in names if name not in replaced]
     plain = {name.replace("_", ""): name for name in left}
     for written in replaced:
+        if written in names or ":" in written or written.startswith("__"):
+            continue
         meant = plain.get(written.replace("_", "")) or near(written, left)
-        is_topic = ":" not in written and not written.startswith("__")
-        if meant is not None and is_topic and written not in names:
+        if meant is not None:
             message = (
                 f"{node.executable} has no topic {quoted(written)}, so its remapping does nothing; "
                 f"did you mean {meant}?"

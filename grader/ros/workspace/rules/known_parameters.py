@@ -1,5 +1,6 @@
-"""The parameters that files give well-known nodes, controllers and plugins, compared with what
-these read.
+"""The parameters of well-known nodes, controllers and plugins, compared with what is read.
+
+Files give the parameters; the nodes, controllers and plugins read them.
 
 The rows are those of `ros/known/parameter_rows.py`.
 """
@@ -39,9 +40,7 @@ _COST_OF_VALUE = 20  # parts of comparing a value with the rows of its node
 
 
 def known_parameter_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield what is wrong with the parameters of well-known nodes, controllers and plugins, each
-    place once.
-    """
+    """Yield wrong parameters of well-known nodes, controllers and plugins, each place once."""
     said: set[Location] = set()
     for given in _given_nodes(workspace):
         workspace.charge(1 + _COST_OF_VALUE * len(given.values))
@@ -57,8 +56,10 @@ def known_parameter_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _releases_of(workspace: Workspace, given: GivenNode) -> tuple[Release, ...] | None:
-    """Return the releases that values may be for: those that are stated, and those that their files
-    are named after; None if a launch file decides by the release what it gives.
+    """Return the releases that values may be for.
+
+    These are the stated ones, and those that the files of the values are named after. The result
+    is None if a launch file decides by the release what it gives.
     """
     stated = dict.fromkeys(workspace.releases)
     paths = {value.location.path for value in given.values.values()}
@@ -80,8 +81,10 @@ def _negative_lengths(given: GivenNode) -> set[Location]:
 
 
 def _given_nodes(workspace: Workspace) -> Iterator[GivenNode]:
-    """Yield what nodes get: of launch files, then of controllers, then in files of which no launch
-    file of the workspace says who gets them.
+    """Yield what nodes get.
+
+    First that of launch files, then of controllers, then in files of which no launch file of the
+    workspace says who gets them.
     """
     in_files: set[str] = set()  # the parameters of move_group that are said of their files
     for given in _limits_of_moveit(workspace):
@@ -123,13 +126,14 @@ def _started(workspace: Workspace) -> Iterator[GivenNode]:
 def _values_of(
     workspace: Workspace, package: Package, node: StartedNode
 ) -> tuple[bool, Mapping[str, ParameterValue]] | None:
-    """Return the parameters of a node of another package, and whether it gets no others; None for
-    one of the workspace, and for one that is not known by its name.
+    """Return the parameters of a node of another package, and whether it gets no others.
+
+    The result is None for one of the workspace, and for one that is not known by its name.
     """
     if workspace.package_of(node) is not None:
         return None
     has_name = workspace.code.name_of(node) is not None and node.namespace is not None
-    if not has_name and any(it.path for it in node.parameters or ()):
+    if not has_name and any(parameter.path for parameter in node.parameters or ()):
         return None  # any section may be its own
     given = workspace.parameters.read_given(package, node, workspace.code.name_of(node) or "")
     return not given.unknown and node.arguments == (), _without_time(given.values)
@@ -179,8 +183,9 @@ def _places_for_any_name(workspace: Workspace) -> frozenset[Location]:
 def _without_wrong_lists(
     kind: str, values: Mapping[str, ParameterValue]
 ) -> Mapping[str, ParameterValue]:
-    """Return values without a string in place of a list of joints, which is a mistake of
-    controllers.
+    """Return values without a string in place of a list of joints.
+
+    Such a string is a mistake of controllers.
     """
     joints = controller_row(kind).joints
     kept: dict[str, ParameterValue] = {}
@@ -191,16 +196,17 @@ def _without_wrong_lists(
 
 
 def is_as_released(workspace: Workspace, node: str) -> bool:
-    """Return whether a node or a class is the one of a release: no package of the workspace has it,
-    and no file of repositories says that its source is built.
+    """Return whether a node or a class is the one of a release.
+
+    No package of the workspace has it, and no file of repositories says that its source is built.
     """
     rows = node_rows(node)
     if rows is None:
         return False
     package = node.partition("/")[0]
-    is_own = any(own.name == package for own in workspace.packages) or workspace.texts.has_plugin(
-        node
-    )
+    is_own = any(
+        own_package.name == package for own_package in workspace.packages
+    ) or workspace.texts.has_plugin(node)
     repository = rows.source.partition(",")[0].rpartition("/")[2]
     return not is_own and repository not in _built_repositories(workspace)
 
@@ -222,11 +228,15 @@ def _built_repositories(workspace: Workspace) -> frozenset[str]:
 
 
 def _sections_by_name(workspace: Workspace) -> Iterator[GivenNode]:
-    """Yield the sections of parameter files that have the name of a controller of the same file, or
-    the usual one of a well-known node.
+    """Yield the sections of parameter files that have the name of a controller or a known node.
+
+    A controller is defined in the same file; the name of a well-known node is its usual one.
     """
     usual = _usual_names(workspace) if workspace.installed.yaml else {}
-    types = {(it.location.path, it.name): it.type.text for it in defined_controllers(workspace)}
+    types = {
+        (controller.location.path, controller.name): controller.type.text
+        for controller in defined_controllers(workspace)
+    }
     for path, tree in workspace.installed.trees:
         for keys, section in sections_in(tree):
             name = keys[-1].rpartition("/")[2] if keys else ""
@@ -261,8 +271,9 @@ def _section_values(section: YamlNode, prefix: str = "") -> dict[str, ParameterV
 
 
 def _limits_of_moveit(workspace: Workspace) -> Iterator[GivenNode]:
-    """Yield the joint_limits.yaml of MoveIt, which moveit_configs_utils gives to move_group, of a
-    workspace with an SRDF.
+    """Yield the joint_limits.yaml of MoveIt, of a workspace with an SRDF.
+
+    moveit_configs_utils gives the file to move_group.
     """
     if not workspace.texts.srdf_files:
         return

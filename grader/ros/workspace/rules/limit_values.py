@@ -1,5 +1,6 @@
-"""Limits of joints that are said twice: MoveIt's joint_limits.yaml and <ros2_control> may allow
-less than the robot, not more.
+"""Limits of joints that are said twice: by the robot, and by MoveIt or <ros2_control>.
+
+MoveIt's joint_limits.yaml and <ros2_control> may allow less than the robot, not more.
 """
 
 from collections.abc import Iterator, Sequence
@@ -90,7 +91,11 @@ def _said_by_control(robot: KnownRobot, system: Element) -> Iterator[_Said]:
 
 def _wider(said: _Said, robots: Sequence[KnownRobot]) -> Iterator[Fact]:
     """Yield that every robot with the joint allows less than a file says."""
-    joints = [it.robot.joint(said.joint) for it in robots if it.robot.has_joint(said.joint)]
+    joints = [
+        wider_robot.robot.joint(said.joint)
+        for wider_robot in robots
+        if wider_robot.robot.has_joint(said.joint)
+    ]
     limits = [(joint, joint.limit) for joint in joints if joint.limit is not None]
     if not limits:
         return

@@ -49,9 +49,11 @@ class _Trees:
 
 
 def lookup_facts(workspace: Workspace) -> Iterator[Compared | Mismatch]:
-    """Yield the transforms that are looked up between frames which launch files publish, where
-    certainly nothing that these start connects them. A program in another terminal may publish
-    other frames, such as the map, and is not likely to connect these.
+    """Yield the transforms that are looked up between frames that nothing connects.
+
+    Launch files publish the frames, and certainly nothing that these start connects them. A
+    program in another terminal may publish other frames, such as the map, and is not likely to
+    connect these.
     """
     lookups = [*_lookups(workspace)]
     if not lookups or any(fact.kind == "frame" for fact in openings(workspace)):
@@ -88,7 +90,11 @@ def _lookups(workspace: Workspace) -> Iterator[_Lookup]:
 def _published(workspace: Workspace) -> _Trees | None:
     """Return what launch files publish, whatever conditions say; None where that is not known."""
     systems = gazebo().odometry_systems
-    if any(system_of(it) in systems for root, _ in roots(workspace) for it in root.iter("plugin")):
+    if any(
+        system_of(plugin) in systems
+        for root, _ in roots(workspace)
+        for plugin in root.iter("plugin")
+    ):
         return None
     trees = _Trees()
     for edge in graph_of(workspace).edges:

@@ -1,5 +1,6 @@
-"""Topics, services and actions whose ends meet: whether these agree in type and quality of
-service.
+"""Topics, services and actions whose ends meet, and whether these agree.
+
+They agree in type and quality of service.
 """
 
 from collections.abc import Iterator
@@ -79,8 +80,10 @@ def meeting_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _is_of_other_rule(asking: End, offering: End) -> bool:
-    """Return whether another rule compares two ends: that of rows of bridges, also of those that
-    nothing starts, or that of the parameters of programs.
+    """Return whether another rule compares two ends.
+
+    Another rule is that of rows of bridges, also of those that nothing starts, or that of the
+    parameters of programs.
     """
     if asking.source == "bridge":
         return offering.source in ("bridge", "code")
@@ -99,8 +102,9 @@ def _differ(asking: End, offering: End) -> bool:
 def _other_type(
     workspace: Workspace, meeting: Meeting, asking: End, offering: End
 ) -> Iterator[Mismatch]:
-    """Yield that an end of own code or a bridge asks for another type than is offered; of a type
-    that is nowhere, that is said instead.
+    """Yield that an end of own code or a bridge asks for another type than is offered.
+
+    Of a type that is nowhere, that is said instead.
     """
     if not _differ(asking, offering):
         return

@@ -1,5 +1,7 @@
-"""Meshes in millimetres that robots show in metres, or the reverse: their sizes beside the other
-shapes of their links. `grader inspect` warns of them; no criterion reads a mesh.
+"""Meshes in millimetres that robots show in metres, or the reverse.
+
+Their sizes are compared with the other shapes of their links. `grader inspect` warns of them; no
+criterion reads a mesh.
 """
 
 from collections.abc import Iterable, Iterator
@@ -35,40 +37,57 @@ class _Reference(NamedTuple):
 
 
 def mesh_size_problems(workspace: Workspace) -> list[Problem]:
-    """Return a warning for each mesh that is about 1000 times as large as it should be, or as
-    small, as far as meshes are read before the budget of the workspace is spent.
+    """Return a warning for each mesh about 1000 times as large, or as small, as it should be.
+
+    Meshes are read until the budget of the workspace is spent.
     """
-    meshes, found = _Meshes(workspace), dict[tuple[str, Location], Problem]()
+    meshes, problems = _Meshes(workspace), dict[tuple[str, Location], Problem]()
     with suppress(NotDecided, InputError):
         for urdf in workspace.urdfs:
             loaded = urdf.loaded
             if loaded.robot is None or loaded.undetermined or loaded.verdict == "rejected":
                 continue
             for problem in _problems_of(meshes, urdf, loaded.robot):
-                found.setdefault((problem.message, problem.location), problem)
-    return [*found.values()]
+                problems.setdefault((problem.message, problem.location), problem)
+    return [*problems.values()]
 
 
 def _problems_of(meshes: "_Meshes", urdf: Read, robot: Robot) -> Iterator[Problem]:
-    """Yield the meshes whose lengths are about 1000 times as large or small as those of what is
-    beside them. A sample of each mesh is read first, and whole only one that may be.
+    """Yield the meshes about 1000 times as large or small as what is beside them.
+
+    The lengths are compared. A sample of each mesh is read first, and whole only one that may be.
     """
-    origins = [joint.origin for joint in robot.joints if joint.origin is not None]
-    reach = max((hypot(*origin.xyz) for origin in origins), default=0.0)
+    reach = _longest_origin(robot)
     for link in robot.links:
-        of_link = _meshes_of(link)
-        for mesh in of_link:
+        for mesh in _meshes_of(link):
             about = meshes.length(urdf, mesh, is_exact=False)
             if about is None or mesh.location is None:
                 continue
-            reference = _of_primitives(link) or meshes.reference(urdf, of_link)
-            if reference is None and about > _HUGE and reach > 0.0:
-                reference = _Reference(reach, "the longest <origin> of a joint")
+            reference = _reference_of(meshes, urdf, link, about, reach)
             if reference is None or not _is_off(about, reference.length, _SUSPECT, inf):
                 continue
             length = meshes.length(urdf, mesh, is_exact=True)
             if length is not None and _is_off(length, reference.length, _LEAST, _MOST):
                 yield _other_unit(urdf, link, mesh, mesh.location, length, reference)
+
+
+def _longest_origin(robot: Robot) -> float:
+    """Return how far the origin of a joint is from its parent at most, in metres."""
+    origins = [joint.origin for joint in robot.joints if joint.origin is not None]
+    return max((hypot(*origin.xyz) for origin in origins), default=0.0)
+
+
+def _reference_of(
+    meshes: "_Meshes", urdf: Read, link: Link, about: float, reach: float
+) -> _Reference | None:
+    """Return what a mesh of a link is compared with.
+
+    For a huge mesh without anything beside it, this is `reach`, the longest origin of a joint.
+    """
+    reference = _of_primitives(link) or meshes.reference(urdf, _meshes_of(link))
+    if reference is None and about > _HUGE and reach > 0.0:
+        return _Reference(reach, "the longest <origin> of a joint")
+    return reference
 
 
 def _meshes_of(link: Link) -> list[Mesh]:
@@ -105,7 +124,7 @@ def _is_off(length: float, right: float, least: float, most: float) -> bool:
 
 def _of_primitives(link: Link) -> _Reference | None:
     """Return the length of the shapes of a link's collision that are no meshes."""
-    length = max((_length_of(it.geometry) for it in link.collisions), default=0.0)
+    length = max((_length_of(collision.geometry) for collision in link.collisions), default=0.0)
     return _Reference(length, "its collision") if length else None
 
 

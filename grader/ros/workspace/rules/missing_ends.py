@@ -55,8 +55,9 @@ def missing_end_facts(workspace: Workspace) -> Iterator[Fact]:
 def _without_publisher(
     graph: Graph, subscriptions: Sequence[End], publishers: Sequence[End]
 ) -> Iterator[Fact]:
-    """Yield subscriptions to topics that nothing publishes, where a similar one is published and
-    not subscribed to.
+    """Yield subscriptions to unpublished topics where a similar one is published.
+
+    The similar topic is one that is not subscribed to.
     """
     workspace = graph.workspace
     offers = [*_offers(workspace, publishers)]
@@ -87,8 +88,9 @@ def _offers(workspace: Workspace, publishers: Sequence[End]) -> Iterator[_Offer]
 
 
 def _similar_topic(workspace: Workspace, end: End, alike: Sequence[_Offer]) -> Iterator[Fact]:
-    """Yield the topic that a subscription surely means, of those of its type; else that it uses
-    its own, to which a similar name may be a correction.
+    """Yield the topic that a subscription surely means, of those of its type.
+
+    Else yield that it uses its own, to which a similar name may be a correction.
     """
     workspace.charge(len(alike))
     places = {offer.topic: offer.location for offer in alike if offer.launch == end.launch}
@@ -129,8 +131,9 @@ def _no_other_end(rule: Rule, what: str, end: End, meant: str, at: Location) -> 
 def _without_subscription(
     graph: Graph, subscriptions: Sequence[End], publishers: Sequence[End]
 ) -> Iterator[Mismatch]:
-    """Yield publishers that nothing subscribes to, where a controller waits for such messages on
-    another topic.
+    """Yield publishers that nothing subscribes to, where a controller waits on another topic.
+
+    The controller waits for such messages there.
 
     It is certain where one launch file starts both, and all of its topics are read. A publisher of
     the same name may be meant for a controller of Gazebo in another namespace.
@@ -139,26 +142,32 @@ def _without_subscription(
     subscribed = {end.name for end in subscriptions}
     published = {end.name for end in of_code}
     unheard = [end for end in of_code if end.name not in subscribed]
-    of_controllers = [end for end in subscriptions if end.source == "controller"]
     named: set[Location] = set()
-    for waiting in of_controllers:
-        if waiting.name in published:
+    for waiting in subscriptions:
+        if waiting.source == "controller" and waiting.name not in published:
+            yield from _meant_for(graph, waiting, unheard, named)
+
+
+def _meant_for(
+    graph: Graph, waiting: End, unheard: Sequence[End], named: set[Location]
+) -> Iterator[Mismatch]:
+    """Yield the publishers that mean the topic of a controller; `named` are those of others."""
+    fitting = graph.alike(waiting, unheard)
+    for publisher in fitting:
+        if publisher.location in named:
             continue
-        fitting = graph.alike(waiting, unheard)
-        for publisher in fitting:
-            if publisher.location in named:
-                continue
-            mismatch = _unheard(graph.workspace, publisher, waiting, is_only=len(fitting) == 1)
-            if mismatch is not None:
-                named.add(publisher.location)
-                yield mismatch
+        mismatch = _unheard(graph.workspace, publisher, waiting, is_only=len(fitting) == 1)
+        if mismatch is not None:
+            named.add(publisher.location)
+            yield mismatch
 
 
 def _unheard(
     workspace: Workspace, publisher: End, waiting: End, *, is_only: bool
 ) -> Mismatch | None:
-    """Return that a publisher means the topic on which a controller waits; None where that is not
-    known.
+    """Return that a publisher means the topic on which a controller waits.
+
+    The result is None where that is not known.
     """
     if _may_be_of_gazebo(workspace, publisher, waiting):
         return None
@@ -186,23 +195,31 @@ def _may_be_of_gazebo(workspace: Workspace, publisher: End, waiting: End) -> boo
 
 
 def _without_server(graph: Graph, meeting: Meeting) -> Iterator[Mismatch]:
-    """Yield that nothing serves what a client calls, where a server of its type waits under one
-    other name. It is certain where the nodes of both certainly are started.
+    """Yield that nothing serves what a client calls, where a server waits under another name.
+
+    The server has the type of the client, and there is one such name only. It is certain where
+    the nodes of both certainly are started.
     """
-    workspace = graph.workspace
     clients, servers = meeting.ends(graph)
     called = {end.name for end in clients}
     served = {end.name for end in servers}
     uncalled = [end for end in servers if end.name not in called]
-    unserved = [end for end in clients if end.name not in served and end.type is not None]
-    for client in unserved:
-        alike = {end.name: end for end in reversed(graph.alike(client, uncalled))}
-        if len(alike) != 1 or _may_be_served(workspace, meeting, client, alike):
-            continue
-        [(meant, server)] = alike.items()
-        what = f"nothing serves the {meeting.noun} {client.name}"
-        mismatch = _no_other_end(SERVICE_SERVED, what, client, meant, server.location)
-        yield mismatch._replace(is_certain=client.is_certain and server.is_certain)
+    for client in clients:
+        if client.name not in served and client.type is not None:
+            yield from _served_elsewhere(graph, meeting, client, uncalled)
+
+
+def _served_elsewhere(
+    graph: Graph, meeting: Meeting, client: End, uncalled: Sequence[End]
+) -> Iterator[Mismatch]:
+    """Yield that the server of a client's type waits under one other name."""
+    alike = {end.name: end for end in reversed(graph.alike(client, uncalled))}
+    if len(alike) != 1 or _may_be_served(graph.workspace, meeting, client, alike):
+        return
+    [(meant, server)] = alike.items()
+    what = f"nothing serves the {meeting.noun} {client.name}"
+    mismatch = _no_other_end(SERVICE_SERVED, what, client, meant, server.location)
+    yield mismatch._replace(is_certain=client.is_certain and server.is_certain)
 
 
 def _may_be_served(

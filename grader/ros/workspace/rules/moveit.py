@@ -1,6 +1,4 @@
-"""Files of MoveIt: the joints, groups and controllers that joint_limits.yaml and its neighbours
-name.
-"""
+"""Files of MoveIt: the joints, groups and controllers that joint_limits.yaml and others name."""
 
 from collections.abc import Collection, Iterator
 from typing import NamedTuple
@@ -75,8 +73,9 @@ def _controllers(manager: YamlNode) -> Iterator[_MoveItController]:
 
 
 def _names_of(workspace: Workspace, controller: _MoveItController) -> Iterator[Use]:
-    """Yield the controller and the joints that a section names. Without definitions, the robot's
-    driver has the controllers; another robot may have one too.
+    """Yield the controller and the joints that a section names.
+
+    Without definitions, the robot's driver has the controllers; another robot may have one too.
     """
     name, at = controller.name, controller.location
     if defined_controllers(workspace):
@@ -99,7 +98,11 @@ def _not_started(controller: _MoveItController, left_out: Collection[str]) -> It
 def _not_spawned(workspace: Workspace) -> frozenset[str]:
     """Return the controllers that no spawner starts, while one starts others that move joints."""
     started = started_controllers(workspace)
-    movers = {it.name for it in defined_controllers(workspace) if not it.is_broadcaster}
+    movers = {
+        controller.name
+        for controller in defined_controllers(workspace)
+        if not controller.is_broadcaster
+    }
     if started is None or started.isdisjoint(movers):
         return frozenset()
     return frozenset(movers - started)
@@ -121,8 +124,9 @@ def _other_action(controller: _MoveItController) -> Iterator[Mismatch]:
 
 
 def _other_joints(workspace: Workspace, controller: _MoveItController) -> Iterator[Mismatch]:
-    """Yield that MoveIt gives a controller other joints than it has, all of which are in the
-    robot. MoveIt sends no goals for joints that follow others.
+    """Yield that MoveIt gives a controller other joints than it has, all of which are in the robot.
+
+    MoveIt sends no goals for joints that follow others.
     """
     joints, controlled = controller.joints, _controlled_joints(workspace, controller.name)
     if joints is None or controlled is None:

@@ -1,8 +1,9 @@
-"""Join the names that files define with those that they use: a name that is used has to be defined
-somewhere.
+"""Join the names that files define with those that they use.
+
+A name that is used has to be defined somewhere.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from itertools import chain
 from typing import NamedTuple
@@ -17,8 +18,9 @@ _MAX_NEAR, _MAX_SIMILAR = 1000, 300  # known names that are compared in either w
 
 
 class Definition(NamedTuple):
-    """A name that a file defines. Those of one kind agree within one owner only, such as the
-    arguments of a file.
+    """A name that a file defines.
+
+    Those of one kind agree within one owner only, such as the arguments of a file.
     """
 
     kind: DefinedKind
@@ -28,8 +30,9 @@ class Definition(NamedTuple):
 
 
 class Use(NamedTuple):
-    """A name that a file uses, and what the file calls it. Where it is `optional`, only a similar
-    name is wrong.
+    """A name that a file uses, and what the file calls it.
+
+    Where it is `optional`, only a similar name is wrong.
     """
 
     kind: DefinedKind
@@ -41,8 +44,10 @@ class Use(NamedTuple):
 
 
 class Open(NamedTuple):
-    """That names of a kind may be defined by what is not in the workspace, or, for a reason, by
-    what is not evaluated.
+    """That names of a kind may be defined elsewhere.
+
+    They may be defined by what is not in the workspace, or, for a reason, by what is not
+    evaluated.
     """
 
     kind: DefinedKind
@@ -58,8 +63,9 @@ class Pattern(NamedTuple):
 
 
 class Correction(NamedTuple):
-    """Another name in a file: the old one is at a place, behind it in the same element, or the key
-    before it.
+    """Another name in a file.
+
+    The old one is at a place, behind it in the same element, or the key before it.
     """
 
     location: Location
@@ -68,8 +74,9 @@ class Correction(NamedTuple):
 
 
 class Mismatch(NamedTuple):
-    """Something that does not agree. It is a warning, and fails no criterion, unless it certainly
-    fails at run time.
+    """Something that does not agree.
+
+    It is a warning, and fails no criterion, unless it certainly fails at run time.
     """
 
     rule: Rule
@@ -108,9 +115,7 @@ class Undecided(NamedTuple):
 
 
 class Counted(NamedTuple):
-    """How many names of a family have a counterpart with which they are compared, and why not all
-    names are known.
-    """
+    """How many names of a family are compared with a counterpart, and why not all are known."""
 
     family: AnyFamily
     compared: int
@@ -140,22 +145,28 @@ class Agreement(NamedTuple):
 
     def holds(self, family: AnyFamily) -> bool:
         """Return whether something of a family is compared, and all of it certainly agrees."""
-        is_wrong = any(it.family == family and it.is_certain for it in self.mismatches)
+        is_wrong = any(
+            mismatch.family == family and mismatch.is_certain for mismatch in self.mismatches
+        )
         return family in self.families and family not in self.undecided and not is_wrong
 
 
 def uncompared(facts: Iterable[Fact], reason: str) -> Agreement:
-    """Return the mismatches among facts that are not all known, and for each family why nothing
-    else is compared.
+    """Return the mismatches among facts that are not all known, and why no more is compared.
+
+    The reason is given for each family.
     """
-    found = [fact for fact in facts if isinstance(fact, Mismatch)]
-    families = frozenset(fact.family for fact in found)
-    return Agreement(_in_order(found), dict.fromkeys(FAMILIES, reason), families, frozenset(), {})
+    mismatches = [fact for fact in facts if isinstance(fact, Mismatch)]
+    families = frozenset(fact.family for fact in mismatches)
+    return Agreement(
+        _in_order(mismatches), dict.fromkeys(FAMILIES, reason), families, frozenset(), {}
+    )
 
 
 def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: None) -> Agreement:
-    """Return which of the names that are used are not defined, in the order of their places. The
-    work of comparing names is charged.
+    """Return which of the names that are used are not defined, in the order of their places.
+
+    The work of comparing names is charged.
     """
     every = [*facts]
     names = _DefinedNames(every)
@@ -165,19 +176,26 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
     compared, files = _compared(every)
     for use in [fact for fact in every if isinstance(fact, Use)]:
         family = DEFINED[use.kind].family
-        if names.holds(use) or not (use.optional or names.are_open(use)):
+        if names.compares(use):
             compared.add(family)
         charge(1 + len(names.patterns))
         if names.holds(use) or names.may_hold(use):
             continue
-        known = names.like(use)
-        charge(cost_of_guess(len(known)))
-        mismatch = _mismatch(use, known, is_open=names.are_open(use))
-        if mismatch is not None:
-            mismatches.append(mismatch)
+        mismatches += _undefined(names, use, charge)
         if names.why_open(use):
             undecided.setdefault(family, names.why_open(use))
     return Agreement(_in_order(mismatches), undecided, frozenset(compared), files, counts)
+
+
+def _undefined(
+    names: "_DefinedNames", use: Use, charge: Callable[[int], None]
+) -> Iterator[Mismatch]:
+    """Yield that a name is not defined, unless what is not known may define it."""
+    known = names.like(use)
+    charge(cost_of_guess(len(known)))
+    mismatch = _mismatch(use, known, is_open=names.are_open(use))
+    if mismatch is not None:
+        yield mismatch
 
 
 def _compared(facts: Iterable[Fact]) -> tuple[set[AnyFamily], frozenset[str]]:
@@ -214,6 +232,10 @@ class _DefinedNames:
         """Return the names that are defined of the kind and the owner of a use."""
         return self._known.get((use.kind, use.owner), {})
 
+    def compares(self, use: Use) -> bool:
+        """Return whether it is certain that a name is defined, or that it has to be."""
+        return self.holds(use) or not (use.optional or self.are_open(use))
+
     def holds(self, use: Use) -> bool:
         """Return whether a name is defined."""
         return use.name in self.like(use)
@@ -242,8 +264,9 @@ def _in_order(mismatches: Iterable[Mismatch]) -> tuple[Mismatch, ...]:
 
 
 def cost_of_guess(known: int) -> int:
-    """Return the parts of comparing a name with as many known ones; the most similar text is
-    searched among the first of them.
+    """Return the parts of comparing a name with as many known ones.
+
+    The most similar text is searched among the first of them.
     """
     return 3 * min(known, _MAX_NEAR) + 20 * min(known, _MAX_SIMILAR)
 
@@ -278,8 +301,9 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
 def corrections(
     name: str, at: Location, meant: str | None, defined: Location | None = None
 ) -> tuple[Correction, ...]:
-    """Return that a name becomes the one that is meant, or the reverse; none for names of two sides
-    or numbers.
+    """Return that a name becomes the one that is meant, or the reverse.
+
+    There are none for names of two sides or numbers.
     """
     if meant is None or not (are_of_one_side(name, meant) or near(name, [meant])):
         return ()

@@ -17,8 +17,9 @@ from grader.ros.workspace.rules.rule_table import (
 
 
 def namespace_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the parameter files that have parameters of a node's name, but not in its namespace:
-    rcl compares the full names, so the node gets none of them.
+    """Yield the parameter files that have a section of a node's name, not in its namespace.
+
+    rcl compares the full names, so the node gets none of its parameters.
     """
     for path, nodes in workspace.parameters.files.items():
         tree = workspace.installed.yaml.get(path)

@@ -25,8 +25,9 @@ _MAX_SHOWN = 60  # characters of a path
 
 
 def machine_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield paths in somebody's home folder, once a file, and environment variables that a launch
-    file needs.
+    """Yield paths in home folders and environment variables that a launch file needs.
+
+    A path in somebody's home folder is yielded once a file.
 
     Paths in launch files are problems of these files.
     """

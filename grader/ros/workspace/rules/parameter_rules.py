@@ -1,5 +1,6 @@
-"""What is wrong with the values that a well-known node gets, by the rows of its parameters: of no
-effect, of another type or release, missing, or not accepted.
+"""What is wrong with the values of a well-known node, by the rows of its parameters.
+
+A value may have no effect, be of another type or release, be missing, or not be accepted.
 """
 
 import operator
@@ -116,8 +117,10 @@ class _ParameterMatch(NamedTuple):
 
 
 def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismatch]:
-    """Yield what is wrong with the parameters of a node in each of the stated releases; in all that
-    the rows are of where none is stated. A value that is right in one of them is right.
+    """Yield what is wrong with the parameters of a node in each of the stated releases.
+
+    Without a stated release, it is all that the rows are of. A value that is right in one of them
+    is right.
     """
     known = node_rows(given.node)
     if known is None or not all(map(known.is_known_in, stated)):
@@ -127,10 +130,20 @@ def wrong_values(given: GivenNode, stated: Sequence[Release]) -> Iterator[Mismat
     releases = [release for release in stated or read if known.is_in(release)]
     for finding in _findings_in_all([readers[release] for release in releases]):
         if finding.mismatch.rule is PARAMETER_NAME:
-            having = [release for release in read if readers[release].has(finding.name)]
-            yield _of_other_release(given, finding.name, finding.mismatch, having, stated)
+            yield _unknown_name(given, finding, readers, stated)
         else:
             yield finding.mismatch
+
+
+def _unknown_name(
+    given: GivenNode,
+    finding: _RowFinding,
+    readers: Mapping[Release, "_NodeReader"],
+    stated: Sequence[Release],
+) -> Mismatch:
+    """Return that a node has no parameter of a name, with the releases in which it has one."""
+    having = [release for release, reader in readers.items() if reader.has(finding.name)]
+    return _of_other_release(given, finding.name, finding.mismatch, having, stated)
 
 
 def _findings_in_all(readers: "Sequence[_NodeReader]") -> Iterator[_RowFinding]:
@@ -144,8 +157,9 @@ def _findings_in_all(readers: "Sequence[_NodeReader]") -> Iterator[_RowFinding]:
 
 
 def default_in(given: GivenNode, name: str, release: Release) -> Any:
-    """Return the value that a node has in a release for a parameter that it does not get; Unknown
-    where that is not known, None where it has none.
+    """Return the value that a node has in a release for a parameter that it does not get.
+
+    The result is Unknown where that is not known, None where it has none.
     """
     return _NodeReader(given, release).default(name)
 
@@ -193,15 +207,22 @@ class _NodeReader:
         """Return the default of a parameter; Unknown where it is not known, None without one."""
         match = self._match(name)
         if match is None:
-            may_have_more = self._unread or any(table.is_open for table in self._tables)
-            return _NOT_KNOWN if may_have_more or not self._is_complete else None
+            return _NOT_KNOWN if self._may_have_more() else None
         row = match.row
         if row.is_required:
             return None
         if row.only_with and match.full_name(row.only_with) not in self._values:
             return None
-        is_read = bool(row.only_with) or all(self._items(match.table, it) for it in row.places)
+        is_read = bool(row.only_with) or all(
+            self._items(match.table, place) for place in row.places
+        )
         return row.default if is_read and row.default is not None else _NOT_KNOWN
+
+    def _may_have_more(self) -> bool:
+        """Return whether the node may have parameters that no row is of."""
+        if self._unread or not self._is_complete:
+            return True
+        return any(table.is_open for table in self._tables)
 
     def findings(self) -> Iterator[_RowFinding]:
         """Yield what is wrong."""
@@ -280,9 +301,9 @@ class _NodeReader:
             if row is not None:
                 return _ParameterMatch(table, row, ())
             for row in table.rows.patterns:
-                found = row.pattern.fullmatch(own_name)
-                if found is not None and self._are_listed(table, row, found.groups()):
-                    return _ParameterMatch(table, row, found.groups())
+                match = row.pattern.fullmatch(own_name)
+                if match is not None and self._are_listed(table, row, match.groups()):
+                    return _ParameterMatch(table, row, match.groups())
         return None
 
     def _are_listed(self, table: _RowTable, row: ParameterRow, parts: Sequence[str]) -> bool:
@@ -344,8 +365,9 @@ class _NodeReader:
     def _other_type(
         self, name: str, given: ParameterValue, match: _ParameterMatch
     ) -> _RowFinding | None:
-        """Return that a value has another type than its node declares, for which a text may stand
-        that a launch file replaces.
+        """Return that a value has another type than its node declares.
+
+        A text that a launch file replaces may stand for the value.
         """
         actual, declared = type_in_words(given.value), _DECLARED.get(match.row.type, "")
         if not declared or not actual or actual == declared:
@@ -393,17 +415,25 @@ class _NodeReader:
                 f"loads {enumerated(twice, _MAX_LIBRARIES)} itself, and stops where {name} has "
                 "the same: list only other libraries"
             )
-        others: set[str] = set()  # of other releases
-        for other in rows_of(self._given.node):
-            others.update(other.libraries if other.name == row.name else ())
-        for item in listed:
-            if item in row.libraries:
-                continue
-            meant = near(item, row.libraries)
-            if item in others or meant is not None:
+        return self._missing_library(row, [item for item in listed if item not in row.libraries])
+
+    def _missing_library(self, row: ParameterRow, unknown: Sequence[str]) -> str:
+        """Return that a library is misspelt or of another release; empty if none surely is."""
+        others = self._libraries_of_releases(row)
+        for name in unknown:
+            meant = near(name, row.libraries)
+            if name in others or meant is not None:
                 guess = f"; did you mean {quoted(meant)}?" if meant is not None else ""
-                return f"stops: {self._release.title()} has no library {quoted(item)}{guess}"
+                return f"stops: {self._release.title()} has no library {quoted(name)}{guess}"
         return ""
+
+    def _libraries_of_releases(self, row: ParameterRow) -> set[str]:
+        """Return the libraries that a parameter may list in any release."""
+        libraries: set[str] = set()
+        for other in rows_of(self._given.node):
+            if other.name == row.name:
+                libraries.update(other.libraries)
+        return libraries
 
     def _certain(self, rule: Rule, name: str, message: str, at: Location) -> _RowFinding:
         return _RowFinding(name, Mismatch(rule, message, at))
@@ -411,7 +441,7 @@ class _NodeReader:
     def _near(self, name: str) -> str | None:
         """Return the parameter that another name surely stands for: one part of it is misspelt."""
         candidates: dict[str, str] = {}  # the parts that are misspelt, by what they stand for
-        found: dict[str, str] = {}  # the names, by the same
+        corrected_names: dict[str, str] = {}  # the names, by the same
         for table in self._tables:
             if not name.startswith(table.prefix):
                 continue
@@ -423,10 +453,10 @@ class _NodeReader:
                 full = table.prefix + ".".join(corrected.parts)
                 if full not in self._values and self.has(full):
                     candidates[corrected.meant] = corrected.part
-                    found[corrected.meant] = full
+                    corrected_names[corrected.meant] = full
         parts = set(candidates.values())
         meant = near(parts.pop(), candidates) if len(parts) == 1 else None
-        return found[meant] if meant is not None else None
+        return corrected_names[meant] if meant is not None else None
 
     def _unknown(
         self, name: str, value: ParameterValue, near_name: str | None
@@ -436,21 +466,11 @@ class _NodeReader:
             return None
         at = value.named_at or value.location
         if near_name is not None:
-            old, new = name.rpartition(".")[2], near_name.rpartition(".")[2]
-            message = (
-                f"{self._given.said} has no parameter {quoted(self._given.shown(name))}; did you "
-                f"mean {quoted(self._given.shown(near_name))}?"
-            )
-            mismatch = Mismatch(
-                PARAMETER_NAME,
-                message,
-                at,
-                is_certain=False,
-                corrections=corrections(old, at, new),
-            )
-            return _RowFinding(name, mismatch)
-        table = next(it for it in reversed(self._tables) if name.startswith(it.prefix))
-        if table.is_open or any(not prefix for prefix in self._unread):
+            return self._misspelt(name, at, near_name)
+        table = next(
+            candidate for candidate in reversed(self._tables) if name.startswith(candidate.prefix)
+        )
+        if table.is_open or "" in self._unread:
             return None
         section = self._first_unknown(name, table)
         similar = closest(section, self._names(table), is_clear=True)
@@ -460,6 +480,22 @@ class _NodeReader:
         message = f"{self._given.said} has no parameter {quoted(section)}{guess}"
         mismatch = warning(PARAMETER_NAME, message, at)
         return _RowFinding(section, mismatch)
+
+    def _misspelt(self, name: str, at: Location, near_name: str) -> _RowFinding:
+        """Return that a name surely stands for another parameter."""
+        old, new = name.rpartition(".")[2], near_name.rpartition(".")[2]
+        message = (
+            f"{self._given.said} has no parameter {quoted(self._given.shown(name))}; did you "
+            f"mean {quoted(self._given.shown(near_name))}?"
+        )
+        mismatch = Mismatch(
+            PARAMETER_NAME,
+            message,
+            at,
+            is_certain=False,
+            corrections=corrections(old, at, new),
+        )
+        return _RowFinding(name, mismatch)
 
     def _first_unknown(self, name: str, table: _RowTable) -> str:
         """Return a name up to the first part with which no parameter begins."""
@@ -473,10 +509,10 @@ class _NodeReader:
     def _begins(self, table: _RowTable, row: ParameterRow, start: Sequence[str]) -> bool:
         """Return whether the name of a row may begin with some parts."""
         parts = row.name.split(".")
-        for own, part in zip(parts, start, strict=False):
-            place = own[1:-1] if own.startswith("<") and own.endswith(">") else ""
+        for own_part, part in zip(parts, start, strict=False):
+            place = own_part[1:-1] if own_part.startswith("<") and own_part.endswith(">") else ""
             items = self._items(table, place) if place else None
-            is_other = own != part and "<" not in own
+            is_other = own_part != part and "<" not in own_part
             if is_other or (items is not None and part not in items):
                 return False
         return len(parts) >= len(start) or parts[-1] == "<**>"
@@ -510,8 +546,10 @@ class _NodeReader:
                 yield _RowFinding(name, mismatch)
 
     def _required(self, table: _RowTable) -> Iterator[tuple[ParameterRow, str]]:
-        """Yield the rows without which a node stops, with the names that it needs: of a row with a
-        part for the value of another parameter, that of the value that is given.
+        """Yield the rows without which a node stops, with the names that it needs.
+
+        Of a row with a part for the value of another parameter, it is the name with the value
+        that is given.
         """
         for row in table.rows.all_rows.values():
             if not row.is_required:
@@ -563,25 +601,26 @@ class _Corrected(NamedTuple):
 
 
 @lru_cache(maxsize=4096)
-def _may_mean(part: str, own: str) -> bool:
+def _may_mean(part: str, own_part: str) -> bool:
     """Return whether a part of a name may be a misspelt one; each release asks for the same."""
-    return near(part, [own]) is not None
+    return near(part, [own_part]) is not None
 
 
 def _corrected(parts: Sequence[str], wanted: Sequence[str]) -> _Corrected | None:
-    """Return a name with the one part corrected that differs from a row's; None if not one does, or
-    not surely.
+    """Return a name with the one part corrected that differs from a row's.
+
+    The result is None if not one does, or not surely.
     """
     if len(parts) != len(wanted):
         return None
     corrected: list[str] = []
     changed: list[tuple[str, str]] = []
-    for part, own in zip(parts, wanted, strict=True):
-        meant = own
-        if "<#>" in own:
-            digits = "".join(it for it in part if it.isdigit())
-            meant = own.replace("<#>", digits) if digits else part
-        elif "<" in own:
+    for part, own_part in zip(parts, wanted, strict=True):
+        meant = own_part
+        if "<#>" in own_part:
+            digits = "".join(character for character in part if character.isdigit())
+            meant = own_part.replace("<#>", digits) if digits else part
+        elif "<" in own_part:
             meant = part
         if meant != part:
             changed.append((part, meant))

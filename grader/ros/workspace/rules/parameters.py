@@ -1,11 +1,13 @@
-"""Parameters: whether parameter files have some for the node that gets them, and whether own
-nodes declare them.
+"""Parameters: whether parameter files have some for the node that gets them.
+
+It is compared as well whether own nodes declare them.
 """
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from itertools import chain
+from typing import NamedTuple
 
 from grader.base.names import near
 from grader.base.source import Location
@@ -89,8 +91,9 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
-    """Yield installed YAML files that cannot be parsed, and aliases in parameter files, which rcl
-    refuses.
+    """Yield installed YAML files that cannot be parsed, and aliases in parameter files.
+
+    rcl refuses aliases.
 
     That a file is not YAML is certain to be a mistake where a node gets it. Files of OpenCV and
     those that Git LFS has not fetched are no YAML of ROS 2, and those of bridges are compared by
@@ -116,8 +119,9 @@ def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
 
 
 def _parameter_trees(workspace: Workspace) -> Iterator[YamlNode]:
-    """Yield the parameter files that nodes or controllers get. What components get, to which a
-    container gives its own files, is not evaluated.
+    """Yield the parameter files that nodes or controllers get.
+
+    What components get, to which a container gives its own files, is not evaluated.
     """
     paths = []
     for path, nodes in workspace.parameters.files.items():
@@ -140,8 +144,9 @@ def _files_of_controllers(workspace: Workspace) -> list[str]:
 
 
 def _plugins(workspace: Workspace) -> Iterator[Fact]:
-    """Yield what lists of plugins name, and plugins that pluginlib does not know as they are
-    written.
+    """Yield what lists of plugins name, and plugins that pluginlib does not know.
+
+    pluginlib does not know them as they are written.
     """
     sections_by_file = {
         path: frozenset(_sections(tree))
@@ -186,8 +191,9 @@ def _is_given_alone(workspace: Workspace, path: str) -> bool:
 def _sections_of_others(
     workspace: Workspace, path: str, nodes: Sequence[StartedNode]
 ) -> Iterator[Mismatch]:
-    """Yield that a parameter file has nothing for a node that is given it, but for a node that
-    is not.
+    """Yield that a parameter file has something only for a node that is not given it.
+
+    It has nothing for a node that is given it.
 
     Nothing is said where a container gets the file, which it gives to its components, or where the
     name of a node that gets it is not known. A section with the name that its program gives the
@@ -202,21 +208,48 @@ def _sections_of_others(
     unread = _unread_sections(workspace, sections, names)
     lacking = _without_section(workspace, sections, names)
     is_only_pair = len(unread) == len(lacking) == 1
-    for node, name in zip(nodes, names, strict=True) if unread else ():
+    if not unread:
+        return
+    for node, name in zip(nodes, names, strict=True):
         if name not in lacking or _is_renamed(workspace, tree, node):
             continue
-        workspace.charge(cost_of_guess(len(unread)))
-        meant = near(name, unread)
-        if meant is None and _may_read_another(workspace, path, node):
+        meant = _section_meant(workspace, path, node, name, unread)
+        if meant is None:
             continue
-        key = meant or unread[0]
-        at = tree.key_location(*sections[key])
-        message = (
-            f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
-        )
-        renamed = name if meant is not None or is_only_pair else None
-        either = corrections(key, at, renamed, node.location)
-        yield Mismatch(PARAMETER_NODE, message, at, node.location, corrections=either)
+        at = tree.key_location(*sections[meant.key])
+        renamed = name if meant.is_sure or is_only_pair else None
+        yield _section_of_other(meant.key, at, name, renamed, node.location)
+
+
+class _MeantSection(NamedTuple):
+    """The section that a node may have been meant to get; it is sure if its name is similar."""
+
+    key: str
+    is_sure: bool
+
+
+def _section_meant(
+    workspace: Workspace, path: str, node: StartedNode, name: str, unread: Sequence[str]
+) -> _MeantSection | None:
+    """Return the section that a node without one may mean; None if another node may read it."""
+    workspace.charge(cost_of_guess(len(unread)))
+    similar = near(name, unread)
+    if similar is not None:
+        return _MeantSection(similar, is_sure=True)
+    if _may_read_another(workspace, path, node):
+        return None
+    return _MeantSection(unread[0], is_sure=False)
+
+
+def _section_of_other(
+    key: str, at: Location, name: str, renamed: str | None, started_at: Location
+) -> Mismatch:
+    """Return that a section is not of a node that gets the file; `renamed` is its right key."""
+    message = (
+        f"there are parameters for {key}, but none for the node {name!r}, which gets this file"
+    )
+    either = corrections(key, at, renamed, started_at)
+    return Mismatch(PARAMETER_NODE, message, at, started_at, corrections=either)
 
 
 def _is_renamed(workspace: Workspace, tree: YamlNode, node: StartedNode) -> bool:
@@ -227,8 +260,10 @@ def _is_renamed(workspace: Workspace, tree: YamlNode, node: StartedNode) -> bool
 
 
 def _may_read_another(workspace: Workspace, path: str, node: StartedNode) -> bool:
-    """Return whether a section of a file may be that of a node which is not known: of the launch
-    file to which the file is passed, or one inside of a program of another package.
+    """Return whether a section of a file may be that of a node which is not known.
+
+    The node may be of the launch file to which the file is passed, or inside of a program of
+    another package.
     """
     if path in workspace.installed.passed_files:
         return True
@@ -268,8 +303,9 @@ def _unread_sections(
 
 
 def _misplaced_keys(tree: YamlNode) -> Iterator[Mismatch]:
-    """Yield values of a parameter file that are not below ros__parameters, such keys that are
-    misspelt, and those inside of other ros__parameters.
+    """Yield values of a parameter file that are not below ros__parameters.
+
+    Keys ros__parameters that are misspelt, and those inside of others, are yielded too.
     """
     waiting: list[tuple[str, YamlNode, bool]] = [("", tree, False)]
     visits = {True: Visits(), False: Visits()}  # by whether it is below a key ros__parameters
@@ -334,15 +370,25 @@ def _given(
     given = workspace.parameters.read_given(package, node, name_of_node or "")
     if given.unknown:
         yield Undecided("parameters", given.unknown)
-    # What a file gives to every node, or to another of the same name, need not be declared by this.
-    shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
     said = f"the node {name_of_node or node.executable!r}"
-    for name, value in given.values.items():
-        if value.location not in shared and not name.startswith("qos_overrides."):
-            yield Use("parameter", name, value.named_at or value.location, said, owner)
+    yield from _parameter_uses(workspace, node, given.values, said)
     yield from _types_given(own_node, given.values)
     is_all = not given.unknown and node.arguments == () and name_of_node is not None
     yield from _not_given(workspace, node, own_node, given.values if is_all else None)
+
+
+def _parameter_uses(
+    workspace: Workspace, node: StartedNode, values: Mapping[str, ParameterValue], said: str
+) -> Iterator[Use]:
+    """Yield the names of values that are for a node alone.
+
+    What a file gives to every node, or to another of the same name, need not be declared by it.
+    """
+    owner = f"{node.package}/{node.executable}"
+    shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
+    for name, value in values.items():
+        if value.location not in shared and not name.startswith("qos_overrides."):
+            yield Use("parameter", name, value.named_at or value.location, said, owner)
 
 
 def _may_declare_more(workspace: Workspace, node: StartedNode, own_node: NodeFacts) -> bool:
@@ -354,8 +400,9 @@ def _may_declare_more(workspace: Workspace, node: StartedNode, own_node: NodeFac
 
 
 def _places_of_others(workspace: Workspace, node: StartedNode) -> Iterator[Location]:
-    """Yield the places of parameters that a node of another program, or a controller, of the same
-    name gets and may declare.
+    """Yield the places of parameters that another node of the same name may declare.
+
+    The node is of another program, or a controller, and gets the parameters.
     """
     for given in workspace.parameters.owners.get(workspace.code.name_of(node) or "", ()):
         if (given.node.package, given.node.executable) == (node.package, node.executable):
@@ -382,20 +429,27 @@ def _not_given(
     own_node: NodeFacts,
     values: Mapping[str, ParameterValue] | None,
 ) -> Iterator[Mismatch]:
-    """Yield the parameters that a node declares without a value and reads, and is not given: rclpy
-    and rclcpp raise ParameterUninitializedException. Nothing is said where `values` is None: the
-    node may get more than is known.
+    """Yield the parameters that a node declares without a value, reads, and is not given.
+
+    rclpy and rclcpp raise ParameterUninitializedException. Nothing is said where `values` is
+    None: the node may get more than is known.
     """
-    read = {it.name for it in own_node.parameters if not it.is_declared and it.is_needed}
-    for parameter in own_node.parameters if values is not None else ():
+    if values is None:
+        return
+    read = {
+        own_parameter.name
+        for own_parameter in own_node.parameters
+        if not own_parameter.is_declared and own_parameter.is_needed
+    }
+    is_certain = node.when is True and not own_node.doubts
+    for parameter in own_node.parameters:
         name = parameter.name
-        if parameter.is_unset and name in read and name not in (values or ()):
+        if parameter.is_unset and name in read and name not in values:
             named = workspace.code.name_of(node) or node.executable
             message = (
                 f"the node {named!r} stops without a value of the parameter {name!r}, which it "
                 f"declares without one ({parameter.location.file_and_line})"
             )
-            is_certain = node.when is True and not own_node.doubts
             yield Mismatch(
                 PARAMETER_REQUIRED, message, node.location, parameter.location, is_certain
             )
@@ -444,9 +498,7 @@ def _other_type(
 
 
 def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
-    """Yield which values of an input a filter of robot_localization takes, where there are not 15
-    of them.
-    """
+    """Yield which values of an input a filter of robot_localization takes, if not 15."""
     for _, section in sections_in(tree) if isinstance(tree, YamlNode) else ():
         for value in values_in(section):
             count = len(value.node.items)
@@ -473,8 +525,9 @@ def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) ->
 
 
 def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:
-    """Yield that a program is given the file of a robot as an argument, which no stated release of
-    it reads.
+    """Yield that a program is given a robot's file as an argument that it does not read.
+
+    No stated release of the program reads it.
     """
     words = [word for word in node.arguments or () if word is not None]
     if not words or not words[0].endswith((".urdf", ".xacro", ".xml")):
@@ -493,8 +546,9 @@ def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode
 
 
 def _plugin_lists(tree: YamlNode, elsewhere: Collection[tuple[str, str]]) -> Iterator[Fact]:
-    """Yield the entries of lists of plugins that have no section beside them, and none at the same
-    place elsewhere.
+    """Yield the entries of lists of plugins that have no section.
+
+    There is none beside them, and none at the same place elsewhere.
     """
     waiting, visits = [("", tree)], Visits()
     while waiting:
@@ -532,8 +586,9 @@ def _listed(key: str, node: YamlNode) -> Iterator[tuple[str, Location]]:
 
 
 def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Iterator[Fact]:
-    """Yield plugins that are written with other separators than pluginlib knows them by, in every
-    release that the file may be for.
+    """Yield plugins that are written with other separators than pluginlib knows them by.
+
+    pluginlib knows them so in every release that the file may be for.
     """
     values = [value for value in values_in(tree) if value.keys[-1:] == ("plugin",)]
     if not values:

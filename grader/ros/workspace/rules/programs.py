@@ -1,5 +1,6 @@
-"""Programs and nodes: what launch files start, entry points, and the nodes that a lifecycle
-manager looks after.
+"""Programs and nodes: what launch files start, entry points, and nodes under a manager.
+
+The nodes are those that a lifecycle manager looks after.
 """
 
 from collections.abc import Iterator, Sequence
@@ -36,9 +37,7 @@ _OF_MISSING = 5_000  # parts: similar names are searched among all programs
 
 
 def program_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the programs that launch files start and no package has, and nodes that nothing
-    starts.
-    """
+    """Yield the programs that launch files start and no package has, and unstarted nodes."""
     for package in workspace.packages:
         yield from _entry_points(workspace, package)
     for package, node in workspace.launches.nodes:
@@ -63,8 +62,9 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Iterator[Fact]:
-    """Yield that a package of the workspace does not have the program of a node, or that Linux
-    cannot execute it.
+    """Yield that a package of the workspace does not have the program of a node.
+
+    Or Linux cannot execute the program.
     """
     yield Compared("programs")
     if owner.installation is not None and owner.installation.unread:
@@ -94,8 +94,9 @@ def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
 
 
 def _not_executed(package: Package, node: StartedNode) -> Iterator[Mismatch]:
-    """Yield that Linux cannot execute a script: its first line has to name the interpreter, and end
-    without CR.
+    """Yield that Linux cannot execute a script.
+
+    Its first line has to name the interpreter, and end without CR.
     """
     target = f"lib/{package.name}/{node.executable}"
     source = package.installed.get(target, "")
@@ -122,9 +123,7 @@ class _MissingProgram(NamedTuple):
 
 
 def _why_no_program(package: Package, name: str) -> _MissingProgram:
-    """Return that ros2 run does not find a program, and where it is installed, or which there
-    are.
-    """
+    """Return that ros2 run does not find a program, and where it is, or which there are."""
     setup, home = package.installation, f"lib/{package.name}"
     entries = [entry.name for entry in entry_points(package)]
     if name in entries:

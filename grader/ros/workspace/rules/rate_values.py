@@ -1,5 +1,6 @@
-"""Rates and ranges that one file asks for and another one cannot give: of controllers, and of the
-lidars that Nav2 reads.
+"""Rates and ranges that one file asks for and another one cannot give.
+
+They are those of controllers, and of the lidars that Nav2 reads.
 """
 
 from collections.abc import Iterable, Iterator
@@ -55,7 +56,7 @@ def rate_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _largest(numbers: Iterable[_StatedNumber]) -> _StatedNumber | None:
-    return max(numbers, key=lambda it: it.value, default=None)
+    return max(numbers, key=lambda stated: stated.value, default=None)
 
 
 def _too_far(asked: _StatedNumber | None, lidar: _StatedNumber) -> Iterator[Mismatch]:

@@ -102,27 +102,30 @@ class _Facts(NamedTuple):
 
 @lru_cache(maxsize=2)
 def read_agreement(workspace: Workspace) -> Agreement:
-    """Return what does not agree in a workspace; what is found before the budget of the workspace
-    is spent, and that the rest is not compared.
+    """Return what does not agree in a workspace.
+
+    If the budget of the workspace is spent, it is what is found before, and that the rest is not
+    compared.
     """
     facts, error = facts_once(workspace)
     unused: tuple[Location, ...] = ()
     try:
         if error is not None:
             raise error
-        found = agreement(facts, workspace.charge)
+        agreed = agreement(facts, workspace.charge)
         unused = tuple(unused_files(workspace))
     except NotDecided as reason:
-        found = uncompared(facts, str(reason))
+        agreed = uncompared(facts, str(reason))
     # names_agree needs a package.
-    families = found.families if workspace.packages else frozenset[AnyFamily]()
-    return found._replace(families=families, unused=unused)
+    families = agreed.families if workspace.packages else frozenset[AnyFamily]()
+    return agreed._replace(families=families, unused=unused)
 
 
 @lru_cache(maxsize=2)
 def facts_once(workspace: Workspace) -> _Facts:
-    """Return what files define and use, as far as it is read before the budget of the workspace is
-    spent.
+    """Return what files define and use, as far as the budget of the workspace allows.
+
+    It is what is read before the budget is spent.
     """
     facts: list[Fact] = []
     try:
@@ -145,8 +148,9 @@ def wrong_names(
 
 
 def read_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield what the files of a workspace define and use. Raises NotDecided where this takes too
-    much work.
+    """Yield what the files of a workspace define and use.
+
+    Raises NotDecided where this takes too much work.
     """
     for fact in chain.from_iterable(reader(workspace) for reader in _READERS):
         workspace.charge(_OF_MISMATCH if isinstance(fact, Mismatch) else _OF_FACT)

@@ -1,5 +1,7 @@
-"""Messages that arrive, and that their reader cannot use: without a header where a synchroniser
-compares times, or images with an encoding that cannot be converted; and queues of no length.
+"""Messages that arrive, and that their reader cannot use; and queues of no length.
+
+They have no header where a synchroniser compares times, or are images with an encoding that
+cannot be converted.
 """
 
 import re
@@ -44,7 +46,9 @@ def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
     for each in workspace.code.by_package[package].synchronised:
         if _has_header(workspace, each.type) is not False:
             continue
-        if each.together and not any(_has_header(workspace, it) for it in each.together):
+        if each.together and not any(
+            _has_header(workspace, type_name) for type_name in each.together
+        ):
             continue  # all have the same time in C++, and each pair fits
         effect = _EFFECTS.get(
             each.by, "uses time 0 instead, so it stops or never matches the messages"
@@ -56,10 +60,10 @@ def _without_header(workspace: Workspace, package: str) -> Iterator[Mismatch]:
 def _has_header(workspace: Workspace, name: str) -> bool | None:
     """Return whether messages of a type have a header; None where this is not known."""
     package, _, own_name = name.partition(".")
-    own = workspace.code.interfaces.get(package)
-    if own is not None:
-        found = own.types.get(own_name)
-        interface = found.interface if found is not None and own.is_complete else None
+    interfaces = workspace.code.interfaces.get(package)
+    if interfaces is not None:
+        own_type = interfaces.types.get(own_name)
+        interface = own_type.interface if own_type is not None and interfaces.is_complete else None
     else:
         interface = (known_interfaces(package, workspace.releases) or {}).get(own_name)
     if interface is None or not interface.sections:
@@ -122,8 +126,9 @@ def _cannot_convert(topic: str, made: ImageEncoding, asked: ImageEncoding) -> Mi
 
 
 def _is_lost(made: str, asked: str) -> bool:
-    """Return whether cv_bridge certainly raises an error for a conversion: of depths to colours,
-    or to another number of channels.
+    """Return whether cv_bridge certainly raises an error for a conversion.
+
+    It is one of depths to colours, or to another number of channels.
     """
     colours = colour_encodings()
     before, after = _channels(made, colours), _channels(asked, colours)

@@ -1,13 +1,16 @@
 """Names of other releases of ROS 2 than those that a workspace is for."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from grader.base.errors import NotDecided
 from grader.base.problems import Problem
 from grader.base.source import Location
+from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in, values_in
 from grader.ros.known.releases import NameKind, names_without, other_name
+from grader.ros.launch.launch_model import StartedNode
+from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.workspace.graph.started_controllers import defined_controllers
 from grader.ros.workspace.model.stated_releases import deciding_launch_files, releases_in_path
 from grader.ros.workspace.model.workspace import Workspace
@@ -23,9 +26,7 @@ _PLUGIN_KEYS = ("plugin", "robot_model_type")
 
 
 def compared_names(workspace: Workspace) -> Iterator[Problem]:
-    """Yield what is wrong with the names of a workspace: those that do not agree, then those of
-    other releases.
-    """
+    """Yield the names of a workspace that do not agree, then those of other releases."""
     agreement = read_agreement(workspace)
     yield from name_problems(workspace)
     try:
@@ -38,14 +39,17 @@ def compared_names(workspace: Workspace) -> Iterator[Problem]:
 
 
 def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Problem]:
-    """Return the names that no stated release has, each once in a file; without those that are said
-    not to agree.
+    """Return the names that no stated release has, each once in a file.
+
+    Those that are said not to agree are left out.
     """
     if not workspace.releases:
         return []
-    said = {it.location for it in agreement.mismatches if it.family != "dependencies"}
+    said = {
+        mismatch.location for mismatch in agreement.mismatches if mismatch.family != "dependencies"
+    }
     deciding = deciding_launch_files(workspace)
-    found: dict[tuple[str, str], Problem] = {}
+    problems: dict[tuple[str, str], Problem] = {}
     for reader in _READERS:
         for kind, name, at, owner in reader(workspace):
             if at in said or at.path in deciding:
@@ -54,9 +58,14 @@ def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Proble
             other = other_name(kind, name, releases, shown=owner)
             if other is not None:
                 problem = NAME_RELEASE.problem(other.message, at, kind)
-                found.setdefault((other.message, at.path), problem)
+                problems.setdefault((other.message, at.path), problem)
     return sorted(
-        found.values(), key=lambda it: (it.location.path, it.location.line, it.location.column)
+        problems.values(),
+        key=lambda release_problem: (
+            release_problem.location.path,
+            release_problem.location.line,
+            release_problem.location.column,
+        ),
     )
 
 
@@ -65,12 +74,12 @@ _Use = tuple[NameKind, str, Location, str]  # with the start of the name that is
 
 def _uses_in_robots(workspace: Workspace) -> Iterator[_Use]:
     """Yield the plugins of Gazebo and of ros2_control that robots load, but for own ones."""
-    own = [package.name for package in workspace.packages]
+    own_packages = [package.name for package in workspace.packages]
     for robot in workspace.robots.known:
         for element in robot.root.iter("plugin"):
             name = element.get("filename", "") or (element.text or "").strip()
             package = name.partition("/")[0].removeprefix("lib").removesuffix(".so")
-            if package not in own:
+            if package not in own_packages:
                 yield "plugin", name, robot.place(element), ""
 
 
@@ -85,11 +94,16 @@ def _uses_in_yaml(workspace: Workspace) -> Iterator[_Use]:
         for value in values_in(tree):
             if value.keys and value.keys[-1] in _PLUGIN_KEYS:
                 yield "plugin", value.node.text or "", value.node.location, ""
-        for keys, section in sections_in(tree):
-            name = keys[-1].rpartition("/")[2] if keys else ""
-            owner = f"{types.get(name, name)}/"
-            for value in values_in(section):
-                yield "parameter", owner + ".".join(value.keys), value.node.location, owner
+        yield from _parameters_in(tree, types)
+
+
+def _parameters_in(tree: YamlNode, types: Mapping[str, str]) -> Iterator[_Use]:
+    """Yield the parameters in a YAML file, of the types that controllers have by their names."""
+    for keys, section in sections_in(tree):
+        name = keys[-1].rpartition("/")[2] if keys else ""
+        owner = f"{types.get(name, name)}/"
+        for value in values_in(section):
+            yield "parameter", owner + ".".join(value.keys), value.node.location, owner
 
 
 def _uses_in_launch_files(workspace: Workspace) -> Iterator[_Use]:
@@ -110,7 +124,7 @@ def _uses_in_launch_files(workspace: Workspace) -> Iterator[_Use]:
 
 def _topics_of_controllers(workspace: Workspace) -> Iterator[_Use]:
     """Yield the topics that are those of controllers, by their names."""
-    types = {it.name: it.type.text or "" for it in defined_controllers(workspace)}
+    types = {defined.name: defined.type.text or "" for defined in defined_controllers(workspace)}
     for topic, at in _topics(workspace):
         controller, _, last = topic.strip("/ ").rpartition("/")
         owner = f"{types.get(controller.rpartition('/')[2], '')}/"
@@ -127,8 +141,14 @@ def _topics(workspace: Workspace) -> Iterator[tuple[str, Location]]:
         for names in node.remaps or ():
             yield from ((topic, node.location) for topic in names)
         facts = workspace.code.own_node(node)
-        for endpoint in facts.endpoints if facts is not None else ():
-            yield node.topic(endpoint.name or "") or "", endpoint.location
+        if facts is not None:
+            yield from _topics_of_node(node, facts)
+
+
+def _topics_of_node(node: StartedNode, facts: NodeFacts) -> Iterator[tuple[str, Location]]:
+    """Yield the topics that the code of a node opens, as the launch file names them."""
+    for endpoint in facts.endpoints:
+        yield node.topic(endpoint.name or "") or "", endpoint.location
 
 
 def _declared(workspace: Workspace) -> Iterator[_Use]:
@@ -137,10 +157,10 @@ def _declared(workspace: Workspace) -> Iterator[_Use]:
         manifest = package.manifest
         if manifest is None:
             continue
-        for found in _DEPENDENCY.finditer(manifest.source.text):
-            name = found[1]
+        for match in _DEPENDENCY.finditer(manifest.source.text):
+            name = match[1]
             if name in manifest.dependencies and package.find(name) is None:
-                yield "package", name, manifest.source.at(found.start(1)), ""
+                yield "package", name, manifest.source.at(match.start(1)), ""
 
 
 def _uses_in_code(workspace: Workspace) -> Iterator[_Use]:

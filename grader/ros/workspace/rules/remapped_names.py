@@ -15,8 +15,9 @@ _MAX_NAMED = 3  # programs
 
 
 def remapping_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the names that nodes have, and those that remappings of one node alone replace; and how
-    many topics are compared.
+    """Yield the names that nodes have, and those that remappings of one node alone replace.
+
+    It is said as well how many topics are compared.
     """
     owners = _owners_of_rules(workspace)
     read: set[object] = set()
@@ -72,8 +73,9 @@ def _bare(name: str) -> str:
 
 
 def _count(graph: Graph) -> Counted:
-    """Return how many topics of own code have another end, which a node, a controller, a
-    bridge or a well-known program opens; and why not all are known.
+    """Return how many topics of own code have another end, and why not all are known.
+
+    A node, a controller, a bridge or a well-known program opens the other end.
     """
     ends = {"publisher": _names_opened(graph, "subscription")}
     ends["subscription"] = _names_opened(graph, "publisher")
@@ -94,8 +96,9 @@ def _count(graph: Graph) -> Counted:
 
 
 def _names_opened(graph: Graph, kind: EndpointKind) -> set[str]:
-    """Return the topics that something opens in one way, also in rows of bridges that nothing
-    starts.
+    """Return the topics that something opens in one way.
+
+    This includes the rows of bridges that nothing starts.
     """
     names = {end.name for end in graph.of_kind(kind, sources=END_SOURCES)}
     for row in bridge_rows(graph.workspace):

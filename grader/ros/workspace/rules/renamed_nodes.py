@@ -1,5 +1,6 @@
-"""Renamed nodes: parameter files whose keys are the name that a program gives its node, where a
-launch file gives it another one.
+"""Renamed nodes: parameter files whose keys are the names that programs give their nodes.
+
+A launch file gives such a node another name.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -22,8 +23,9 @@ _Keys = Mapping[str, tuple[str, ...]]  # of the sections of a file, by the full 
 
 
 def renamed_node_facts(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the sections named after a node's name in its program, where the launch file renames
-    the node: rcl compares the new name, so the node gets none of them.
+    """Yield the sections named after a node's name in its program, where it is renamed.
+
+    The launch file renames the node: rcl compares the new name, so the node gets none of them.
 
     What components get is not evaluated; a container gives them the files that it gets itself. The
     nodes of a launch file to which a file is passed may read its sections.
@@ -60,9 +62,11 @@ def _unread_sections(
     nodes: Sequence[StartedNode],
     elsewhere: Collection[str | None],
 ) -> Iterator[Compared | Mismatch]:
-    """Yield the sections that no node of a launch file gets, for each of its nodes that would get
-    one by the name of its program. If it gets another section of the file, one that a node of any
-    launch file reads is not reported: `elsewhere` are the names of these nodes.
+    """Yield the sections that no node of a launch file gets, for nodes of that name.
+
+    A node would get one by the name of its program. If it gets another section of the file, one
+    that a node of any launch file reads is not reported: `elsewhere` are the names of these
+    nodes.
     """
     keys = keys_of_sections(tree)
     workspace.charge(len(nodes) * (1 + len(keys)))
@@ -71,7 +75,7 @@ def _unread_sections(
     for node in nodes:
         key = key_of_program_name(workspace, node, keys)
         full = node.full_name(node.node_name or "")
-        names = elsewhere if any(is_key_of(it, full) for it in keys) else read
+        names = elsewhere if any(is_key_of(section_key, full) for section_key in keys) else read
         if key is not None and None not in names and key.rpartition("/")[2] not in names:
             unread.append((node, key))
     for node, key in unread:
@@ -96,8 +100,9 @@ def _unread_section(
 
 
 def _names_read(workspace: Workspace, nodes: Sequence[StartedNode]) -> set[str | None]:
-    """Return the names of nodes and of those that they make in their processes; with None where one
-    is not known.
+    """Return the names of nodes and of those that they make in their processes.
+
+    None is among them where one is not known.
     """
     names: set[str | None] = set()
     for name in {workspace.code.name_of(node) for node in nodes}:
@@ -106,18 +111,19 @@ def _names_read(workspace: Workspace, nodes: Sequence[StartedNode]) -> set[str |
 
 
 def key_of_program_name(workspace: Workspace, node: StartedNode, keys: _Keys) -> str | None:
-    """Return the section that a node would get if it had the name of its program; None where there
-    is none, or one for the name that it has.
+    """Return the section that a node would get if it had the name of its program.
+
+    The result is None where there is none, or one for the name that it has.
     """
     name, old = node.node_name, workspace.code.name_in_program(node)
     if not name or not old or name == old or node.namespace is None:
         return None
     full, full_name = node.full_name(name), node.full_name(old)
-    found = None
+    found_key = None
     for key in keys:
         last = key.rpartition("/")[2]
         if last == name or (last not in _ANY_NAMES and is_key_of(key, full)):
             return None
         if last == old and is_key_of(key, full_name):
-            found = key
-    return found
+            found_key = key
+    return found_key

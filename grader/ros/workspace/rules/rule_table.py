@@ -96,8 +96,9 @@ class Rule(NamedTuple):
     is_of_type: bool = False  # whether a value or a topic has another type
 
     def has(self, kind: Kind) -> bool:
-        """Return whether a kind of problem is one of the rule; that a name is similar to another
-        one, any rule may say.
+        """Return whether a kind of problem is one of the rule.
+
+        That a name is similar to another one, any rule may say.
         """
         return kind == self.kind or (kind == self.doubtful and kind != _SIMILAR)
 

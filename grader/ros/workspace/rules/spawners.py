@@ -1,5 +1,6 @@
-"""Spawners: whether the controllers and the controller manager that they name exist, and each
-controller is started.
+"""Spawners: whether the controllers and the controller manager that they name exist.
+
+It is compared as well whether each controller is started.
 """
 
 import re
@@ -43,14 +44,19 @@ def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
     # Without a controller manager, the robot's driver starts one, with controllers of its own.
     if not workspace.robots.has_controller_manager:
         yield Open("controller")
+    yield from _names_in_spawners(workspace)
+    for package, launch in workspace.launches.roots:
+        yield from _without_type(workspace, package, launch, controllers)
+    yield from _not_started(workspace, controllers)
+
+
+def _names_in_spawners(workspace: Workspace) -> Iterator[Fact]:
+    """Yield the controllers that spawners name, and managers that they surely misspell."""
     for _, node in workspace.launches.nodes:
         if _is_spawner(node) and _is_defined_by_files(workspace, node.arguments or ()):
             for name in _named(node.arguments or ()):
                 yield Use("controller", name, node.location, "spawner")
             yield from _managers_named(workspace, node)
-    for package, launch in workspace.launches.roots:
-        yield from _without_type(workspace, package, launch, controllers)
-    yield from _not_started(workspace, controllers)
 
 
 def _is_spawner(node: StartedNode) -> bool:
@@ -66,8 +72,9 @@ def _named(words: Sequence[str | None]) -> Iterator[str]:
 
 
 def _is_defined_by_files(workspace: Workspace, words: Sequence[str | None]) -> bool:
-    """Return whether the controllers of a spawner are defined by files of the workspace, and not
-    by its arguments.
+    """Return whether files of the workspace define the controllers of a spawner.
+
+    Otherwise, its arguments define them.
     """
     files = [path for option, path in pairwise(words) if option in ("-p", "--param-file")]
     return not _is_typed(words) and all(
@@ -80,8 +87,9 @@ def _is_typed(words: Sequence[str | None]) -> bool:
 
 
 def _managers_named(workspace: Workspace, spawner: StartedNode) -> Iterator[Fact]:
-    """Yield the controller manager that a spawner waits for, where it surely stands for another
-    one.
+    """Yield the controller manager that a spawner waits for, if it means another one.
+
+    It surely stands for another one.
     """
     managers = {
         workspace.code.name_of(node): node.location
@@ -110,8 +118,9 @@ def _is_manager(node: StartedNode) -> bool:
 def _without_type(
     workspace: Workspace, package: Package, launch: Launch, controllers: Sequence[Controller]
 ) -> Iterator[Fact]:
-    """Yield the controllers whose types are in files, but in none that the controller manager or
-    their spawner gets.
+    """Yield the controllers whose types are in files that nothing gets.
+
+    The controller manager and their spawner do not get these files.
     """
     manager, lacks_type = _controllers_without_type(workspace, package, launch)
     if manager is None:
@@ -133,8 +142,10 @@ def _without_type(
 def _controllers_without_type(
     workspace: Workspace, package: Package, launch: Launch
 ) -> tuple[StartedNode | None, set[str | None]]:
-    """Return the controller manager of a launch file, and the controllers that spawners start and
-    whose type neither of them is given; None where this is not known.
+    """Return the controller manager of a launch file, and its controllers without a type.
+
+    They are the controllers that spawners start and whose type neither of them is given. The
+    result is None where this is not known.
     """
     managers = [node for node in launch.nodes if _is_manager(node) and node.when]
     if len(managers) != 1:
@@ -145,15 +156,16 @@ def _controllers_without_type(
         return None, set()
     lacks_type: dict[str | None, bool] = {}  # by the names of the controllers that are started
     for controller in _spawned_without_parameters(launch):
-        own = workspace.parameters.read(package, controller, "")
-        has_type = "type" in own.values or f"{controller.node_name}.type" in given.values
-        lacks_type[controller.node_name] = not own.unknown and not has_type
+        own_parameters = workspace.parameters.read(package, controller, "")
+        has_type = "type" in own_parameters.values or f"{controller.node_name}.type" in given.values
+        lacks_type[controller.node_name] = not own_parameters.unknown and not has_type
     return manager, {name for name, lacks in lacks_type.items() if lacks}
 
 
 def _spawned_without_parameters(launch: Launch) -> Iterator[StartedNode]:
-    """Yield the controllers of the spawners of a launch file that get no parameters and no type
-    themselves. In later releases, spawners hand on their own parameters.
+    """Yield the controllers of a launch file's spawners that get no parameters and no type.
+
+    In later releases, spawners hand on their own parameters.
     """
     for spawner in launch.nodes:
         is_plain = spawner.parameters == () and not _is_typed(spawner.arguments or ())
@@ -162,20 +174,21 @@ def _spawned_without_parameters(launch: Launch) -> Iterator[StartedNode]:
 
 
 def _misspelt_managers(workspace: Workspace) -> Iterator[Mismatch]:
-    """Yield the sections of types of controllers that are called nearly as the controller manager,
-    where none is called so.
+    """Yield the sections of types of controllers that are called nearly as the manager.
+
+    They are yielded where none is called as the controller manager.
     """
     if not any(_is_spawner(node) for _, node in workspace.launches.nodes):
         return
-    found = []
+    sections = []
     for _, tree in workspace.installed.trees:
         for keys, section in sections_in(tree):
             name = keys[-1].rpartition("/")[2] if keys else ""
             if name == MANAGER:
                 return
             if near(name, (MANAGER,)) is not None and _has_types(section):
-                found.append((name, tree.key_location(*keys)))
-    for name, at in found:
+                sections.append((name, tree.key_location(*keys)))
+    for name, at in sections:
         message = (
             f"the controller manager does not read the types below {name!r}; did you mean "
             f"{MANAGER!r}?"
@@ -209,9 +222,7 @@ def _names_of(controllers: Sequence[Controller], word: str = "and") -> str:
 
 
 def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Iterator[Fact]:
-    """Yield the controllers that publish, or those that move joints, where no spawner starts one of
-    them.
-    """
+    """Yield the controllers that publish, or that move joints, where none is spawned."""
     spawned = started_controllers(workspace)
     if spawned is None:
         return
@@ -231,8 +242,9 @@ def _not_started(workspace: Workspace, controllers: Sequence[Controller]) -> Ite
 
 
 def started_controllers(workspace: Workspace) -> set[str | None] | None:
-    """Return the controllers that spawners start; None where something else may start some, or the
-    name of one may be misspelt.
+    """Return the controllers that spawners start.
+
+    The result is None where something else may start some, or the name of one may be misspelt.
     """
     spawned = _spawned(workspace)
     if spawned is None or not workspace.robots.has_controller_manager:
@@ -243,8 +255,9 @@ def started_controllers(workspace: Workspace) -> set[str | None] | None:
 
 
 def _spawned(workspace: Workspace) -> set[str | None] | None:
-    """Return the controllers that spawners start; None without a spawner, or where something else
-    may start some.
+    """Return the controllers that spawners start.
+
+    The result is None without a spawner, or where something else may start some.
     """
     texts = (*workspace.texts.launch_texts, *workspace.texts.python_texts)
     if workspace.launches.unknown_nodes or any(map(_OTHER_STARTS.search, texts)):

@@ -1,10 +1,9 @@
-"""Descriptions of robots for MoveIt (SRDF): the links, joints and groups that they name, states and
-collisions.
-"""
+"""Descriptions of robots for MoveIt (SRDF): links, joints and groups, states and collisions."""
 
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 
+from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.urdf.model import Joint, Limit, Robot
 from grader.ros.workspace.model.workspace import Workspace
@@ -16,7 +15,7 @@ from grader.ros.workspace.rules.rule_table import (
     STATE_LIMITS,
     DefinedKind,
 )
-from grader.ros.xml.parsing import XmlFile
+from grader.ros.xml.parsing import Element, XmlFile
 
 _LINKS = ("link1", "link2", "parent_link", "child_link", "base_link", "tip_link")
 _KINDS: Mapping[str, DefinedKind] = {
@@ -55,8 +54,10 @@ def _are_groups_computed(workspace: Workspace) -> bool:
 
 
 def _described_robot(workspace: Workspace, file: XmlFile) -> Robot | None:
-    """Return the robot that a file describes: the one of its name, or the only one if no file has
-    its name; None where it is of another robot.
+    """Return the robot that a file describes.
+
+    It is the one of its name, or the only one if no file has its name. The result is None where
+    the file is of another robot.
     """
     robots = [each.robot for each in workspace.robots.known]
     for robot in robots:
@@ -75,24 +76,39 @@ def _names(file: XmlFile) -> Iterator[Use]:
     for element in root.iter("*"):
         if not isinstance(element.tag, str):
             continue
-        at, said = file.location(element), f"<{element.tag}>"
-        # The parent of a virtual joint is a frame of the world.
-        for key in _LINKS:
-            if element.get(key):
-                yield Use("link", element.get(key, ""), at, f"{said} {key}")
-        for key in ("group", "parent_group"):
-            if element.get(key):
-                yield Use("group", element.get(key, ""), at, f"{said} {key}")
-        name = element.get("name", "")
-        is_group = element.tag == "group" and element.getparent() is not root
-        kind: DefinedKind | None = "group" if is_group else _KINDS.get(element.tag)
-        if kind is not None and name and not (kind == "joint" and name in virtual):
-            yield Use(kind, name, at, said)
+        at = file.location(element)
+        yield from _links_and_groups(element, at)
+        name, kind = element.get("name", ""), _kind_of_name(element, root)
+        is_virtual = kind == "joint" and name in virtual
+        if kind is not None and name and not is_virtual:
+            yield Use(kind, name, at, f"<{element.tag}>")
+
+
+def _links_and_groups(element: Element, at: Location) -> Iterator[Use]:
+    """Yield the links and groups that the attributes of an element name.
+
+    The parent of a virtual joint is a frame of the world, and no link.
+    """
+    said = f"<{element.tag}>"
+    for key in _LINKS:
+        if element.get(key):
+            yield Use("link", element.get(key, ""), at, f"{said} {key}")
+    for key in ("group", "parent_group"):
+        if element.get(key):
+            yield Use("group", element.get(key, ""), at, f"{said} {key}")
+
+
+def _kind_of_name(element: Element, root: Element) -> DefinedKind | None:
+    """Return what the attribute `name` of an element names; a group where it is used."""
+    if element.tag == "group" and element.getparent() is not root:
+        return "group"
+    return _KINDS.get(element.tag)
 
 
 def _other_robot(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
-    """Yield that the description has another name than the only robot, of which MoveIt writes an
-    error and goes on.
+    """Yield that the description has another name than the only robot.
+
+    MoveIt writes an error and goes on.
     """
     name = file.root.get("name", "")
     if name == robot.name:
@@ -116,7 +132,9 @@ def _empty_groups(file: XmlFile) -> Iterator[Mismatch]:
 
 def _states(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
     """Yield positions in states of groups that are beyond the limits of their joints."""
-    limits = {it.name: it.limit for it in robot.joints if it.type in ("revolute", "prismatic")}
+    limits = {
+        joint.name: joint.limit for joint in robot.joints if joint.type in ("revolute", "prismatic")
+    }
     for element in file.root.iterfind("group_state/joint"):
         name = element.get("name", "")
         limit = limits.get(name)
@@ -135,8 +153,10 @@ def _is_beyond(value: float, limit: Limit) -> bool:
 
 
 def _neighbours(robot: Robot, file: XmlFile) -> Iterator[Mismatch]:
-    """Yield links that a joint connects and whose collisions are compared, where most such pairs
-    are disabled. It is wrong only if their shapes touch in some position, which is not computed.
+    """Yield links that a joint connects and whose collisions are compared.
+
+    They are yielded where most such pairs are disabled. It is wrong only if their shapes touch in
+    some position, which is not computed.
     """
     disabled = set()
     for element in file.root.iterchildren("disable_collisions"):

@@ -1,11 +1,14 @@
-"""Topics that connect, and yet no message arrives as it should: two sources of commands, images of
-another transport, displays of RViz that ask for more, and programs that send another type.
+"""Topics that connect, and yet no message arrives as it should.
+
+Two sources send commands, images have another transport, displays of RViz ask for more, or
+programs send another type.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import chain
 
 from grader.base.text import quoted
+from grader.ros.config.rviz import Display
 from grader.ros.known.package_tables import transport_types
 from grader.ros.workspace.graph.code_ends import End
 from grader.ros.workspace.graph.graph import Graph, graph_of
@@ -36,7 +39,7 @@ def topic_wiring_facts(workspace: Workspace) -> Iterator[Fact]:
 
 def _two_commanders(publishers: Sequence[End], subscriptions: Sequence[End]) -> Iterator[Mismatch]:
     """Yield the topics of commands that two nodes publish, and another one obeys."""
-    obeyed = {(it.launch, it.name) for it in subscriptions}
+    obeyed = {(subscription.launch, subscription.name) for subscription in subscriptions}
     first: dict[tuple[int, str], End] = {}
     said: set[tuple[int, str]] = set()
     for each in publishers:
@@ -55,7 +58,7 @@ def _two_commanders(publishers: Sequence[End], subscriptions: Sequence[End]) -> 
 
 def _other_transport(publishers: Sequence[End], subscriptions: Sequence[End]) -> Iterator[Mismatch]:
     """Yield subscriptions of images on a topic that carries compressed ones."""
-    published = {it.name for it in publishers}
+    published = {publisher.name for publisher in publishers}
     for each in subscriptions:
         topic, _, transport = each.name.rpartition("/")
         kind = transport_types().get(transport)
@@ -69,8 +72,9 @@ def _other_transport(publishers: Sequence[End], subscriptions: Sequence[End]) ->
 
 
 def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Mismatch]:
-    """Yield displays of RViz that ask for reliable messages, which every publisher sends as best
-    effort.
+    """Yield displays of RViz that ask for reliable messages of best-effort publishers.
+
+    Every publisher of the topic sends as best effort.
     """
     offered: dict[str, set[str | None]] = {}
     for each in publishers:
@@ -78,21 +82,30 @@ def _displays(workspace: Workspace, publishers: Sequence[End]) -> Iterator[Misma
     for package in workspace.packages:
         files = [package.rviz(path) for path in package.rviz_files]
         for display in chain.from_iterable(file.displays for file in files):
-            policy = display.node.get("Topic", "Reliability Policy")
-            topic = display.node.get("Topic", "Value")
-            if policy is None or topic is None or not display.enabled:
-                continue
-            if policy.text == "Reliable" and offered.get(topic.text or "") == {"best_effort"}:
-                message = (
-                    f"the display {quoted(display.name)} asks for reliable messages of "
-                    f"{topic.text}, which are published as best effort: it stays empty"
-                )
-                yield warning(DISPLAY_QUALITY, message, policy.location)
+            if display.enabled:
+                yield from _other_reliability(display, offered)
+
+
+def _other_reliability(
+    display: Display, offered: Mapping[str, Collection[str | None]]
+) -> Iterator[Mismatch]:
+    """Yield that a display asks for reliable messages, which are published as best effort."""
+    policy = display.node.get("Topic", "Reliability Policy")
+    topic = display.node.get("Topic", "Value")
+    if policy is None or topic is None:
+        return
+    if policy.text == "Reliable" and offered.get(topic.text or "") == {"best_effort"}:
+        message = (
+            f"the display {quoted(display.name)} asks for reliable messages of "
+            f"{topic.text}, which are published as best effort: it stays empty"
+        )
+        yield warning(DISPLAY_QUALITY, message, policy.location)
 
 
 def _programs(graph: Graph) -> Iterator[Mismatch]:
-    """Yield the well-known programs that send a controller another type than it reads, where a
-    parameter decides the type.
+    """Yield the well-known programs that send a controller another type than it reads.
+
+    A parameter decides the type.
     """
     subscriptions = graph.of_kind("subscription", sources=("controller",))
     publishers = graph.certain("publisher", "program")

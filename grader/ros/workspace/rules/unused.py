@@ -1,5 +1,6 @@
-"""Files that no other file names: parameters that no node gets, parts of a robot that nothing
-includes.
+"""Files that no other file names.
+
+They are parameters that no node gets, and parts of a robot that nothing includes.
 """
 
 import posixpath
@@ -10,6 +11,7 @@ from collections.abc import Collection, Iterator, Mapping
 from grader.base.source import Location, Source
 from grader.files.tree import Tree
 from grader.ros.package.made_paths import MadePath, made_paths
+from grader.ros.package.package import Package
 from grader.ros.workspace.model.workspace import Workspace
 
 _KINDS = (".yaml", ".yml", ".xacro", ".urdf", ".rviz", ".srdf")
@@ -41,8 +43,9 @@ _OF_MAP = frozenset(
 
 
 def unused_files(workspace: Workspace) -> Iterator[Location]:
-    """Yield the installed files whose names no other file of the workspace has, with or without the
-    ending, or makes of variables.
+    """Yield the installed files whose names no other file of the workspace has.
+
+    A name is compared with or without the ending. Other files may also make it of variables.
     """
     unnamed = [*_unnamed(workspace)]
     made = {*_made(workspace)} if unnamed else set()
@@ -65,13 +68,19 @@ def _unnamed(workspace: Workspace) -> Iterator[str]:
         is_configured = package.name.encode() in configured
         if is_configured or any(_BY_USUAL_NAMES in words.get(file, ()) for file in files):
             continue
-        for path in sorted({*package.installed.values()} - {*package.launch_files}):
-            if not path.endswith(_KINDS) or "test" in path.split("/"):
-                continue
+        for path in _installed_data(package):
             own_words = words.get(package.path(path), frozenset())
             is_map = own_words >= _OF_MAP
             if not is_map and not _is_named(path, own_words, counts):
                 yield package.path(path)
+
+
+def _installed_data(package: Package) -> list[str]:
+    """Return the installed files of the kinds that other files name, without those of tests."""
+    paths = {*package.installed.values()} - {*package.launch_files}
+    return [
+        path for path in sorted(paths) if path.endswith(_KINDS) and "test" not in path.split("/")
+    ]
 
 
 def _is_named(path: str, words: Collection[bytes], counts: Mapping[bytes, int]) -> bool:

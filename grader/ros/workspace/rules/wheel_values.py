@@ -1,5 +1,6 @@
-"""Numbers of wheels: what controllers and plugins of Gazebo are told of radii, tracks and
-wheelbases, against the robot's wheels.
+"""Numbers of wheels: radii, tracks and wheelbases, against the robot's wheels.
+
+The numbers are what controllers and plugins of Gazebo are told.
 
 The rows of controllers, in the files of their packages, and of gazebo.toml say which parameter is
 which number.
@@ -73,15 +74,15 @@ class _Source(NamedTuple):
 
     def joints(self, keys: Sequence[str]) -> list[_Word]:
         """Return the joints that some parameters name."""
-        found: list[_Word] = []
+        words: list[_Word] = []
         for key in keys:
             entry = _ENTRY.fullmatch(key)
             if entry is None:
-                found += self.parameters(key)
+                words += self.parameters(key)
             else:
                 number = int(entry[2])
-                found += self.parameters(entry[1])[number : number + 1]
-        return found
+                words += self.parameters(entry[1])[number : number + 1]
+        return words
 
 
 class _Wheels(NamedTuple):
@@ -180,7 +181,9 @@ def _reader_of_yaml(section: YamlNode) -> _Parameters:
         node = section.get(*key.split("."))
         if node is None:
             return []
-        return [_Word(it.text, it.location) for it in (node.items or [node]) if it.text]
+        return [
+            _Word(scalar.text, scalar.location) for scalar in (node.items or [node]) if scalar.text
+        ]
 
     return read
 
@@ -242,8 +245,9 @@ def _is_corrected(source: _Source, row: WheelRow) -> bool:
 def _measured(
     source: _Source, robot: Configuration, groups: Sequence[Sequence[_Word]]
 ) -> _Wheels | None:
-    """Return the wheels of groups of joints, in the frame of the robot's base; None where a group
-    is empty, or a wheel cannot be measured.
+    """Return the wheels of groups of joints, in the frame of the robot's base.
+
+    The result is None where a group is empty, or a wheel cannot be measured.
     """
     named = [word.text for group in groups for word in group]
     if not all(groups) or len(named) > _MAX_WHEELS:
@@ -280,8 +284,9 @@ class _PlacedWheels(NamedTuple):
 
     @property
     def are_all_exchanged(self) -> bool:
-        """Whether the left wheels are on the right and the reverse, and all of them turn backward,
-        so that the robot drives backward.
+        """Whether the left wheels are on the right and the reverse, and all turn backward.
+
+        The robot then drives backward.
         """
         if self.kind not in _ROLLING or self.kind not in _SIDED:
             return False
@@ -303,8 +308,9 @@ def _places_of_joints(wheels: _Wheels, groups: list[list[_Word]]) -> Mapping[str
 
 
 def _other_sides(placed: _PlacedWheels) -> Iterator[Mismatch]:
-    """Yield that left wheels are on the right, and the reverse. It is certain unless they turn
-    backward too, as where the front of the robot is its -x.
+    """Yield that left wheels are on the right, and the reverse.
+
+    It is certain unless they turn backward too, as where the front of the robot is its -x.
     """
     wheels, base = placed.wheels, quoted(placed.wheels.base)
     exchanged = _exchanged(wheels) if placed.kind in _SIDED else []
@@ -322,6 +328,7 @@ def _other_sides(placed: _PlacedWheels) -> Iterator[Mismatch]:
 
 def _other_axes(placed: _PlacedWheels) -> Iterator[Mismatch]:
     """Yield wheels that turn about an axis across their axle, and wheels that turn backward.
+
     Nothing is said where left and right are exchanged as well, which is said of the sides.
     """
     wheels, base = placed.wheels, quoted(placed.wheels.base)
@@ -353,13 +360,11 @@ def _toward_left(wheels: _Wheels) -> Vector:
 
 
 def _exchanged(wheels: _Wheels) -> list[WheelSize]:
-    """Return the left wheels that are on the right of the middle between the wheels, and the
-    reverse.
-    """
+    """Return the left wheels that are right of the middle between the wheels, and the reverse."""
     middle = middle_of([wheel.middle for wheel in wheels.all])[1]
     left, right = wheels.groups[:2]
-    found = [wheel for wheel in left if wheel.middle[1] < middle]
-    return found + [wheel for wheel in right if wheel.middle[1] > middle]
+    exchanged = [wheel for wheel in left if wheel.middle[1] < middle]
+    return exchanged + [wheel for wheel in right if wheel.middle[1] > middle]
 
 
 def _joints(wheels: Sequence[WheelSize]) -> str:
@@ -390,8 +395,9 @@ def _faults_of_number(number: _WheelNumber, wheels: _Wheels) -> Iterator[Mismatc
 
 
 def _other_distance(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
-    """Yield that the wheels of the robot are not as far apart as a number says, by more than their
-    width and 2 %.
+    """Yield that the wheels of the robot are not as far apart as a number says.
+
+    The distance differs by more than their width and 2 %.
 
     It is certain for a negative number, and for twice or half the track of two wheels. The track of
     more than two wheels, which slip sideways, may be wider.
@@ -420,8 +426,9 @@ def _negative(key: str, value: float) -> str:
 
 
 def _is_other_half(value: float, measured: float, wheels: _Wheels) -> bool:
-    """Return whether a number is twice or half the track of two wheels of known width, which is
-    surely a mistake.
+    """Return whether a number is twice or half the track of two wheels of known width.
+
+    It surely is a mistake.
     """
     if len(wheels.all) != 2 or any(wheel.half_width is None for wheel in wheels.all):
         return False
@@ -432,30 +439,37 @@ def _is_near(value: float, other: float) -> bool:
     return abs(value - other) <= _TOLERANCE * other
 
 
-def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
-    """Yield that no wheel has a radius, and that wheels of one radius have several; for certain
-    that a radius is negative.
-    """
-    key, kind, at = number.key, number.kind, number.word.location
-    if value < 0.0:
-        yield Mismatch(WHEEL_SIZE, _negative(key, value), at)
-        return
-    factor = 2.0 if kind == "diameter" else 1.0
+def _wheels_of_other_size(wheels: _Wheels, value: float, factor: float) -> list[WheelSize]:
+    """Return the wheels without a radius that a factor turns into a value; one if none has it."""
     sized = [wheel for wheel in wheels.all if wheel.radii]
     fitting = []
     for wheel in sized:
         if any(_is_near(value, factor * radius) for radius in wheel.radii):
             fitting.append(wheel)
     others = [wheel for wheel in sized if wheel not in fitting]
-    for wheel in others if fitting else others[:1]:
+    return others if fitting else others[:1]
+
+
+def _other_sizes(number: _WheelNumber, value: float, wheels: _Wheels) -> Iterator[Mismatch]:
+    """Yield that no wheel has a radius, and that wheels of one radius have several.
+
+    A negative radius certainly is a mistake.
+    """
+    key, kind, at = number.key, number.kind, number.word.location
+    if value < 0.0:
+        yield Mismatch(WHEEL_SIZE, _negative(key, value), at)
+        return
+    factor = 2.0 if kind == "diameter" else 1.0
+    for wheel in _wheels_of_other_size(wheels, value, factor):
         name, size = quoted(wheel.joint.name), factor * wheel.radii[0]
         message = f"{key} is {value:g} m; the wheel of {name} has the {kind} {size:.4g} m"
         yield warning(WHEEL_SIZE, message, at, _place(wheel))
 
 
 def _measure_track(wheels: _Wheels) -> tuple[float, float, str]:
-    """Return the distance of the left wheels from the right ones along the axles, by how much the
-    width of wheels changes it, and what it is.
+    """Return the distance of the left wheels from the right ones along the axles.
+
+    With it, return by how much the width of wheels changes it, and what it is.
     """
     left, right = wheels.middle_of_group(0), wheels.middle_of_group(1)
     widths = [wheel.half_width for wheel in wheels.all]
