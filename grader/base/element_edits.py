@@ -21,15 +21,15 @@ def element_text(source: Source, start: int) -> str:
 
 def with_attribute(source: Source, start: int, attribute: str, value: str) -> Edit:
     """Return the edit that sets an attribute of the start tag at an offset, or adds it."""
-    found = markup.attribute(source.text, start, attribute)
-    if found is None:
+    existing = markup.attribute(source.text, start, attribute)
+    if existing is None:
         end = markup.name_end(source.text, start)
         return source.edit(start, end, f'{source.text[start:end]} {attribute}="{value}"')
     head, tail = (
-        source.text[found.start : found.value_start],
-        source.text[found.value_end : found.end],
+        source.text[existing.start : existing.value_start],
+        source.text[existing.value_end : existing.end],
     )
-    return source.edit(found.start, found.end, f"{head}{value}{tail}")
+    return source.edit(existing.start, existing.end, f"{head}{value}{tail}")
 
 
 def with_child(source: Source, start: int, xml: str) -> Edit:

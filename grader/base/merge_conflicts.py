@@ -21,12 +21,12 @@ class _MergeConflict(NamedTuple):
 
 def find_conflicts(text: str) -> list[_MergeConflict]:
     """Return the conflicts of a text whose three marker lines are there."""
-    found: list[_MergeConflict] = []
+    conflicts: list[_MergeConflict] = []
     opened: re.Match[str] | None = None
     first_end: re.Match[str] | None = None
     has_middle = False
     if "<<<<<<<" not in text:
-        return found
+        return conflicts
     for marker in _MARKER.finditer(text):
         match marker[1][0]:
             case "<":
@@ -35,9 +35,9 @@ def find_conflicts(text: str) -> list[_MergeConflict]:
                 first_end, has_middle = first_end or marker, has_middle or marker[1][0] == "="
             case _ if opened is not None and first_end is not None and has_middle:
                 removed = (opened.span(), (first_end.start(), marker.end()))
-                found.append(_MergeConflict(opened.start(), marker.end(), removed))
+                conflicts.append(_MergeConflict(opened.start(), marker.end(), removed))
                 opened = None
-    return found
+    return conflicts
 
 
 def without_conflicts(text: str, conflicts: list[_MergeConflict]) -> str:

@@ -185,18 +185,18 @@ def near(name: str, known: Iterable[str], suffix: str = "") -> str | None:
     differ in a known word of four letters or more, two in seven or more. `suffix`, the kind of
     thing that is named, may be missing at the end.
     """
-    own, others = _words(name), set(islice(known, _MAX_KNOWN + 1)) - {name}
+    words, others = _words(name), set(islice(known, _MAX_KNOWN + 1)) - {name}
     if len(others) > _MAX_KNOWN:
         return None
     distances: dict[str, tuple[int, bool]] = {}
     for other in others:
-        distance = _distance(own, _words(other), suffix)
+        distance = _distance(words, _words(other), suffix)
         if distance is not None:
             distances[other] = distance
     nearest = min(distances.values(), default=None)
-    found = [other for other, distance in distances.items() if distance == nearest]
-    if len(found) == 1:
-        return found[0]
+    nearest_names = [other for other, distance in distances.items() if distance == nearest]
+    if len(nearest_names) == 1:
+        return nearest_names[0]
     return None
 
 

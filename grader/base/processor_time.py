@@ -31,10 +31,10 @@ def limit_processor_time(seconds: float) -> None:
     soft, hard = _own_limits()
     used = time.process_time()
     end = min(ceil(used + seconds) + _GRACE, soft)
-    own = min(soft, hard)
-    if own < used + seconds + _SPARE:
-        seconds = max(own - _SPARE - used, 0.001)
-        reason = f"this takes more than the {own} s of processor time that `ulimit -t` allows"
+    limit = min(soft, hard)
+    if limit < used + seconds + _SPARE:
+        seconds = max(limit - _SPARE - used, 0.001)
+        reason = f"this takes more than the {limit} s of processor time that `ulimit -t` allows"
 
     def stop(_number: int, _frame: FrameType | None) -> None:
         raise OutOfTime(reason)

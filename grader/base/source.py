@@ -115,8 +115,8 @@ class Source:
     def _attribute(self, start: int, name: str) -> int:
         from grader.base import markup  # late: its patterns are for a fault
 
-        found = markup.attribute(self.text, start, name)
-        return found.start if found is not None else start
+        written = markup.attribute(self.text, start, name)
+        return written.start if written is not None else start
 
     @property
     def cost(self) -> int:

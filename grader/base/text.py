@@ -42,7 +42,7 @@ def without_tag_commands(text: str, bracket: str = " [") -> str:
     """Return a text with another bracket in the commands that may be anywhere in a line, such as
     ##vso[.
     """
-    return _TAG_COMMAND.sub(lambda found: found[0][:-1] + bracket, text)
+    return _TAG_COMMAND.sub(lambda match: match[0][:-1] + bracket, text)
 
 
 def _escape(character: str) -> str:

@@ -86,8 +86,8 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
     shown = printable_path(path)
     try:
         text = data.decode().removeprefix("\ufeff")
-        if found := _LONG_KEY.search(text):
-            line = text.count("\n", 0, found.start(1)) + 1
+        if match := _LONG_KEY.search(text):
+            line = text.count("\n", 0, match.start(1)) + 1
             raise RubricError((f"{shown}:{line}: a key has more than {_MAX_DEPTH} parts",))
         return text, tomllib.loads(text, parse_float=Decimal)
     except UnicodeDecodeError as error:
@@ -106,18 +106,20 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
     """
     if complaints:
         lines, shown = key_lines(text), printable_path(path)
-        found = one_line_each(path, [(line_of(lines, at), what) for at, what in complaints])
-        more = len(found) - _MAX_COMPLAINTS
+        complaints_by_line = one_line_each(
+            path, [(line_of(lines, at), what) for at, what in complaints]
+        )
+        more = len(complaints_by_line) - _MAX_COMPLAINTS
         rest = (f"{shown}: {more} more mistakes are not listed",) if more > 0 else ()
-        raise RubricError((*found[:_MAX_COMPLAINTS], *rest))
+        raise RubricError((*complaints_by_line[:_MAX_COMPLAINTS], *rest))
 
 
-def one_line_each(path: Path, found: Iterable[tuple[int, str]]) -> list[str]:
+def one_line_each(path: Path, complaints: Iterable[tuple[int, str]]) -> list[str]:
     """Return what was found in a file by its lines; what several lines share once, with all of
     them.
     """
     places: dict[str, list[int]] = {}
-    for line, what in sorted(found, key=lambda it: it[0]):
+    for line, what in sorted(complaints, key=lambda complaint: complaint[0]):
         places.setdefault(what, []).append(line)
     return [
         f"{printable_path(path)}:{line}: {what}{_also(other)}"

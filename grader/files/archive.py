@@ -124,7 +124,7 @@ def tree_of(
     """Return the file tree that the members of an archive make; raises InputError if they are too
     many or too large.
     """
-    found: dict[str, ArchiveMember] = {}
+    kept: dict[str, ArchiveMember] = {}
     ignored: list[IgnoredFile] = []
     generated: set[str] = set()
     unseen: set[str] = set()
@@ -140,15 +140,15 @@ def tree_of(
                 generated.add(path)
             unseen |= {part} - {path}
         elif path:
-            found[path] = member
-    if environments := {path.rpartition("/")[0] for path in found if path.endswith("/pyvenv.cfg")}:
-        found = {
-            path: member for path, member in found.items() if environments.isdisjoint(parents(path))
+            kept[path] = member
+    if environments := {path.rpartition("/")[0] for path in kept if path.endswith("/pyvenv.cfg")}:
+        kept = {
+            path: member for path, member in kept.items() if environments.isdisjoint(parents(path))
         }
-    folders = [path for path, member in found.items() if member.kind == "folder"]
-    files = [_file_of(member, path) for path, member in found.items() if member.kind == "file"]
-    ignored += [IgnoredFile(path, member.reason) for path, member in found.items() if member.reason]
-    links = [path for path, member in found.items() if member.kind == "link"]
+    folders = [path for path, member in kept.items() if member.kind == "folder"]
+    files = [_file_of(member, path) for path, member in kept.items() if member.kind == "file"]
+    ignored += [IgnoredFile(path, member.reason) for path, member in kept.items() if member.reason]
+    links = [path for path, member in kept.items() if member.kind == "link"]
     ignored += [IgnoredFile(path, IS_LINK, is_closed=True) for path in links]
     return make_tree(
         name,

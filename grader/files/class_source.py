@@ -82,17 +82,17 @@ class ClassDirectory:
         """Return the names in a folder, at most `limit`; none if it cannot be opened, but
         InputError for the top.
         """
-        found = Children([], [], [])
+        children = Children([], [], [])
         try:
             with os.scandir(f"{self._top}/{folder}" if folder else self._top) as entries:
                 for entry in islice(entries, limit):
                     if not _is_litter(entry.name):
-                        _add_entry(entry, found)
+                        _add_entry(entry, children)
         except OSError as error:
             refused = read_error(error, printable_path(folder or self._top))
             if not folder:
                 raise refused from None
-        return found
+        return children
 
     def has(self, path: str) -> bool:
         """Return whether there is a file or folder."""
@@ -146,19 +146,19 @@ class ClassDirectory:
         return tree
 
 
-def _add_entry(entry: "os.DirEntry[str]", found: Children) -> None:
+def _add_entry(entry: "os.DirEntry[str]", children: Children) -> None:
     try:
         if entry.is_symlink():
-            found.refused.append((entry.name, IS_LINK))
+            children.refused.append((entry.name, IS_LINK))
         elif entry.is_dir():
-            found.folders.append(entry.name)
+            children.folders.append(entry.name)
         elif entry.is_file():
-            found.files.append(entry.name)
+            children.files.append(entry.name)
         else:
-            found.refused.append((entry.name, "is not a regular file"))
+            children.refused.append((entry.name, "is not a regular file"))
     except OSError as error:
         MachineError.check(error, printable_path(entry.name))
-        found.refused.append((entry.name, f"cannot be read: {error.strerror}"))
+        children.refused.append((entry.name, f"cannot be read: {error.strerror}"))
 
 
 class ClassZip:
@@ -190,15 +190,15 @@ class ClassZip:
 
     def children(self, folder: str, limit: int | None = None) -> Children:
         """Return the names in a folder, at most `limit`."""
-        found = Children([], [], [])
+        children = Children([], [], [])
         for name, kind in islice(self._folders.get(folder, {}).items(), limit):
             if kind == "folder":
-                found.folders.append(name)
+                children.folders.append(name)
             elif kind == "file":
-                found.files.append(name)
+                children.files.append(name)
             else:
-                found.refused.append((name, kind))
-        return found
+                children.refused.append((name, kind))
+        return children
 
     def has(self, path: str) -> bool:
         """Return whether there is a file or folder."""

@@ -120,8 +120,8 @@ class _Walk:
 
     def _entries(self, where: str) -> list["os.DirEntry[str]"]:
         try:
-            with os.scandir(f"{self._folder}/{where}") as found:
-                return sorted(islice(found, limits.MAX_FILES + 1), key=attrgetter("name"))
+            with os.scandir(f"{self._folder}/{where}") as entries:
+                return sorted(islice(entries, limits.MAX_FILES + 1), key=attrgetter("name"))
         except OSError as error:
             if not where:
                 raise read_error(error, self._shown) from None
@@ -161,7 +161,7 @@ def _generated_files(folder: Path, path: str) -> list[str]:
     """Return the files of packages below a build folder: they are named in the report, never
     read.
     """
-    found: list[str] = []
+    generated: list[str] = []
     seen = 0
     with suppress(RecursionError):  # os.walk raises it for folders nested a thousand deep
         for where, folders, names in os.walk(folder / path):
@@ -170,15 +170,15 @@ def _generated_files(folder: Path, path: str) -> list[str]:
             if seen > _MAX_GENERATED:
                 break
             copies = (f"{where}/{name}" for name in names if is_generated("build/" + name))
-            found += [printable_path(os.path.relpath(copy, folder)) for copy in copies]
-    return found
+            generated += [printable_path(os.path.relpath(copy, folder)) for copy in copies]
+    return generated
 
 
 def _find_settings(top: str) -> list[File]:
     """Return the hidden files of a folder that say how packages are built; no symlink is
     followed.
     """
-    found: list[File] = []
+    settings: list[File] = []
     waiting = [""]
     seen = 0
     while waiting:
@@ -192,10 +192,10 @@ def _find_settings(top: str) -> list[File]:
                 elif is_setting(path) and entry.is_file(follow_symlinks=False):
                     shown = printable_path(path)
                     read = partial(_read_file, f"{top}/{path}", shown, top)
-                    found.append(File(shown, entry.stat(follow_symlinks=False).st_size, read))
+                    settings.append(File(shown, entry.stat(follow_symlinks=False).st_size, read))
         if seen > limits.MAX_FILES:
             break
-    return found
+    return settings
 
 
 def _read_file(path: str, shown: str, top: str, limit: int, *, first: bool = False) -> bytes:

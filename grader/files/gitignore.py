@@ -142,5 +142,5 @@ def _rule(line: str, depth: int) -> _IgnoreRule | None:
 
 def _pattern(name: str) -> re.Pattern[str]:
     """Return the pattern of a name, in which a backslash stands before a plain character."""
-    text = _ESCAPED.sub(lambda found: f"[{found[1]}]" if found[1] in "*?[" else found[1], name)
+    text = _ESCAPED.sub(lambda match: f"[{match[1]}]" if match[1] in "*?[" else match[1], name)
     return re.compile(translate(text.replace("[^", "[!")))

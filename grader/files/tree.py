@@ -140,8 +140,8 @@ class Tree:
         def inside(paths: Iterable[str]) -> dict[str, str]:
             return {path.removeprefix(start): path for path in paths if path.startswith(start)}
 
-        own = {inner: self.files[path] for inner, path in inside(self.files).items()}
-        files = {inner: File(inner, file.size, file.read) for inner, file in own.items()}
+        contained = {inner: self.files[path] for inner, path in inside(self.files).items()}
+        files = {inner: File(inner, file.size, file.read) for inner, file in contained.items()}
         folders, unseen = frozenset(inside(self.folders)), frozenset(inside(self.unseen))
         return Tree(folder.rpartition("/")[2], files, folders, unseen=unseen, kept=(self,))
 

@@ -54,7 +54,7 @@ class Display(NamedTuple):
                 return "its Alpha is 0"
         tables = links.value.values() if links is not None and isinstance(links.value, dict) else ()
         shown = [value for link in tables if (value := link.get("Value")) is not None]
-        if shown and not any(_switched_on(it, default=True) for it in shown):
+        if shown and not any(_switched_on(switch, default=True) for switch in shown):
             return "all its links are off"
         return ""
 
@@ -95,18 +95,18 @@ class RvizFile(NamedTuple):
             return (self.fault,)
         if self.unread:
             return ()
-        found = [self.conflict] if self.conflict is not None else []
+        listed = [self.conflict] if self.conflict is not None else []
         for display in self.displays:
             if display.package == "rviz":
                 kind = display.kind
                 message = (
                     f"rviz/{kind} is a class of ROS 1; in ROS 2 it is rviz_default_plugins/{kind}"
                 )
-                found.append(Problem(kinds.ROS1_CLASS, message, display.location))
+                listed.append(Problem(kinds.ROS1_CLASS, message, display.location))
         if not any(display.kind == "TF" and display.enabled for display in self.displays):
             start = Location(self.source.path, 1, 1)
-            found.append(Problem(kinds.NO_TF, "the file has no enabled TF display", start))
-        return tuple(found)
+            listed.append(Problem(kinds.NO_TF, "the file has no enabled TF display", start))
+        return tuple(listed)
 
 
 @reuse

@@ -294,12 +294,12 @@ class _Anchors:
 
     def _resolve_alias(self, anchor: str, location: Location) -> YamlNode:
         self._aliases += 1
-        found = self._nodes.get(anchor)
-        if found is None:
+        anchored = self._nodes.get(anchor)
+        if anchored is None:
             raise YamlFault(f"there is no anchor for the alias {anchor}", location)
         if self._aliases > _MAX_ALIASES:
             raise YamlFault(f"the file has more than {_MAX_ALIASES} aliases", location)
-        return found
+        return anchored
 
 
 def _attach_node(parent: YamlNode, key: list[YamlNode], node: YamlNode) -> None:

@@ -31,10 +31,10 @@ def yaml_slips(data: bytes, path: str) -> list[Slip]:
     slips: list[Slip] = []
     fault = _fault(lines, path)
     while isinstance(fault, YamlFault) and len(slips) < _MAX_SLIPS:
-        found = _meant(fault, lines, path)
-        if found is None:
+        correction = _meant(fault, lines, path)
+        if correction is None:
             return []
-        index, new = found
+        index, new = correction
         slips.append(_slip(fault, index, lines[index], new, path))
         lines[index] = new
         fault = _fault(lines, path)
@@ -84,10 +84,10 @@ def _meant(fault: YamlFault, lines: list[str], path: str) -> tuple[int, str] | N
         for new in _changes(lines, index):
             after = [*lines]
             after[index] = new
-            found = _fault(after, path)
-            if isinstance(found, YamlNode):
-                complete.setdefault(_plain(found), (index, new))
-            elif found.location.line > fault.location.line:
+            result = _fault(after, path)
+            if isinstance(result, YamlNode):
+                complete.setdefault(_plain(result), (index, new))
+            elif result.location.line > fault.location.line:
                 further = further or (index, new)
     if complete:
         return next(iter(complete.values())) if len(complete) == 1 else None

@@ -94,7 +94,7 @@ def _nested(node: YamlNode, made: dict[YamlNode, YamlNode]) -> YamlNode:
             table = inner
         tables.setdefault(outer, []).append(table)
         places.setdefault(outer, node.key_marks[key])
-    value = {key: _nested(_joined(it), made) for key, it in tables.items()}
+    value = {key: _nested(_joined(entries), made) for key, entries in tables.items()}
     made[node] = replace(node, value=value, key_marks=places)
     return made[node]
 

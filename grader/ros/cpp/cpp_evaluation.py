@@ -173,7 +173,7 @@ class CppEvaluation:
 
     def call(self, node: CppNode) -> CppValue:
         """Return a call of a function or method that is recorded."""
-        arguments = [self.value_of(it) for it in arguments_of(node)]
+        arguments = [self.value_of(argument) for argument in arguments_of(node)]
         function = node.child("function")
         owner = None
         if function is not None and function.kind == "field_expression":
@@ -185,7 +185,7 @@ class CppEvaluation:
 
     def made(self, node: CppNode) -> CppValue:
         """Return what makes an object, `new Type(...)` or `Type{...}`, as a call of its type."""
-        arguments = [self.value_of(it) for it in arguments_of(node)]
+        arguments = [self.value_of(argument) for argument in arguments_of(node)]
         kind = node.child("type")
         if kind is None:
             return _constructed(CppCall("", arguments, node, ()))
@@ -237,10 +237,10 @@ class CppEvaluation:
         key = (name, function.node)
         if key not in self._locals:
             node = function.node
-            uses = [it for it in self.unit.uses.get(name, ()) if it.file is node.file]
-            inside = [it for it in uses if node.start <= it.start < node.end]
+            uses = [use for use in self.unit.uses.get(name, ()) if use.file is node.file]
+            inside = [use for use in uses if node.start <= use.start < node.end]
             self._budget.charge(1 + len(uses) + _OF_USE * len(inside))
-            declared = [it for it in inside if _declaration_of(it) is not None]
+            declared = [use for use in inside if _declaration_of(use) is not None]
             self._locals[key] = _LocalVariable(declared, inside) if declared else None
         return self._locals[key]
 
@@ -277,7 +277,9 @@ class CppEvaluation:
         if local.effects is None:
             local.effects = [(name, not_known("it depends on itself"))]
             effects = [
-                (it, self._effect_of(it, declaration)) for it in local.uses if it is not name
+                (other, self._effect_of(other, declaration))
+                for other in local.uses
+                if other is not name
             ]
             local.effects = [(use, effect) for use, effect in effects if effect != []]
         self._budget.charge(1 + len(local.effects))
@@ -302,7 +304,7 @@ class CppEvaluation:
         kind = declaration.child("type")
         name = plain_name(kind) if kind is not None else ""
         if value.kind in ("argument_list", "initializer_list", "parameter_list"):
-            arguments = [self.value_of(it) for it in value.children]
+            arguments = [self.value_of(argument) for argument in value.children]
             if value.kind == "initializer_list" and kind is not None and _is_plain(name):
                 return arguments[0] if len(arguments) == 1 else not_known("it has no value")
             types = template_arguments(kind) if kind is not None else ()
@@ -355,8 +357,8 @@ class CppEvaluation:
             return True
         is_of_this = use.kind == "identifier" or is_member_of_this(use)
         scopes = self.unit.scopes_of(function)
-        found = self.unit.variables_named(use.text, scopes)
-        return is_of_this and bool(found) and found[0] is not variable
+        variables = self.unit.variables_named(use.text, scopes)
+        return is_of_this and bool(variables) and variables[0] is not variable
 
     def _value_written(self, writes: Sequence[_Write], node: CppNode) -> CppValue:
         """Return the value of a member at a place, if it is set once, before that."""
@@ -391,7 +393,7 @@ class CppEvaluation:
             case (("argument_list" | "template_argument_list"), _):
                 return self._effect_of_argument(node, parent)
             case "field_initializer", _:
-                values = [self.value_of(it) for it in arguments_of(parent)]
+                values = [self.value_of(argument) for argument in arguments_of(parent)]
                 return [_Write("set", node, values[0] if values else not_known("it has no value"))]
             case "assignment_expression", "left":
                 return self._effect_of_assignment(node, parent)
@@ -442,7 +444,7 @@ class CppEvaluation:
             return not_known("a method may change it")
         if not call.parent or call.parent.parent is not declaration.parent:
             return not_known("a method may change it")
-        arguments = [self.value_of(it) for it in arguments_of(call)]
+        arguments = [self.value_of(argument) for argument in arguments_of(call)]
         return [_Write("set", node, CppCall(name, arguments, call, (), _BEFORE))]
 
     def _value_of_macro(self, name: str) -> CppValue:

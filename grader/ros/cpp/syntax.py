@@ -152,8 +152,8 @@ def _parser() -> "Parser":
 def _without_macros(text: str) -> str:
     """Return a text with blanks in place of macros that declare nothing."""
 
-    def replaced(found: re.Match[str]) -> str:
-        word = found[0]
+    def replaced(match: re.Match[str]) -> str:
+        word = match[0]
         return word if word.lstrip().startswith("#") else " " * len(word)
 
     return _IGNORED.sub(replaced, text)

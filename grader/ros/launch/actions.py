@@ -113,12 +113,16 @@ class ActionVisitor:
         for _ in range(_MAX_DEPTH):
             later, self.later = self.later, []
             started = [self._is_started(target) for *_, target in later]
-            for (actions, call, own, when, target), is_started in zip(later, started, strict=True):
+            for (actions, call, inner_context, when, target), is_started in zip(
+                later, started, strict=True
+            ):
                 if is_started is False and any(started):
                     # Another event may start the process.
-                    self.later.append((actions, call, own, when, target))
+                    self.later.append((actions, call, inner_context, when, target))
                     continue
-                inner = replace(own, arguments=context.arguments, has_others=context.has_others)
+                inner = replace(
+                    inner_context, arguments=context.arguments, has_others=context.has_others
+                )
                 self.visit_all(actions, call, inner, is_started if when else None)
 
     def _is_started(self, target: Value) -> bool | None:
@@ -326,7 +330,9 @@ def _visit_description(
 def _declare_argument(
     visitor: ActionVisitor, call: Call, context: Context, when: bool | None
 ) -> None:
-    name, choices, default = (call.kwargs.get(it) for it in ("name", "choices", "default_value"))
+    name, choices, default = (
+        call.kwargs.get(keyword) for keyword in ("name", "choices", "default_value")
+    )
     if not isinstance(name, str):
         raise Undetermined("the name of this launch argument is not evaluated", call.at)
     visitor.findings.declared.append(name)
@@ -412,11 +418,11 @@ def _set_parameter(visitor: ActionVisitor, call: Call, context: Context, when: b
         )
     )
     if "filename" in call.kwargs:
-        found = file_for_all(call.kwargs["filename"], context, call.at, location)
-        visitor.findings.refer("read" if when else "parameters", found.path, call)
+        file = file_for_all(call.kwargs["filename"], context, call.at, location)
+        visitor.findings.refer("read" if when else "parameters", file.path, call)
     else:
-        found = set_for_all(call.kwargs["name"], call.kwargs["value"], context, call.at, location)
-    given[-1] = found if when else given[-1]
+        file = set_for_all(call.kwargs["name"], call.kwargs["value"], context, call.at, location)
+    given[-1] = file if when else given[-1]
 
 
 def _set_time(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
@@ -492,11 +498,11 @@ def _call_opaque_function(
     ):
         raise Undetermined("the result of this OpaqueFunction is not evaluated", call.at)
     arguments = (Call("launch.launch_context.LaunchContext", [], {}, call.at), *args)
-    found = visitor.call_function(function, call.at, arguments if when else None, context)
-    if isinstance(found, Unknown):
-        visitor.findings.add(found.as_signal(), found.at, when)
-    elif found is not None:
-        visitor.visit_all(found, call, context, when)
+    returned = visitor.call_function(function, call.at, arguments if when else None, context)
+    if isinstance(returned, Unknown):
+        visitor.findings.add(returned.as_signal(), returned.at, when)
+    elif returned is not None:
+        visitor.visit_all(returned, call, context, when)
 
 
 def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:

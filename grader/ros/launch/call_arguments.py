@@ -121,9 +121,9 @@ class LaunchFunctions(dict[str, Any]):
 
     def get(self, name: str, default: Any = None) -> Any:
         """Return a function; None for one that is not evaluated."""
-        found = super().get(name)
-        if found is not None:
-            return found
+        function = super().get(name)
+        if function is not None:
+            return function
         return _find_function(name) or default
 
     def __contains__(self, name: object) -> bool:
@@ -134,15 +134,17 @@ def _find_function(name: str) -> "Callable[[Evaluation, Call], Value] | None":
     """Return the constructor of a class of launch, or one that fails: of a name that is not
     there.
     """
-    owner, _, own = name.rpartition(".")
+    owner, _, member = name.rpartition(".")
     names, cls = exports().get(owner), class_named(owner)
-    if names is not None and own in names:
-        made = class_named(names[own])
+    if names is not None and member in names:
+        made = class_named(names[member])
         return partial(_record_constructor, made) if made is not None else None
     if names is not None or (
-        cls is not None and own not in cls.methods and not own.startswith("_")
+        cls is not None and member not in cls.methods and not member.startswith("_")
     ):
-        return partial(_fail_missing, f"{cls.short if cls is not None else owner} has no {own!r}")
+        return partial(
+            _fail_missing, f"{cls.short if cls is not None else owner} has no {member!r}"
+        )
     return None
 
 
@@ -408,8 +410,10 @@ def _wrong_typed(call: Call) -> str:
         if kind is None or isinstance(value, kind):
             return ""
         return f"the value is {kind_of(value)}, not {kind.__name__}"
-    if isinstance(value, list | tuple) and not any(isinstance(it, Call | Unknown) for it in value):
-        is_wrong = kind is not None or not all(isinstance(it, SCALARS) for it in value)
+    if isinstance(value, list | tuple) and not any(
+        isinstance(element, Call | Unknown) for element in value
+    ):
+        is_wrong = kind is not None or not all(isinstance(element, SCALARS) for element in value)
         return f"the value is {kind_of(value)}" if is_wrong else ""
     fault = _wrong_text(value)
     return fault.message if fault is not None else ""
@@ -423,10 +427,10 @@ def type_of(call: Call) -> "type | None":
     if given is None:
         return None
     name = getattr(given, "name", "").removeprefix("builtins.")
-    found = {kind.__name__: kind for kind in SCALARS}.get(name)
-    if found is None:
+    scalar = {kind.__name__: kind for kind in SCALARS}.get(name)
+    if scalar is None:
         raise Undetermined(f"the type {name}")
-    return found
+    return scalar
 
 
 def _wrong_texts(value: Value) -> _Fault | None:
@@ -538,7 +542,7 @@ def _wrong_event_handler(call: Call) -> str:
     target = call.kwargs.get("target_action")
     items = value if isinstance(value, list) else [value]
     if not isinstance(value, Function) and not all(
-        isinstance(it, Call) and _is_entity(it) for it in items
+        isinstance(handler, Call) and _is_entity(handler) for handler in items
     ):
         raise Undetermined("what this event handler executes")
     if isinstance(target, str | list | dict | int | float):

@@ -303,15 +303,15 @@ def _xml_root(file: XmlFile) -> _Entity:
     def entity(element: Element, depth: int) -> _Entity:
         location = file.location(element)
         attributes = {str(name): str(value) for name, value in element.attrib.items()}
-        found = _Entity(str(element.tag), Position(location.line, location.column), attributes)
+        parsed = _Entity(str(element.tag), Position(location.line, location.column), attributes)
         placed = [*attributes][:_MAX_PLACES]
-        found.places = {name: _position_at(file.location(element, name)) for name in placed}
-        found.actions = [
-            entity(it, depth + 1) for it in element.iterchildren("*") if depth < _MAX_DEPTH
+        parsed.places = {name: _position_at(file.location(element, name)) for name in placed}
+        parsed.actions = [
+            entity(child, depth + 1) for child in element.iterchildren("*") if depth < _MAX_DEPTH
         ]
-        for inner in found.actions:
-            found.nested.setdefault(inner.kind, []).append(inner)
-        return found
+        for inner in parsed.actions:
+            parsed.nested.setdefault(inner.kind, []).append(inner)
+        return parsed
 
     return entity(file.root, 0)
 
@@ -525,7 +525,9 @@ def _read_argument(entity: _Entity, name: str, value: Any) -> Value:
     if name == "respawn" or entity.kind == "set_parameter":
         text = "launch.substitutions.text_substitution.TextSubstitution"
         parts = _parse_value(value, at)
-        return [Call(text, [], {"text": it}, at) if isinstance(it, str) else it for it in parts]
+        return [
+            Call(text, [], {"text": part}, at) if isinstance(part, str) else part for part in parts
+        ]
     if name == "period":
         return _parse_if_text(value, at)
     return _parse_value(value, at) if isinstance(value, str) and name not in _RAW else value
@@ -538,7 +540,7 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
     for name, inner in entity.nested.items():
         match name:
             case "param":
-                kwargs["parameters"] = [_read_parameter(it) for it in inner]
+                kwargs["parameters"] = [_read_parameter(child) for child in inner]
             case "remap":
                 kwargs["remappings"] = _read_pairs(inner, "from", "to")
             case "arg" | "let":
@@ -549,7 +551,9 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
                 before = kwargs.get("composable_node_descriptions", ())
                 kwargs["composable_node_descriptions"] = [*before, *components]
             case "choice":
-                kwargs["choices"] = [_read_attributes(it, _NESTED[name])["value"] for it in inner]
+                kwargs["choices"] = [
+                    _read_attributes(child, _NESTED[name])["value"] for child in inner
+                ]
 
 
 def _read_component(entity: _Entity) -> Call:
@@ -667,8 +671,8 @@ def _separated_values(entity: _Entity, kind: str | None) -> list[Value]:
 def _parse_value(text: str, at: Position) -> list[Value]:
     """Return a value as a list of strings and substitutions. Raises EvaluationFails."""
     parser = _ValueParser(text, at)
-    found = parser.template("", 0)
-    return found or [""]
+    parts = parser.template("", 0)
+    return parts or [""]
 
 
 def _parse_if_text(value: Any, at: Position) -> Any:
@@ -689,15 +693,15 @@ def _command_line(text: str, at: Position) -> list[list[Value]]:
             words[-1].append(piece)
             continue
         try:
-            found = shlex.split(piece)
+            pieces = shlex.split(piece)
         except ValueError:
             raise EvaluationFails(
                 "quotes cannot enclose a substitution in a line of arguments: remove them", at
             ) from None
-        if piece[:1].isspace() or not found:
+        if piece[:1].isspace() or not pieces:
             words.append([])
-        words[-1] += found[:1]
-        words += [[word] for word in found[1:]]
+        words[-1] += pieces[:1]
+        words += [[word] for word in pieces[1:]]
         if piece[-1:].isspace():
             words.append([])
     return [word for word in words if word]
@@ -794,18 +798,18 @@ class _ValueParser:
 
     def value(self, quote: str, depth: int) -> list[Value]:
         if not quote and self.next in ("'", '"'):
-            own = self.next
+            start = self.next
             self.position += 1
-            return self.template(own, depth)
-        found: list[Value] = []
+            return self.template(start, depth)
+        parts: list[Value] = []
         while self.next and self.next not in _BEFORE_NEXT[quote]:
-            found.append(self.part(_BEFORE_NEXT[quote], quote, depth))
-        if not found:
+            parts.append(self.part(_BEFORE_NEXT[quote], quote, depth))
+        if not parts:
             raise EvaluationFails(
                 f"an argument is missing in {self.text[:60]!r}: write one space between arguments",
                 self.at,
             )
-        return found
+        return parts
 
     def call(self, name: str, values: list[list[Value]]) -> Call:
         """Return a substitution as the call that it is in Python. Raises EvaluationFails."""

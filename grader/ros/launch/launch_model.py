@@ -146,11 +146,11 @@ class Context:
         """
         if not path.startswith(f"{PREFIX}/"):
             return None
-        found = self.machine.open_installed(posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
-        if found is None:
+        opened = self.machine.open_installed(posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
+        if opened is None:
             return None
         try:
-            return found[0].decode().replace("\r\n", "\n")
+            return opened[0].decode().replace("\r\n", "\n")
         except UnicodeDecodeError:
             return None
 
@@ -372,7 +372,8 @@ class Launch(NamedTuple):
         ]
         prefixes = dict.fromkeys(node.frame_prefix for node in publishers) or [""]
         return tuple(
-            it if it is None else (it + link.removeprefix(it)).removeprefix("/") for it in prefixes
+            prefix if prefix is None else (prefix + link.removeprefix(prefix)).removeprefix("/")
+            for prefix in prefixes
         )
 
 

@@ -127,7 +127,7 @@ def _read_item(item: Value, place: _Place) -> _Read:
         raise Undetermined("a parameter of this kind is not evaluated", item.at)
     elif isinstance(item, PurePosixPath):
         yield GivenParameters(place.location, str(item))
-    elif isinstance(item, set) and any(isinstance(it, FileText) for it in item):
+    elif isinstance(item, set) and any(isinstance(part, FileText) for part in item):
         yield GivenParameters(place.location, values={})  # launch_ros looks for a file of this name
     else:
         yield _make_file(resolve(item, place.context, place.at), place)
@@ -181,7 +181,7 @@ def _resolve_path(call: Call, context: Context) -> Resolved:
     if isinstance(given, PurePosixPath):
         return str(given)
     if not all(
-        isinstance(it, TEXT_PARTS) for it in (given if isinstance(given, list) else [given])
+        isinstance(part, TEXT_PARTS) for part in (given if isinstance(given, list) else [given])
     ):
         raise Undetermined("the path of a parameter file is not evaluated", call.at)
     return resolve(given, context, call.at)
@@ -220,7 +220,7 @@ def _evaluate_value(name: str, value: Value, context: Context, at: Position) -> 
 def _evaluate_list(name: str, items: list[Value], context: Context, at: Position) -> Any:
     kinds = {type(item) for item in items if isinstance(item, SCALARS)}
     if any(isinstance(item, Call) for item in items) and all(
-        isinstance(it, TEXT_PARTS) for it in items
+        isinstance(element, TEXT_PARTS) for element in items
     ):
         return _read_as_yaml(name, items, context, at)
     if not items or not all(isinstance(item, SCALARS) for item in items):
@@ -237,7 +237,7 @@ def _evaluate_typed(call: Call, context: Context) -> Any:
     if isinstance(value, UnknownText):
         resolve(value, context, call.at)
     if isinstance(value, (*SCALARS, UnknownText)) or (
-        isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value)
+        isinstance(value, list | tuple) and not any(isinstance(element, Call) for element in value)
     ):
         return value
     try:
@@ -287,7 +287,7 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
         if len(text) > _MAX_YAML:
             raise Undetermined(f"the parameter {name!r} is too long to be read as YAML", at)
         if isinstance(resolved, Contents) and resolved.by == "xacro":
-            text = _COMMENT_OR_TAB.sub(lambda it: " " if it[0] == "\t" else it[0], text)
+            text = _COMMENT_OR_TAB.sub(lambda match: " " if match[0] == "\t" else match[0], text)
         return yaml_value(text) if text else text
     except ValueError:
         if isinstance(resolved, Contents) and resolved.by == "xacro" and not _is_never_yaml(text):
@@ -420,8 +420,8 @@ def _read_value(node: YamlNode) -> Any:
 def _scalar(text: str) -> "bool | int | float | str":
     if text in _TRUE or text in _FALSE:
         return text in _TRUE
-    if found := _INTEGER.fullmatch(text):
-        sign, digits = found.groups()
+    if match := _INTEGER.fullmatch(text):
+        sign, digits = match.groups()
         if digits[:2].lower() == "0x":
             base = 16
         elif digits[0] == "0":
@@ -519,7 +519,9 @@ def parameters_of(
             reasons.append(str(error))
             doubt = Unknown(str(error), START)
             for before in by_key.values():
-                before.update({it: row._replace(value=doubt) for it, row in before.items()})
+                before.update(
+                    {parameter: row._replace(value=doubt) for parameter, row in before.items()}
+                )
             continue
         for table in tables:
             reasons += [unknown.reason for unknown in table.opened.values()]
@@ -534,8 +536,8 @@ def _forget_below(
     """Make the values unknown that parameters in a table that is not known may replace."""
     for name, doubt in tables.items():
         for values in by_key.values():
-            below = [it for it in values if not name or f"{it}.".startswith(f"{name}.")]
-            values.update((it, values[it]._replace(value=doubt)) for it in below)
+            below = [other for other in values if not name or f"{other}.".startswith(f"{name}.")]
+            values.update((other, values[other]._replace(value=doubt)) for other in below)
 
 
 def _full_name(node: StartedNode, name: str) -> str | None:
@@ -564,10 +566,10 @@ def _read_tables(
         raise Undetermined(
             f"the file {path.removeprefix(PREFIX)} is not read: the submission does not install it"
         )
-    found = read(*file, given.is_plain)
-    if found.fault:
-        raise Undetermined(found.fault)
-    return found.tables
+    parsed = read(*file, given.is_plain)
+    if parsed.fault:
+        raise Undetermined(parsed.fault)
+    return parsed.tables
 
 
 def _find_key(given: GivenParameters, full_name: str | None) -> str | None:
@@ -590,9 +592,9 @@ def _sections(
     for name, value in node.pairs:
         if name == _KEY:
             values: dict[str, ParameterValue] = {}
-            for parameter, own, named_at in _flat(value, "", None, 0, visits):
-                if isinstance(own.value, str | list):
-                    given = value_in_file(own, is_plain=is_plain)
+            for parameter, row, named_at in _flat(value, "", None, 0, visits):
+                if isinstance(row.value, str | list):
+                    given = value_in_file(row, is_plain=is_plain)
                     values[parameter] = given._replace(named_at=named_at)
             yield key, values
         else:
@@ -663,7 +665,9 @@ def is_key_of(key: str | None, full: str) -> bool:
 
 @lru_cache(maxsize=256)
 def _pattern_of(key: str) -> re.Pattern[str]:
-    pattern = re.sub(r"/\\\*(\\\*)?", lambda it: r"(/\w+)*" if it[1] else r"(/\w+)", re.escape(key))
+    pattern = re.sub(
+        r"/\\\*(\\\*)?", lambda match: r"(/\w+)*" if match[1] else r"(/\w+)", re.escape(key)
+    )
     return re.compile(pattern)
 
 

@@ -101,7 +101,9 @@ def start_node(
         for name in ("package", "executable")
     )
     if not isinstance(package, str) or not isinstance(executable, str):
-        unknown = next((it.reason for it in (package, executable) if isinstance(it, Unknown)), "")
+        unknown = next(
+            (part.reason for part in (package, executable) if isinstance(part, Unknown)), ""
+        )
         findings.add_unknown(
             f"the program of a node is not evaluated: {unknown}".removesuffix(": "), call.at
         )
@@ -124,7 +126,7 @@ def _add_names(
     call: Call,
     context: Context,
     findings: Findings,
-    own: Iterable[GivenParameters],
+    own_parameters: Iterable[GivenParameters],
 ) -> StartedNode:
     """Return a node with its name, arguments, parameters and remappings, and whether it is given
     the robot itself.
@@ -143,7 +145,7 @@ def _add_names(
     parameters = (
         *parameters_in_words(ros_words, node.location),
         *context.to_all.get(TO_ALL, ()),
-        *own,
+        *own_parameters,
     )
     for given in parameters:
         if given.path:
@@ -194,8 +196,8 @@ def _given_name(rules: Iterable[tuple[str, str, str]], call: Call, context: Cont
         if name == "__node":
             return None if PART_UNKNOWN in value else value
     given = call.kwargs.get("name")
-    found = _text_if_known(given, context, call.at) if given is not None else ""
-    return found if isinstance(found, str) else None
+    text = _text_if_known(given, context, call.at) if given is not None else ""
+    return text if isinstance(text, str) else None
 
 
 def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
@@ -255,7 +257,7 @@ def _node_of_command(words: list[str], call: Call) -> Call | None:
     is_run = (
         words[:2] == ["ros2", "run"]
         and len(words) > 3
-        and not any(it.startswith("-") for it in words[2:4])
+        and not any(word.startswith("-") for word in words[2:4])
     )
     if not is_run and words[:1] != [_RVIZ]:
         return None
@@ -337,9 +339,9 @@ def _frame_prefix(call: Call, context: Context) -> str | None:
     ]
     words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
     given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
-    found = _text_if_known(_inner_value(given[-1]), context, call.at) if given else ""
-    if isinstance(found, str) and PART_UNKNOWN not in found:
-        return found
+    prefix = _text_if_known(_inner_value(given[-1]), context, call.at) if given else ""
+    if isinstance(prefix, str) and PART_UNKNOWN not in prefix:
+        return prefix
     return None
 
 
@@ -350,7 +352,7 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
     if tables:
         _refer_description(findings, tables[-1]["robot_description"], call, context)
         return
-    unknown = next((it for it in parameters if isinstance(it, Unknown)), None)
+    unknown = next((parameter for parameter in parameters if isinstance(parameter, Unknown)), None)
     is_clear = all(map(_is_flat, parameters))
     words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
     end = words.index("--ros-args") if "--ros-args" in words else len(words)
@@ -363,7 +365,7 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
         findings.refer("urdf", Unknown("its parameters are known only at run time", call.at), call)
     else:
         message = "robot_state_publisher is started without robot_description"
-        if any(isinstance(it, set) for it in parameters):
+        if any(isinstance(parameter, set) for parameter in parameters):
             message += ": { , } is a set, and a table has a colon: {'robot_description': ...}"
         else:
             message += ": it has no robot to publish"
@@ -372,7 +374,7 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
 
 def _is_flat(parameter: Value) -> bool:
     """Return whether parameters are a dict that contains no other, or no table at all."""
-    if isinstance(parameter, set) and any(isinstance(it, FileText) for it in parameter):
+    if isinstance(parameter, set) and any(isinstance(part, FileText) for part in parameter):
         return True
     if not isinstance(parameter, dict):
         return False
@@ -386,11 +388,11 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
             "urdf", None, call, value, wrong=f"robot_description is given {OPENED[value.name]}"
         )
         return
-    if isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value):
+    if isinstance(value, list | tuple) and not any(isinstance(element, Call) for element in value):
         findings.add_doubt("a robot_description that is a list is not evaluated", call.at)
         findings.refer("urdf", Unknown("robot_description is a list", call.at), call)
         return
-    match found := _text_if_known(value, context, call.at):
+    match text := _text_if_known(value, context, call.at):
         case Contents(path=path, by=by) if (
             by != "xacro" and path.endswith(".xacro") and context.text_of(path) is None
         ):
@@ -401,7 +403,7 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
             findings.references.append(
                 NamedFile("urdf", path, findings.locate(call.at), message, is_certain=False, by=by)
             )
-        case str() if "<robot" in found or not found.strip():
+        case str() if "<robot" in text or not text.strip():
             reason = "a robot that the launch file contains is not evaluated"
             findings.refer("urdf", Unknown(reason, call.at), call, value)
         case str():
@@ -409,14 +411,14 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
                 "robot_description is given the path of the URDF, not its contents: read the "
                 "file first"
             )
-            if re.fullmatch(r"\w+", found):
+            if re.fullmatch(r"\w+", text):
                 message = (
-                    f"robot_description is given the text {found[:40]!r}: write the variable "
+                    f"robot_description is given the text {text[:40]!r}: write the variable "
                     "without quotes"
                 )
             findings.refer("urdf", None, call, value, wrong=message)
         case _:
-            findings.refer("urdf", found, call, value)
+            findings.refer("urdf", text, call, value)
 
 
 def _find_configuration(findings: Findings, call: Call, context: Context) -> None:
@@ -442,9 +444,11 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
         findings.refer("rviz", None, call, wrong=message)
     elif path is None or PART_UNKNOWN in path:
         pieces = arguments if isinstance(arguments, list | tuple) else []
-        found = (_text_if_known(piece, context, call.at) for piece in pieces)
+        texts = (_text_if_known(piece, context, call.at) for piece in pieces)
         unnamed = Unknown("which file rviz2 opens is not evaluated", call.at)
-        findings.refer("rviz", next((it for it in found if isinstance(it, Unknown)), unnamed), call)
+        findings.refer(
+            "rviz", next((text for text in texts if isinstance(text, Unknown)), unnamed), call
+        )
     elif path != path.lstrip():
         findings.refer(
             "rviz",

@@ -86,10 +86,10 @@ def _joined_text(parts: list[Resolved], at: Position) -> Resolved:
 
 def known_text(value: Value, context: Context, at: Position) -> str:
     """Return the text of a value. Raises Undetermined where it is not known."""
-    found = resolve(value, context, at)
-    if isinstance(found, str):
-        return found
-    raise not_a_text(found, at)
+    text = resolve(value, context, at)
+    if isinstance(text, str):
+        return text
+    raise not_a_text(text, at)
 
 
 def not_a_text(value: Contents | Unknown, at: Position) -> Undetermined:
@@ -103,13 +103,13 @@ def boolean(text: str, at: Position) -> bool:
     """Return the value of a text as launch reads it where it wants a boolean, by the rules of
     YAML.
     """
-    found: object = _BOOLEANS[text] if text in ("0", "1") else None
-    if found is None and len(text) < 20:
+    truth: object = _BOOLEANS[text] if text in ("0", "1") else None
+    if truth is None and len(text) < 20:
         with suppress(ValueError):
-            found = yaml_value(text)
-    if not isinstance(found, bool):
+            truth = yaml_value(text)
+    if not isinstance(truth, bool):
         raise EvaluationFails(f"{text[:40]!r} is neither true nor false", at)
-    return found
+    return truth
 
 
 def condition_holds(given: Call, context: Context) -> bool:
@@ -123,16 +123,16 @@ def condition_holds(given: Call, context: Context) -> bool:
         return holds == (kind == "IfCondition")
     name, wanted = given.kwargs["launch_configuration_name"], given.kwargs["expected_value"]
     expected = known_text(wanted, context, given.at) if wanted is not None else None
-    found = (
+    argument = (
         context.arguments.get(name) if isinstance(name, str) else None
     )  # no other object is the key of one
     if (
         isinstance(name, Unknown)
-        or (found is None and context.has_others)
-        or not isinstance(found, str | None)
+        or (argument is None and context.has_others)
+        or not isinstance(argument, str | None)
     ):
         raise Undetermined("the launch configuration of this condition is not evaluated", given.at)
-    return (found == expected) == (kind == "LaunchConfigurationEquals")
+    return (argument == expected) == (kind == "LaunchConfigurationEquals")
 
 
 @dataclass(slots=True)
@@ -162,10 +162,10 @@ class _Substitution:
 
     def texts(self, *values: Value) -> list[str] | Unknown:
         """Return the texts of some values; Unknown if one of them is."""
-        found = [self.resolve(value) for value in values]
-        unknown = next((it for it in found if isinstance(it, Unknown)), None)
-        texts = [it for it in found if isinstance(it, str)]
-        if len(texts) == len(found):
+        results = [self.resolve(value) for value in values]
+        unknown = next((result for result in results if isinstance(result, Unknown)), None)
+        texts = [result for result in results if isinstance(result, str)]
+        if len(texts) == len(results):
             return texts
         return unknown or Unknown("the content of a file is used", self.at)
 
@@ -302,7 +302,7 @@ class _Substitution:
         elif isinstance(value, int | float):
             value = str(value)
         elif not all(
-            isinstance(it, TEXT_PARTS) for it in (value if isinstance(value, list) else [value])
+            isinstance(part, TEXT_PARTS) for part in (value if isinstance(value, list) else [value])
         ):
             raise Undetermined("the text of a list in this substitution is not evaluated", self.at)
         return known_text(value, self.context, self.at)
@@ -353,7 +353,7 @@ CONDITIONS = (
 )
 # The substitutions that are evaluated.
 PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
-    "TextSubstitution": lambda it: it.argument("text"),
+    "TextSubstitution": lambda substitution: substitution.argument("text"),
     "LaunchConfiguration": _Substitution.configuration,
     "PathJoinSubstitution": _Substitution.path,
     "PathSubstitution": _Substitution.path,
@@ -364,15 +364,17 @@ PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
     "FindPackagePrefix": _Substitution.package_prefix,
     "FindExecutable": _Substitution.program,
     "EnvironmentVariable": _Substitution.variable,
-    "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path),
-    "ThisLaunchFile": lambda it: it.context.path,
+    "ThisLaunchFileDir": lambda substitution: posixpath.dirname(substitution.context.path),
+    "ThisLaunchFile": lambda substitution: substitution.context.path,
     "AndSubstitution": _Substitution.both,
     "OrSubstitution": _Substitution.either,
-    "NotSubstitution": lambda it: str(not it.is_true("value")).lower(),
+    "NotSubstitution": lambda substitution: str(not substitution.is_true("value")).lower(),
     "IfElseSubstitution": _Substitution.choice,
     "EqualsSubstitution": _Substitution.equals,
     "FileContent": _Substitution.file_content,
-    "NotEqualsSubstitution": lambda it: "false" if it.equals() == "true" else "true",
+    "NotEqualsSubstitution": lambda substitution: (
+        "false" if substitution.equals() == "true" else "true"
+    ),
     "ExecutableInPackage": _Substitution.executable,
 }
 
@@ -473,5 +475,9 @@ def printed_file(words: list[str]) -> Contents | None:
         return None
     given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
     return Contents(
-        files[0], "xacro", tuple((name, None if PART_UNKNOWN in it else it) for name, it in given)
+        files[0],
+        "xacro",
+        tuple(
+            (name, None if PART_UNKNOWN in given_text else given_text) for name, given_text in given
+        ),
     )

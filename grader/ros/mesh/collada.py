@@ -121,10 +121,10 @@ class _Scene:
         points.
         """
         inputs = surface.findall("{*}input")
-        vertices = [it for it in inputs if it.get("semantic") == "VERTEX"]
+        vertices = [source for source in inputs if source.get("semantic") == "VERTEX"]
         if not vertices:
             return np.empty((0, 3, 3))
-        offsets = [_whole(it.get("offset", "0")) for it in inputs]
+        offsets = [_whole(source.get("offset", "0")) for source in inputs]
         stride, offset = max(offsets) + 1, _whole(vertices[0].get("offset", "0"))
         rows = []
         for element in surface.iterfind("{*}p"):

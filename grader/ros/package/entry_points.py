@@ -223,23 +223,27 @@ def _missing_module(package: Package, entry: _EntryPoint) -> _EntryFault:
         and path.endswith(".py")
         and not path.endswith("__init__.py")
     ]
-    own = entry.name if entry.name in others else ""
+    same_name = entry.name if entry.name in others else ""
     return _fault(
-        entry, f"there is no module {entry.module}", entry.module.rpartition(".")[2], others, own
+        entry,
+        f"there is no module {entry.module}",
+        entry.module.rpartition(".")[2],
+        others,
+        same_name,
     )
 
 
 def _fault(
-    entry: _EntryPoint, message: str, written: str, known: list[str], own: str = ""
+    entry: _EntryPoint, message: str, written: str, known: list[str], fallback: str = ""
 ) -> _EntryFault:
     """Return the fault of an entry point, with the name that may be meant, else the names that
     there are.
     """
-    meant = closest(written, known) or own or None
+    meant = closest(written, known) or fallback or None
     if meant is not None:
         message += f"; did you mean {meant!r}?"
     elif known:
-        message += f"; there is {enumerated([repr(it) for it in known[:MAX_NAMED]])}"
+        message += f"; there is {enumerated([repr(module) for module in known[:MAX_NAMED]])}"
     return _EntryFault(message, entry.location, written, meant)
 
 

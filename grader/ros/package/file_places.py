@@ -114,16 +114,16 @@ def find_places(
     """
     places = [_place_of(package, file, built=built) for file in launch.named(*purposes)]
     present = {
-        posixpath.basename(path) for it in package.packages.values() for path in it.tree.files
+        posixpath.basename(path) for other in package.packages.values() for path in other.tree.files
     }
-    for it in places:
-        is_needed = built or posixpath.basename(it.file.path or "") not in present
+    for place in places:
+        is_needed = built or posixpath.basename(place.file.path or "") not in present
         if (
-            it.state == "missing"
+            place.state == "missing"
             and is_needed
             and not any(wrong.state == "wrong" for wrong in places)
         ):
-            raise _missing_file(package, it)
+            raise _missing_file(package, place)
     return places
 
 
@@ -246,21 +246,21 @@ def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
 
 def _place_in_package(owner: Package, target: str, file: "NamedFile") -> FilePlace:
     """Return whether a build of a package installs a file at the path where it is looked for."""
-    found, setup, what = look_up(owner, target), owner.installation, _WORDS[file.purpose]
-    match found.state:
+    lookup, setup, what = look_up(owner, target), owner.installation, _WORDS[file.purpose]
+    match lookup.state:
         case "unknown":
             return FilePlace(
                 file, "unknown", f"cannot determine statically whether a build installs {target}"
             )
         case "no build":
-            return FilePlace(file, "missing", f"a build installs no {what}: {found.text}")
+            return FilePlace(file, "missing", f"a build installs no {what}: {lookup.text}")
         case "installed" if setup is not None and setup.misspelt is not None:
             return FilePlace(
                 file, "missing", f"a build does not install the {what}: {setup.misspelt.message}"
             )
         case "installed":
-            return _place_not_utf8(owner, found.path, file) or FilePlace(file, "found", target)
-    return _place_not_there(owner, target, found, file)
+            return _place_not_utf8(owner, lookup.path, file) or FilePlace(file, "found", target)
+    return _place_not_there(owner, target, lookup, file)
 
 
 def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> FilePlace | None:
@@ -283,16 +283,16 @@ def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> FilePlace |
     return None
 
 
-def _place_not_there(owner: Package, target: str, found: Lookup, file: "NamedFile") -> FilePlace:
+def _place_not_there(owner: Package, target: str, lookup: Lookup, file: "NamedFile") -> FilePlace:
     """Return where else a build installs a file, or what the package has instead of it."""
-    message = f"the launch file looks for the {_WORDS[file.purpose]} at {target}, but {found.text}"
-    if found.state == "elsewhere":
+    message = f"the launch file looks for the {_WORDS[file.purpose]} at {target}, but {lookup.text}"
+    if lookup.state == "elsewhere":
         # Outside of the package's folder, at the path where the launch file looks in it: that is
         # the fault of setup.py.
-        is_at_path = f"/{found.path}".endswith(f"/{target.removeprefix(owner.share)}")
-        is_of_setup = is_at_path and not found.path.startswith(owner.share)
+        is_at_path = f"/{lookup.path}".endswith(f"/{target.removeprefix(owner.share)}")
+        is_of_setup = is_at_path and not lookup.path.startswith(owner.share)
         return FilePlace(file, "missing" if is_of_setup else "wrong", message)
-    if found.state == "not installed":
+    if lookup.state == "not installed":
         return FilePlace(file, "missing", message)
     names = {*map(posixpath.basename, owner.tree.files)}
     names.discard(posixpath.basename(file.location.path))

@@ -142,11 +142,11 @@ def read_packages(
         )
         packages.append(package)
     packages.sort(
-        key=lambda it: (
-            min(_name_distance(it, one) for one in wanted),
-            is_backup(it.folder),
-            missing_files(it, urdf),
-            _depth(it.folder),
+        key=lambda candidate: (
+            min(_name_distance(candidate, one) for one in wanted),
+            is_backup(candidate.folder),
+            missing_files(candidate, urdf),
+            _depth(candidate.folder),
         )
     )
     for package in packages:
@@ -203,9 +203,9 @@ def _name_distance(package: Package, name: str) -> int:
     """Return how well a package has a name; the smallest is best."""
     if package.manifest is not None and package.manifest.name == name:
         return _NAMED
-    own = package.manifest.name if package.manifest is not None else package.name
+    package_name = package.manifest.name if package.manifest is not None else package.name
     if package.folder.rpartition("/")[2] == name or (
-        own is not None and folded(own) == folded(name)
+        package_name is not None and folded(package_name) == folded(name)
     ):
         return _IN_NAMED_FOLDER
     if package.manifest is not None and closest(package.name, [name]):

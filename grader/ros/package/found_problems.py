@@ -25,23 +25,23 @@ def package_problems(package: Package) -> tuple[Problem, ...]:
     """Return the problems of package.xml, setup.py, launch files and RViz files, each file's sorted
     by location.
     """
-    found = build_problems(package)
+    problems = build_problems(package)
     for path in package.launch_files[:_MAX_FILES]:
-        found += launch_problems(package.launch(path))
+        problems += launch_problems(package.launch(path))
     for path in package.rviz_files[:_MAX_FILES]:
-        found += sorted_problems(package.rviz(path).problems)
-    return tuple(found)
+        problems += sorted_problems(package.rviz(path).problems)
+    return tuple(problems)
 
 
 def build_problems(package: Package, releases: Collection[Release] = ()) -> list[Problem]:
     """Return the problems of package.xml, and of setup.py or CMakeLists.txt, in some releases."""
-    found: list[Problem] = []
+    problems: list[Problem] = []
     if package.manifest is not None:
-        found += sorted_problems(package.manifest.problems)
+        problems += sorted_problems(package.manifest.problems)
     if package.installation is not None:
         setup = package.installation.in_releases(releases)
-        found += sorted_problems(_setup_problems(package, setup))
-    return found
+        problems += sorted_problems(_setup_problems(package, setup))
+    return problems
 
 
 def launch_problems(launch: Launch) -> list[Problem]:
@@ -52,7 +52,13 @@ def launch_problems(launch: Launch) -> list[Problem]:
 def sorted_problems(problems: Iterable[Problem]) -> list[Problem]:
     """Return the problems of one file in the order of their places."""
     return sorted(
-        problems, key=lambda it: (it.location.line, it.location.column, it.code, it.message)
+        problems,
+        key=lambda problem: (
+            problem.location.line,
+            problem.location.column,
+            problem.code,
+            problem.message,
+        ),
     )
 
 

@@ -35,8 +35,12 @@ def problems_of_robot(
 ) -> tuple[Problem, ...]:
     """Return the problems of a robot and of its meshes, in the order of their places."""
     meshes = mesh_problems(robot, packages, tree)
-    own = [it for it in _listed(robot.loaded.problems) if not _is_chosen(it, robot, tree)]
-    return in_order((*own, *meshes))
+    robot_problems = [
+        problem
+        for problem in _listed(robot.loaded.problems)
+        if not _is_chosen(problem, robot, tree)
+    ]
+    return in_order((*robot_problems, *meshes))
 
 
 def _is_chosen(problem: Problem, robot: Read, tree: Tree) -> bool:

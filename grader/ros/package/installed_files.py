@@ -68,7 +68,11 @@ def _meant_by(owner: Package, target: str) -> list[str]:
     inside, name = target.removeprefix(owner.share), posixpath.basename(target)
     if inside in owner.tree.files:
         return [inside]
-    return [it for it in owner.tree.files if posixpath.basename(it) == name]
+    return [
+        path_in_package
+        for path_in_package in owner.tree.files
+        if posixpath.basename(path_in_package) == name
+    ]
 
 
 def is_surely_absent(package: Package, target: str) -> bool:
@@ -103,10 +107,10 @@ def open_meant(
 
     With `absent_are_empty`, a file that surely is not there is empty.
     """
-    found, parts = package.open_installed(path), path.split("/")
-    owner = package.find(parts[1]) if found is None and len(parts) > 2 else None
+    opened, parts = package.open_installed(path), path.split("/")
+    owner = package.find(parts[1]) if opened is None and len(parts) > 2 else None
     if owner is None:
-        return found
+        return opened
     named = _meant_by(owner, path)
     if (
         not named

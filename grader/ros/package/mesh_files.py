@@ -100,16 +100,16 @@ class MeshFile(NamedTuple):
         if package is None:
             return None
         path = posixpath.normpath(self.path)
-        found = look_up(package, f"share/{self.package}/{path}")
-        return package.tree.files.get(found.path if found.state == "installed" else path)
+        lookup = look_up(package, f"share/{self.package}/{path}")
+        return package.tree.files.get(lookup.path if lookup.state == "installed" else path)
 
 
 def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
     """Return what the file name of a <mesh> means; `is_expanded` says whether xacro has been
     expanded in it.
     """
-    found = _SCHEME.fullmatch(filename)
-    scheme, slashes, rest = found.groups() if found is not None else ("", "", filename)
+    match = _SCHEME.fullmatch(filename)
+    scheme, slashes, rest = match.groups() if match is not None else ("", "", filename)
     fault = _BACKSLASH if "\\" in filename else ""
     shared = _path_from_xacro(rest) if is_expanded and scheme in ("", "file") else None
     if shared is not None:
@@ -141,8 +141,8 @@ def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterat
     of home folders.
     """
     robot = urdf.loaded.robot
-    found = meshes_of(robot) if robot is not None else {}
-    for name, (link, mesh) in islice(found.items(), _MAX_WARNED):
+    meshes = meshes_of(robot) if robot is not None else {}
+    for name, (link, mesh) in islice(meshes.items(), _MAX_WARNED):
         file = mesh_file(name, is_expanded=urdf.is_expanded)
         fault = _sure_fault(file, packages, tree)
         if fault and mesh.location is not None and "$" not in name:
@@ -152,8 +152,10 @@ def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterat
 
 def meshes_of(robot: Robot) -> dict[str, tuple[str, Mesh]]:
     """Return the meshes of a robot by the names of their files, each with a link that has it."""
-    shapes = [(link.name, it.geometry) for link in robot.links for it in link.visuals]
-    shapes += [(link.name, it.geometry) for link in robot.links for it in link.collisions]
+    shapes = [(link.name, visual.geometry) for link in robot.links for visual in link.visuals]
+    shapes += [
+        (link.name, collision.geometry) for link in robot.links for collision in link.collisions
+    ]
     return {mesh.filename: (link, mesh) for link, mesh in shapes if isinstance(mesh, Mesh)}
 
 
@@ -175,14 +177,14 @@ def _fault_in_package(package: Package, target: str, tree: Tree) -> str:
     """Return what is wrong with the file that a build installs at a path, or why it installs none
     there.
     """
-    found, name = look_up(package, target), posixpath.basename(target)
-    file = package.tree.files.get(found.path) if found.state == "installed" else None
+    lookup, name = look_up(package, target), posixpath.basename(target)
+    file = package.tree.files.get(lookup.path) if lookup.state == "installed" else None
     if file is not None:
         return content_fault(file, target)
-    if found.state == "unknown" or any(
+    if lookup.state == "unknown" or any(
         posixpath.basename(path) == name for path in package.tree.files
     ):
-        return _why_not_installed(package, target, found)
+        return _why_not_installed(package, target, lookup)
     if tree.unopened:
         raise NotDecided(
             f"{name} may be in an archive that could not be opened",
@@ -199,9 +201,9 @@ def _path_from_xacro(path: str) -> tuple[str, str] | None:
     """Return the package and the path in it where $(find ...) has given a path."""
     from grader.ros.xacro.texts import INSTALLED  # late: most URDFs are no xacro
 
-    found = re.fullmatch(rf"/*{INSTALLED}/([^/]+)/share/\1/+(.*)", path, re.DOTALL)
-    if found is not None:
-        return (found[1], found[2])
+    match = re.fullmatch(rf"/*{INSTALLED}/([^/]+)/share/\1/+(.*)", path, re.DOTALL)
+    if match is not None:
+        return (match[1], match[2])
     return None
 
 
@@ -223,13 +225,15 @@ def _without_package(name: str, path: str, packages: Sequence[Package], tree: Tr
     return f"names the package {quoted(name)}{hint}"
 
 
-def _why_not_installed(package: Package, target: str, found: Lookup) -> str:
+def _why_not_installed(package: Package, target: str, lookup: Lookup) -> str:
     """Return why a build does not install a file of a package at a path, by what it has instead."""
     setup = package.installation
-    if found.state == "unknown":
-        raise NotDecided(found.text, found.text)
-    if found.state == "elsewhere":
-        return f"is looked for at {target}, but {found.text}"
-    if setup is None or found.state == "no build":
-        return f"is not installed: {found.text}"
-    return f"is not installed: add {found.path} to {setup.entries}, for {posixpath.dirname(target)}"
+    if lookup.state == "unknown":
+        raise NotDecided(lookup.text, lookup.text)
+    if lookup.state == "elsewhere":
+        return f"is looked for at {target}, but {lookup.text}"
+    if setup is None or lookup.state == "no build":
+        return f"is not installed: {lookup.text}"
+    return (
+        f"is not installed: add {lookup.path} to {setup.entries}, for {posixpath.dirname(target)}"
+    )

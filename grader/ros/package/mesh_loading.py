@@ -72,16 +72,20 @@ class MeshLoader:
             return _find_in_package(named, package, path, tree)
         # RViz needs a package.xml; a folder with the package's name surely has the mesh.
         end = f"/{named.package}/{path}"
-        found = [it for it in tree.files if f"/{tree.name}/{it}".endswith(end)]
-        if found:
-            return tree.files[min(found, key=len)]
+        paths = [
+            path_in_tree
+            for path_in_tree in tree.files
+            if f"/{tree.name}/{path_in_tree}".endswith(end)
+        ]
+        if paths:
+            return tree.files[min(paths, key=len)]
         return f"is looked for at share{end}, but no package {quoted(named.package)} is here"
 
     def _name_packages(self) -> set[str]:
         """Return the names of the packages that the robot's meshes are in."""
         robot = self._robot.loaded.robot
         meshes = meshes_of(robot) if robot is not None else {}
-        files = [mesh_file(it, is_expanded=self._robot.is_expanded) for it in meshes]
+        files = [mesh_file(filename, is_expanded=self._robot.is_expanded) for filename in meshes]
         return {file.package for file in files if file.package}
 
     def _read(self, file: File, path: str) -> "Triangles | str":

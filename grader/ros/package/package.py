@@ -446,7 +446,7 @@ class Package:
         """Return the package of the workspace whose RViz file a launch file opens; without one,
         the package itself.
         """
-        paths = [it.path for it in launch.named("rviz") if it.path is not None]
+        paths = [reference.path for reference in launch.named("rviz") if reference.path is not None]
         owners = [self, *(self.find(share_parts(path)[0]) for path in paths)]
         for owner in owners:
             if owner is not None and owner.rviz_opened(launch) is not None:
@@ -492,7 +492,7 @@ class Package:
         # rosdep installs what any package of a workspace needs.
         return (
             self.find(name) is not None
-            or any(it.depends_on(name) for it in self._all)
+            or any(package.depends_on(name) for package in self._all)
             or name in self.installed_besides
             or is_of_ros(name)
         )

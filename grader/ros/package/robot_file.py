@@ -152,9 +152,9 @@ class Surroundings(NamedTuple):
         """
         around = self._launched_packages(path)
         return [
-            found
+            reference
             for package in around
-            for found in package.robot_references(path.rpartition("/")[2])
+            for reference in package.robot_references(path.rpartition("/")[2])
         ]
 
     def runs_xacro_beside(self, path: str) -> bool:
@@ -196,8 +196,8 @@ class Surroundings(NamedTuple):
         expansion = expand(data, path, self, self.arguments)
         if isinstance(expansion.source, ExpandedSource):
             return expansion.source
-        for found in expansion.undetermined:
-            raise NotDecided(found.reason)
+        for part in expansion.undetermined:
+            raise NotDecided(part.reason)
         first = expansion.problems[0]
         raise MissingElement(
             "xacro", path, message=first.message, location=first.location, problem=first.message
@@ -206,16 +206,20 @@ class Surroundings(NamedTuple):
     def _launched_packages(self, path: str) -> list[Package]:
         if self.graded is None:
             loose = launch_folders(self.tree, self.packages, [path] if not self.is_single else [])
-            return [it.under(self.launch_arguments) for it in loose]
+            return [reference.under(self.launch_arguments) for reference in loose]
         name = path.rpartition("/")[2]
         if self.graded.robot_references(name):
             return [self.graded]
-        own = next((it for it in self.packages if it.holds(path)), self.graded)
-        others = [it for it in self.packages if it is own or it.name != own.name]
+        owner = next((package for package in self.packages if package.holds(path)), self.graded)
+        others = [
+            candidate
+            for candidate in self.packages
+            if candidate is owner or candidate.name != owner.name
+        ]
         launched = []
         for package in others:
             references = package.robot_references(name)
-            if any(own.source_of(reference.path or "") for reference in references):
+            if any(owner.source_of(reference.path or "") for reference in references):
                 launched.append(package)
         return launched or [self.graded]
 
@@ -236,7 +240,8 @@ class Surroundings(NamedTuple):
     def _named(self, name: str) -> list[Package]:
         """Return the packages of a name, of several that of the URDF first."""
         return sorted(
-            (it for it in self.packages if it.name == name), key=lambda it: it is not self.graded
+            (candidate for candidate in self.packages if candidate.name == name),
+            key=lambda candidate: candidate is not self.graded,
         )
 
     def read(self, path: str) -> bytes:
@@ -266,11 +271,11 @@ class Surroundings(NamedTuple):
         """Return the file at a path in a package once it is built; without any package, the most
         similar path.
         """
-        for own in self._named(package):
-            if self.assumes_defaults and inside in own.tree.files:
-                return own.path(inside)
-            similar = any(f"/{path}".endswith(f"/{inside}") for path in own.tree.files)
-            source, setup = own.installed.get(f"share/{package}/{inside}"), own.installation
+        for owner in self._named(package):
+            if self.assumes_defaults and inside in owner.tree.files:
+                return owner.path(inside)
+            similar = any(f"/{path}".endswith(f"/{inside}") for path in owner.tree.files)
+            source, setup = owner.installed.get(f"share/{package}/{inside}"), owner.installation
             if (
                 source is None
                 and similar
@@ -281,15 +286,15 @@ class Surroundings(NamedTuple):
                 raise Undetermined(
                     f"cannot determine statically whether CMakeLists.txt installs {inside}"
                 )
-            return own.path(source) if source is not None else None
+            return owner.path(source) if source is not None else None
         if self.packages:
             return None
         steps = inside.split("/")
         for count in range(len(steps), 0, -1):
             end = "/" + "/".join(steps[-count:])
-            found = [path for path in self.tree.files if f"/{path}".endswith(end)]
-            if len(found) == 1:
-                return found[0]
+            matches = [path for path in self.tree.files if f"/{path}".endswith(end)]
+            if len(matches) == 1:
+                return matches[0]
         return None
 
 
@@ -303,7 +308,7 @@ def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]
     folders = {folder for path in files for folder in (*parents(path), "")}
     around = set()
     for path in paths:
-        nearest = next((it for it in (*parents(path), "") if it in folders), None)
+        nearest = next((folder for folder in (*parents(path), "") if folder in folders), None)
         if nearest is not None:
             around.add(nearest)
     return [
@@ -455,8 +460,8 @@ def _read_expanded(
     if expansion.meant is None:
         return reading
     meant = _read_document(expansion.meant.document, newest)
-    found = dict.fromkeys([*causes(reading.problems), *expansion.assumed, *meant.problems])
-    return meant._replace(verdict="rejected", problems=in_order(found))
+    distinct = dict.fromkeys([*causes(reading.problems), *expansion.assumed, *meant.problems])
+    return meant._replace(verdict="rejected", problems=in_order(distinct))
 
 
 def _read_document(document: XmlDocument, newest: UrdfVersion) -> Reading:

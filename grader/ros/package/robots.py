@@ -117,7 +117,7 @@ def find_robots(
 
     Of other files only those of at most `max_size` bytes are read, and of these the first bytes.
     """
-    found: list[RobotFile] = []
+    robots: list[RobotFile] = []
     by_content = read = 0
     files: Iterable[File] = tree.files.values()
     if len(tree.files) > _MAX_READ:
@@ -133,12 +133,12 @@ def find_robots(
         start = _robot_start(file) if is_read else None
         if start is not None or is_urdf:
             by_content += not is_urdf
-            found.append(
+            robots.append(
                 RobotFile(
                     file.path, file.size, is_urdf, *(_name_and_includes(start) if start else ())
                 )
             )
-    return tuple(sorted(found))
+    return tuple(sorted(robots))
 
 
 def is_robot(read: Callable[[int], bytes]) -> bool:
@@ -185,15 +185,15 @@ def _robot_start(file: File) -> bytes | None:
 
 
 def _end_of_prolog(data: bytes) -> int:
-    found = _PROLOG.match(data)
-    return found.end() if found is not None else 0
+    match = _PROLOG.match(data)
+    return match.end() if match is not None else 0
 
 
 def _name_and_includes(start: bytes) -> tuple[str, frozenset[str]]:
     tag = _ROBOT.match(start)
     name = _NAME.search(tag[1]) if tag is not None else None
     includes = (
-        found.decode("utf-8", "replace") for found in _INCLUDE.findall(_COMMENT.sub(b"", start))
+        include.decode("utf-8", "replace") for include in _INCLUDE.findall(_COMMENT.sub(b"", start))
     )
     return name[1].decode("utf-8", "replace").strip() if name is not None else "", frozenset(
         includes

@@ -79,7 +79,7 @@ def with_transforms(
                 robot,
                 incomplete=f"cannot determine statically which frames {name} publishes: {reason}",
             )
-    if any(it.frames_of("") != ("",) for it in package.launches):
+    if any(started.frames_of("") != ("",) for started in package.launches):
         robot = replace(
             robot,
             incomplete=robot.incomplete or "robot_state_publisher gives the frames other names",
@@ -96,9 +96,9 @@ def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
     if not frame.child or frame.parent == frame.child:
         return robot  # the publisher ends with an error
     part = {"origin": UnresolvedPart(frame.open, frame.location)} if frame.open else {}
-    own = f"static transform of {frame.child}"
+    joint_name = f"static transform of {frame.child}"
     joint = Joint(
-        own,
+        joint_name,
         "fixed",
         frame.parent,
         frame.child,
@@ -106,7 +106,10 @@ def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
         location=frame.location,
         unresolved=part,
     )
-    before = next((it for it in robot.joints if it.known.child == frame.child), None)
+    before = next(
+        (robot_joint for robot_joint in robot.joints if robot_joint.known.child == frame.child),
+        None,
+    )
     if before is None and robot.has_link(frame.child):
         return robot
     if before is None:
@@ -125,7 +128,12 @@ def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
         "origin": UnresolvedPart(f"{reason}, and the one that tf2 gets last counts", frame.location)
     }
     both = replace(before.known, origin=None, unresolved={**before.known.unresolved, **part})
-    return replace(robot, joints=tuple(both if it is before else it for it in robot.joints))
+    return replace(
+        robot,
+        joints=tuple(
+            both if robot_joint is before else robot_joint for robot_joint in robot.joints
+        ),
+    )
 
 
 def _read_frame(
@@ -192,7 +200,7 @@ def has_zero_rotation(node: StartedNode) -> bool:
 def _read_options(words: Sequence[str | None]) -> dict[str, str | None]:
     """Return the values by their options, also if they are given by their positions."""
     if words and words[0] is not None and words[0].startswith("--"):
-        return dict(zip(((it or "") for it in words[::2]), words[1::2], strict=False))
+        return dict(zip(((word or "") for word in words[::2]), words[1::2], strict=False))
     return dict(zip(_BY_POSITION.get(len(words), ()), words, strict=False))
 
 

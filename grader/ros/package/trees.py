@@ -76,15 +76,15 @@ def is_path(text: str) -> bool:
 def steps_of(path: str, *, is_xml: bool) -> list[PathStep]:
     """Return the steps of a path; an empty path, or a dot, is the entry itself."""
     parts = re.split(r"/(?![^\[]*\])" if is_xml else r"\.(?![^\[]*\])", path)
-    found = []
+    steps = []
     for part in parts if path not in ("", ".") else ():
         match = _STEP.fullmatch(part)
         if match is not None and part not in ("", "."):
             conditions = []
             for key, quoted, double_quoted, plain in _CONDITION.findall(match[2]):
                 conditions.append((key, quoted or double_quoted or plain))
-            found.append(PathStep(match[1], tuple(conditions)))
-    return found
+            steps.append(PathStep(match[1], tuple(conditions)))
+    return steps
 
 
 class Search:
@@ -108,7 +108,7 @@ class Search:
         """Return whether an entry contains the values of a step."""
         for key, value in step.conditions:
             inner = self.find(entry, steps_of(key, is_xml=entry.is_xml))
-            texts = [readable(it.text) for it in inner if it.text is not None]
+            texts = [readable(row.text) for row in inner if row.text is not None]
             if not any(matches_value(text, value, _EXACT) for text in texts):
                 return False
         return True
@@ -119,13 +119,13 @@ class Search:
         if not steps:
             yield entry
         elif entry.is_list and steps[0].name:
-            for row in (it for it in children if not it.is_list):
+            for row in (child for child in children if not child.is_list):
                 yield from self._find(row, steps)
         for count in range(1, 2 if entry.is_xml else len(steps) + 1):
             if steps and not any(step.conditions for step in steps[: count - 1]):
                 name = ".".join(step.name for step in steps[:count])
                 yield from self._find_below(
-                    [it for it in children if it.name == name], steps[count - 1 :]
+                    [child for child in children if child.name == name], steps[count - 1 :]
                 )
 
     def _find_below(
@@ -134,7 +134,7 @@ class Search:
         """Yield the entries at the other steps in those that the first step names."""
         for entry in named:
             rows = entry.children if entry.is_list and steps[0].conditions else [entry]
-            for row in (it for it in rows if self.fits(it, steps[0])):
+            for row in (candidate for candidate in rows if self.fits(candidate, steps[0])):
                 yield from self._find(row, steps[1:])
 
 
@@ -190,22 +190,22 @@ def read_tree(package: Package, file: str) -> TreeEntry:
     """
     files = package.tree.files
     if file in files:
-        found = [file]
+        matches = [file]
     else:
-        found = [path for path in files if path.endswith(f"/{file.strip('/')}")]
-    if len(found) > 1:
+        matches = [path for path in files if path.endswith(f"/{file.strip('/')}")]
+    if len(matches) > 1:
         raise NotDecided(
-            f"several files are called {file}: {', '.join(found[:3])}",
+            f"several files are called {file}: {', '.join(matches[:3])}",
             "several files have the name",
         )
-    if not found:
+    if not matches:
         message, meant = f"the package has no file {file!r}", similar_there(file, files)
         raise MissingElement(
             "file", file, message=message, detail=meant, absent="" if meant else file
         )
     from grader.ros.config.yaml_nodes import YamlFault, read_yaml  # late: the robot needs no YAML
 
-    [path], own = found, package.path(found[0])
+    [path], package_path = matches, package.path(matches[0])
     try:
         data = files[path].read(_MAX_TREE)
     except InputError as error:
@@ -213,8 +213,8 @@ def read_tree(package: Package, file: str) -> TreeEntry:
     kind = "YAML" if path.lower().endswith(_YAML) else "XML"
     try:
         if kind == "YAML":
-            return _yaml_entry(read_yaml(data, own))
-        return _read_xml(data, own)
+            return _yaml_entry(read_yaml(data, package_path))
+        return _read_xml(data, package_path)
     except (YamlFault, XmlFault) as fault:
         message = f"{path} is not readable as {kind}: {fault}"
         raise MissingElement(

@@ -80,10 +80,10 @@ class Budget:
         """Charge again what was charged for the same work, as two marks tell; return whether it was
         left.
         """
-        own, of_whole = cost
-        if own > self.left or (self.whole is not None and of_whole > self.whole.left):
+        cost_here, of_whole = cost
+        if cost_here > self.left or (self.whole is not None and of_whole > self.whole.left):
             return False
-        self.left -= own
+        self.left -= cost_here
         if self.whole is not None:
             self.whole.left -= of_whole
         return True

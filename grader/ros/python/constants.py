@@ -44,8 +44,8 @@ _BINDS_UNSEEN = frozenset(
 def binds_unseen(nodes: Sequence[ast.AST]) -> bool:
     """Return whether a module with these nodes may bind names in ways that are not seen."""
     names = (
-        getattr(it, "id", None) or getattr(it, "attr", None) or getattr(it, "name", None)
-        for it in nodes
+        getattr(node, "id", None) or getattr(node, "attr", None) or getattr(node, "name", None)
+        for node in nodes
     )
     return any(name in _BINDS_UNSEEN for name in names)
 
@@ -143,9 +143,9 @@ class Constants(Interpreter):
         )
 
     def _constant_attribute(self, node: ast.Attribute, scope: Scope) -> Value:
-        found = constant_in(scope, dotted(node), self)
-        if found is not self:
-            return found
+        constant = constant_in(scope, dotted(node), self)
+        if constant is not self:
+            return constant
         return Interpreter.KINDS[ast.Attribute](self, node, scope)
 
     KINDS: ClassVar = {

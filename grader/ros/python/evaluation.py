@@ -210,35 +210,35 @@ class Evaluation(Expressions):
     def call_value(self, function: py.Value, made: py.Call) -> py.Value:
         """Return the value of a call; the call gets its name here."""
         self.budget.charge(1 + len(made.args) + len(made.kwargs))
-        found: py.Value = None
+        result: py.Value = None
         match function:
             case py.Function():
-                found = self.call_function(function, made)
+                result = self.call_function(function, made)
             case py.QualifiedName(is_defined=False):
-                found = py.unknown_after_error(made.at)
+                result = py.unknown_after_error(made.at)
             case py.QualifiedName(name=name):
                 if name == "glob":
                     self.error(
                         "glob is a module here and cannot be called: write glob.glob(...)", made.at
                     )
                 made.name = "glob.glob" if name in ("glob", "?glob") else name
-                found = self._by_name(made)
+                result = self._by_name(made)
             case py.BoundMethod(owner=py.Call() as owner, name=name):
                 made.name, made.owner = f"{owner.name}.{name}", owner
-                found = self._by_name(made)
+                result = self._by_name(made)
             case py.BoundMethod(owner=owner, name=name):
-                found = self._method(owner, name, made)
+                result = self._method(owner, name, made)
             case py.PlainFunction():
-                found = self._plain(function, made)
+                result = self._plain(function, made)
             case py.Unknown(follows_error=True):
-                found = function
+                result = function
             case _ if isinstance(function, py.PLAIN):
                 kind = type(function).__name__
                 raise py.EvaluationFails(MISSING_COMMA.format(kind))
             case _:
                 reason = f"this call {NOT_EVALUATED}: {reason_of(function)}".rstrip(": ")
                 raise py.Undetermined(reason, made.at, is_final=True)
-        return found
+        return result
 
     def _plain(self, function: py.PlainFunction, made: py.Call) -> py.Value:
         """Return the value of Python's own function; stop where it would call others, or use up an
@@ -281,9 +281,9 @@ class Evaluation(Expressions):
             isinstance(owner, kind) and name in names for kind, names in _CHANGING_METHODS.items()
         ):
             return self._change(owner, name, made)
-        found = method(owner, name, self.budget)
-        if found is not None:
-            return self.call_value(found, made)
+        bound_method = method(owner, name, self.budget)
+        if bound_method is not None:
+            return self.call_value(bound_method, made)
         if isinstance(owner, py.Unknown) and (name in _TEXT_METHODS or owner.follows_error):
             raise owner.as_signal(owner.at)
         raise py.Undetermined(

@@ -372,7 +372,12 @@ class Interpreter(Evaluation):
                 error = attribute_error(module, name) if full not in self.functions else None
                 if error is not None:
                     meant = closest(
-                        full, (it for it in self.functions if it.rpartition(".")[0] == module)
+                        full,
+                        (
+                            function
+                            for function in self.functions
+                            if function.rpartition(".")[0] == module
+                        ),
                     )
                     if meant is None:
                         raise py.EvaluationFails(error)
@@ -446,13 +451,13 @@ class Interpreter(Evaluation):
     def _dict(self, node: ast.Dict, scope: py.Scope) -> py.Value:
         table: dict[Any, py.Value] = {}
         for key, value in zip(node.keys, node.values, strict=True):
-            found = self.evaluate(value, scope)
+            evaluated = self.evaluate(value, scope)
             if key is not None:
-                call_plain(table.__setitem__, known(self.evaluate(key, scope)), found)
-            elif isinstance(found, dict):
-                table |= found
+                call_plain(table.__setitem__, known(self.evaluate(key, scope)), evaluated)
+            elif isinstance(evaluated, dict):
+                table |= evaluated
             else:
-                refuse(found, "this dict is not supported")
+                refuse(evaluated, "this dict is not supported")
         return table
 
     def _joinedstr(self, node: ast.JoinedStr, scope: py.Scope) -> py.Value:

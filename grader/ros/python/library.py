@@ -263,8 +263,8 @@ def _missing_name(module: str, name: str) -> str | Uncertain | None:
     if module == "setuptools":
         missing, guess = name not in _SETUPTOOLS, did_you_mean(name, _SETUPTOOLS_PUBLIC[:3])
     else:
-        found = import_module(module)  # one of the few above, never a student's choice
-        missing, guess = not hasattr(found, name), did_you_mean(name, dir(found))
+        imported = import_module(module)  # one of the few above, never a student's choice
+        missing, guess = not hasattr(imported, name), did_you_mean(name, dir(imported))
     if name in _ADDED:
         return Uncertain.IMPORT
     if missing:
@@ -310,7 +310,7 @@ def standard_functions(working_folder: str) -> py.FunctionTable:
     def relative(path: py.Value, start: py.Value = ".") -> str:
         return posixpath.relpath(absolute(path) if path else path, absolute(start))
 
-    own: dict[str, Callable[..., py.Value]] = {
+    path_functions: dict[str, Callable[..., py.Value]] = {
         "abspath": absolute,
         "realpath": absolute,
         "relpath": relative,
@@ -318,7 +318,7 @@ def standard_functions(working_folder: str) -> py.FunctionTable:
         **{name: getattr(posixpath, name) for name in _OWN},
     }
     of_paths: dict[str, Callable[..., py.Value]] = {
-        **{f"os.path.{name}": function for name, function in own.items()},
+        **{f"os.path.{name}": function for name, function in path_functions.items()},
         **{f"pathlib.{name}": _path for name in ("Path", "PurePath", "PosixPath", "PurePosixPath")},
         **{
             f"pathlib.Path.{name}": lambda path: PurePosixPath(absolute(path))

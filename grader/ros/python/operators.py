@@ -29,9 +29,9 @@ def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
         if hasattr(dict, name):  # a namespace of xacro is a dict
             raise py.Undetermined(f"the method {name} of a namespace is not supported")
         return owner.find(name)
-    found = method(owner, name, budget)
-    if found is not None:
-        return found
+    bound_method = method(owner, name, budget)
+    if bound_method is not None:
+        return bound_method
     if has_attribute(owner, name):
         raise py.Undetermined(f"the attribute {name} is not supported")
     if isinstance(owner, py.DottedDict) and name in owner:
@@ -210,13 +210,13 @@ def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -
 
 def _refuse_object(op: ast.operator, left: py.Value, right: py.Value) -> None:
     """Raise EvaluationFails for an operator of an object that has none, as Python does."""
-    found = next(filter(py.is_object, (left, right)), None)
-    other = right if found is left else left
-    if found is None or (isinstance(op, ast.Mod) and isinstance(left, str)):
+    refused = next(filter(py.is_object, (left, right)), None)
+    other = right if refused is left else left
+    if refused is None or (isinstance(op, ast.Mod) and isinstance(left, str)):
         return
     if isinstance(other, py.PLAIN) or py.is_object(other):
         raise py.EvaluationFails(
-            f"TypeError: {found.short}(...) is an object, not a text: use "
+            f"TypeError: {refused.short}(...) is an object, not a text: use "
             "PathJoinSubstitution([...])"
         )
 

@@ -96,12 +96,12 @@ def parse(data: bytes, path: str) -> Code | SyntaxFault:
     """
     resolved = resolve_conflicts(data)
     try:
-        found = _parse(resolved.data if resolved is not None else data, path)
+        parsed = _parse(resolved.data if resolved is not None else data, path)
         if resolved is None:
-            return found
-        if isinstance(found, Code):
-            return found._replace(conflict=(resolved.message, Position(resolved.line, 1)))
-        return found._replace(message=resolved.message, location=Location(path, resolved.line, 1))
+            return parsed
+        if isinstance(parsed, Code):
+            return parsed._replace(conflict=(resolved.message, Position(resolved.line, 1)))
+        return parsed._replace(message=resolved.message, location=Location(path, resolved.line, 1))
     except (RecursionError, MemoryError):  # these depend on the process, so they are not kept
         return SyntaxFault(
             Source(path, data.decode("utf-8", "replace")), _TOO_DEEP, Location(path, 1, 1)
@@ -188,17 +188,17 @@ def own_nodes(node: ast.AST) -> list[ast.AST]:
     """Return the nodes of a function, class or statement, without those of the functions and
     classes in it.
     """
-    found: list[ast.AST] = []
+    nodes: list[ast.AST] = []
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         pending = list(ast.iter_child_nodes(node))
     else:
         pending = [node]
     while pending:
         part = pending.pop()
-        found.append(part)
+        nodes.append(part)
         if not isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
             pending += ast.iter_child_nodes(part)
-    return found
+    return nodes
 
 
 def bound_in(node: ast.FunctionDef | ast.Module) -> frozenset[str]:

@@ -47,18 +47,18 @@ def python_slips(data: bytes, path: str) -> list[Slip]:
     if len(data) > _MAX_BYTES:
         return []
     slips: list[Slip] = []
-    found = parse(data, path)
-    if not isinstance(found, SyntaxFault) or not found.is_certain:
+    parsed = parse(data, path)
+    if not isinstance(parsed, SyntaxFault) or not parsed.is_certain:
         return []
-    lines = found.source.text.split("\n")
-    while isinstance(found, SyntaxFault) and len(slips) < _MAX_SLIPS:
-        change = _meant(found, lines, path)
+    lines = parsed.source.text.split("\n")
+    while isinstance(parsed, SyntaxFault) and len(slips) < _MAX_SLIPS:
+        change = _meant(parsed, lines, path)
         if change is None:
             return []
-        slips.append(_slip(found, lines[change.line], change, path))
+        slips.append(_slip(parsed, lines[change.line], change, path))
         lines[change.line] = change.text
-        found = _parsed(lines, path)
-    if isinstance(found, SyntaxFault) or len({slip.location.line for slip in slips}) < len(slips):
+        parsed = _parsed(lines, path)
+    if isinstance(parsed, SyntaxFault) or len({slip.location.line for slip in slips}) < len(slips):
         return []
     return slips
 
@@ -93,10 +93,10 @@ def _meant(fault: SyntaxFault, lines: list[str], path: str) -> _Change | None:
         for change in islice(way(fault, lines), _MAX_TRIED):
             after = [*lines]
             after[change.line] = change.text
-            found = _parsed(after, path)
-            if isinstance(found, Code):
-                read.setdefault(ast.dump(found.tree), change)
-            elif found.location.line > fault.location.line and found.message != fault.message:
+            parsed = _parsed(after, path)
+            if isinstance(parsed, Code):
+                read.setdefault(ast.dump(parsed.tree), change)
+            elif parsed.location.line > fault.location.line and parsed.message != fault.message:
                 read.setdefault("", change)
         complete = [change for tree, change in read.items() if tree]
         if len(complete) == 1:
@@ -110,10 +110,10 @@ def _meant(fault: SyntaxFault, lines: list[str], path: str) -> _Change | None:
 
 def _code_and_rest(line: str) -> tuple[str, str]:
     """Return a line up to its comment, and the rest."""
-    found = _COMMENT.match(line)
-    if found is None or len(line) > _MAX_LENGTH:
+    match = _COMMENT.match(line)
+    if match is None or len(line) > _MAX_LENGTH:
         return line, ""
-    return found[1], found[2]
+    return match[1], match[2]
 
 
 def _with_plain_quotes(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
@@ -129,13 +129,13 @@ def _with_keyword(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
     line = lines[index]
     if len(line) > _MAX_LENGTH:
         return
-    for found in re.finditer(r"(?<![\w.'\"])[A-Za-z]{2,}(?![\w.'\"])", line):
-        word = found[0]
+    for match in re.finditer(r"(?<![\w.'\"])[A-Za-z]{2,}(?![\w.'\"])", line):
+        word = match[0]
         meant = None
         if word not in kwlist:
             meant = near(word, kwlist) or closest(word, kwlist, is_clear=True)
         if meant is not None:
-            yield _Change(index, line[: found.start()] + meant + line[found.end() :])
+            yield _Change(index, line[: match.start()] + meant + line[match.end() :])
 
 
 def _with_quote(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
@@ -183,10 +183,10 @@ def _with_comma(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
             yield _Change(at, f"{code},{rest}")
     line = lines[index]
     if len(line) <= _MAX_LENGTH:
-        for found in _TOKEN.finditer(line, max(fault.location.column - 1, 0)):
-            after = line[found.end() :]
+        for match in _TOKEN.finditer(line, max(fault.location.column - 1, 0)):
+            after = line[match.end() :]
             if after[:1] == " ":
-                yield _Change(index, f"{line[: found.end()]},{after}")
+                yield _Change(index, f"{line[: match.end()]},{after}")
 
 
 def _with_bracket_in_line(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
@@ -200,8 +200,8 @@ def _with_bracket_in_line(fault: SyntaxFault, lines: list[str]) -> Iterator[_Cha
     mismatched = re.search(r"does not match opening parenthesis '([(\[{])'", fault.message)
     if mismatched is not None:
         yield _Change(index, line[:column] + _CLOSING[mismatched[1]] + line[column:])
-    for found in re.finditer(r"[)\]}]", line[:_MAX_LENGTH]):
-        yield _Change(index, line[: found.end()] + found[0] + line[found.end() :])
+    for match in re.finditer(r"[)\]}]", line[:_MAX_LENGTH]):
+        yield _Change(index, line[: match.end()] + match[0] + line[match.end() :])
 
 
 def _with_bracket_at_end(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
@@ -231,11 +231,11 @@ def _with_bracket_at_end(fault: SyntaxFault, lines: list[str]) -> Iterator[_Chan
 def _with_indentation(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
     """Yield the line with the indentation of the lines before that is nearest to its own."""
     index = fault.location.line - 1
-    own = _indentation(lines[index])
+    indentation = _indentation(lines[index])
     others = {_indentation(line) for line in lines[:index] if line.strip()} | {""}
     by_distance: dict[int, list[str]] = {}
     for other in others:
-        by_distance.setdefault(abs(len(other) - len(own)), []).append(other)
+        by_distance.setdefault(abs(len(other) - len(indentation)), []).append(other)
     nearest = by_distance[min(by_distance)]
     if len(nearest) == 1 and min(by_distance) <= _MAX_MOVED:
         yield _Change(index, nearest[0] + lines[index].lstrip())
@@ -251,9 +251,9 @@ def _with_pair(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
     line = lines[index]
     if len(line) > _MAX_LENGTH:
         return
-    for found in re.finditer(r"""(?:(['"])\s*=\s*|(?<=\{)(['"]\w+['"])\s+(?=\w))""", line):
-        key = found[1] or found[2]
-        yield _Change(index, f"{line[: found.start()]}{key}: {line[found.end() :]}")
+    for match in re.finditer(r"""(?:(['"])\s*=\s*|(?<=\{)(['"]\w+['"])\s+(?=\w))""", line):
+        key = match[1] or match[2]
+        yield _Change(index, f"{line[: match.start()]}{key}: {line[match.end() :]}")
 
 
 # What is tried for a message of Python, in this order.

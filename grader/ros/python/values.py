@@ -263,9 +263,9 @@ class PlainFunction:
         name: str,
         run: Callable[..., Value],
         kind: str = "plain",
-        own: Callable[..., Value] | None = None,
+        bound: Callable[..., Value] | None = None,
     ) -> None:
-        self.name, self.run, self.kind, self.own = name, run, kind, own
+        self.name, self.run, self.kind, self.own = name, run, kind, bound
 
 
 # The functions that are evaluated, by their full names; each of the second kind takes the
@@ -339,8 +339,8 @@ def iterate(value: Value) -> Iterator[Value]:
     if isinstance(value, Items):
         return value.iterator
     if isinstance(value, PLAIN) or (callable(value) and not isinstance(value, OPAQUE)):
-        found: Iterator[Value] = call_plain(iter, value)
-        return found
+        iterator: Iterator[Value] = call_plain(iter, value)
+        return iterator
     return refuse(value, "this loop is not supported")
 
 

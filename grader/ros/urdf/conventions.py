@@ -68,12 +68,13 @@ def _matching_points(
     it has no shape.
     """
     try:
-        found = [
-            (it.pose(link, relative_to=base), it.link(link).visuals) for it in (robot, reference)
+        posed_visuals = [
+            (each_robot.pose(link, relative_to=base), each_robot.link(link).visuals)
+            for each_robot in (robot, reference)
         ]
     except (MissingElement, NotDecided):
         return None
-    (T_ours, ours), (T_theirs, theirs) = found
+    (T_ours, ours), (T_theirs, theirs) = posed_visuals
     if ours and theirs:
         return T_ours.apply(ours[0].origin.xyz), T_theirs.apply(theirs[0].origin.xyz)
     return T_ours.translation, T_theirs.translation
@@ -141,8 +142,8 @@ def _reframe(
         _reframe_link(link, frames.get(link.name, IDENTITY)) for link in robot.robot.links
     )
     joints = tuple(
-        _reframe_joint(it, frames.get(it.parent, IDENTITY), frames.get(it.child, IDENTITY))
-        for it in robot.robot.joints
+        _reframe_joint(joint, frames.get(joint.parent, IDENTITY), frames.get(joint.child, IDENTITY))
+        for joint in robot.robot.joints
     )
     return replace(robot.robot, links=links, joints=joints)
 
@@ -151,12 +152,15 @@ def _reframe_link(link: Link, T_link_other: Transform) -> Link:
     if T_link_other == IDENTITY:
         return link
     back = T_link_other.inverse()
-    visuals = tuple(replace(it, origin=_reframe_origin(back, it.origin)) for it in link.visuals)
+    visuals = tuple(
+        replace(visual, origin=_reframe_origin(back, visual.origin)) for visual in link.visuals
+    )
     return replace(
         link,
         visuals=visuals,
         collisions=tuple(
-            replace(it, origin=_reframe_origin(back, it.origin)) for it in link.collisions
+            replace(collision, origin=_reframe_origin(back, collision.origin))
+            for collision in link.collisions
         ),
     )
 

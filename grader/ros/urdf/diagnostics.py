@@ -82,8 +82,8 @@ class Problems:
             return _NOTHING
         parts: dict[str, UnresolvedPart] = {}
         for inner in element.iter():
-            found = self.unresolved.get(inner)
-            if found is None:
+            unresolved = self.unresolved.get(inner)
+            if unresolved is None:
                 continue
             above = inner
             while (
@@ -92,14 +92,14 @@ class Problems:
                 and parent is not None
             ):
                 above = parent
-            for name, reason in found.attributes.items():
+            for name, reason in unresolved.attributes.items():
                 key = f"@{name}" if inner is element else str(above.tag)
                 parts.setdefault(
                     key, UnresolvedPart(reason, self.location(inner)._replace(attribute=name))
                 )
-            if found.content is not None:
+            if unresolved.content is not None:
                 key = "" if inner is element else str(above.tag)
-                parts.setdefault(key, UnresolvedPart(found.content, self.location(inner)))
+                parts.setdefault(key, UnresolvedPart(unresolved.content, self.location(inner)))
         return parts
 
     def is_unresolved(self, element: Element) -> bool:
@@ -108,13 +108,13 @@ class Problems:
 
     def _explains(self, kind: Kind, element: Element, attribute: str | None) -> bool:
         """Return whether what xacro left unresolved explains a problem."""
-        found, of_root = self.unresolved.get(element), self.unresolved.get(self.root)
+        unresolved, of_root = self.unresolved.get(element), self.unresolved.get(self.root)
         if kind in _OF_MISSING and of_root is not None and of_root.content is not None:
             return True
-        return found is not None and (
-            attribute in found.attributes
+        return unresolved is not None and (
+            attribute in unresolved.attributes
             if attribute and element.get(attribute)
-            else found.content is not None
+            else unresolved.content is not None
         )
 
     def line(self, element: Element) -> int:

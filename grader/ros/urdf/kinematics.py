@@ -102,12 +102,12 @@ class _Frames:
         followers: dict[str, Joint] = {}
         value = 0.0
         while joint.name not in followers:
-            own = self._mimicked.get(joint.name, self._given.get(joint.name))
-            if own is None and "mimic" in joint.unresolved:
+            given = self._mimicked.get(joint.name, self._given.get(joint.name))
+            if given is None and "mimic" in joint.unresolved:
                 value = nan
                 break
-            if own is not None or joint.mimic is None:
-                value = own or 0.0
+            if given is not None or joint.mimic is None:
+                value = given or 0.0
                 break
             followers[joint.name] = joint
             if not self._robot.has_joint(joint.mimic.joint):

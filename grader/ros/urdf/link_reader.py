@@ -83,21 +83,21 @@ class Materials:
             fallback = "the definition above applies"
         else:
             fallback = f"material {quoted(name)} stays undefined"
-        own, reported = self._read_material(element, name, f"ROS 2 logs an error: {fallback}")
-        found = self.known.get(name) if name else own
-        if own is None:
-            if found is None and name and not reported:
+        material, reported = self._read_material(element, name, f"ROS 2 logs an error: {fallback}")
+        known = self.known.get(name) if name else material
+        if material is None:
+            if known is None and name and not reported:
                 self._note_undefined(name, element, link)
-                found = self._find_elsewhere(name)
-        elif found is None:
-            found = self.known[name] = own
-        elif (own.rgba, own.texture) != (found.rgba, found.texture):
+                known = self._find_elsewhere(name)
+        elif known is None:
+            known = self.known[name] = material
+        elif (material.rgba, material.texture) != (known.rgba, known.texture):
             message = (
                 f"material {quoted(name)} is already defined differently; ROS 2 ignores this "
                 "definition"
             )
             self._problems.add(urdf_problems.REDEFINED_MATERIAL, message, element, "name")
-        return found, name, found is None and reported
+        return known, name, known is None and reported
 
     def _read_material(
         self, element: Element, name: str, consequence: str
@@ -133,11 +133,11 @@ class Materials:
     def _find_elsewhere(self, name: str) -> Material | None:
         """Return a material that may be defined in a part of the robot that xacro leaves open."""
         root = self._problems.root
-        found = self._problems.unresolved.get(root)
-        if found is None or not found.content:
+        unresolved = self._problems.unresolved.get(root)
+        if unresolved is None or not unresolved.content:
             return None
         return Material(
-            name, unresolved={"": UnresolvedPart(found.content, self._problems.location(root))}
+            name, unresolved={"": UnresolvedPart(unresolved.content, self._problems.location(root))}
         )
 
     def _note_undefined(self, name: str, element: Element, link: str) -> None:

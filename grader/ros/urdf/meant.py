@@ -345,7 +345,7 @@ def _misspelt_format(root: Element) -> Iterator[Word]:
     """
     yield from _misspelt_tags(root, ("link", "joint"))
     yield from _misspelt_attributes(root)
-    for element in (it for tag in ("link", "joint") for it in root.iterchildren(tag)):
+    for element in (declared for tag in ("link", "joint") for declared in root.iterchildren(tag)):
         yield from _misspelt_attributes(element)
         if element.tag == "joint":
             needed = ["parent", "child"]

@@ -98,12 +98,12 @@ def readable_numbers(text: str, count: int) -> list[str] | None:
     pieces = text.replace("\N{MINUS SIGN}", "-").split()
     decimal = [piece.strip(",").replace(",", ".") for piece in pieces]
     ways = [pieces, decimal, " ".join(pieces).replace(",", " ").split()]
-    found = []
+    readings = []
     for way in ways:
         values = [_computed(piece) for piece in way]
         if len(way) in (count, 2 * count) and None not in values:
-            found.append([str(value) for value in values])
-    return found[0] if found else None
+            readings.append([str(value) for value in values])
+    return readings[0] if readings else None
 
 
 def _computed(piece: str) -> str | None:

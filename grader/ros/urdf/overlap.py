@@ -62,9 +62,9 @@ def least_overlap(a: Shape, b: Shape, T_a_b: Transform, limit: float = _ROUNDING
 
     best, least = (0.0, 0.0, 1.0), inf
     for direction in _likely_directions(a, b, T_a_b):
-        found = overlap(direction)
-        if found < least:
-            best, least = direction, found
+        amount = overlap(direction)
+        if amount < least:
+            best, least = direction, amount
         if least <= limit:
             return best
     if not isinstance(a, Sphere) and not isinstance(b, Sphere) and _rims_matter(a, b, T_a_b):

@@ -95,7 +95,9 @@ class Reading(NamedTuple):
     @property
     def raw_xacro(self) -> Problem | None:
         """The problem of xacro that is loaded without xacro; None where it has none."""
-        return next((it for it in self.problems if it.kind is urdf_problems.RAW_XACRO), None)
+        return next(
+            (problem for problem in self.problems if problem.kind is urdf_problems.RAW_XACRO), None
+        )
 
     @property
     def elements(self) -> Element | None:
@@ -189,27 +191,34 @@ def _read_content(document: XmlDocument, root: Element, newest: UrdfVersion) -> 
     read = partial(_read_robot, document, root, newest)
     robot, problems = read()
     effects = {problem.kind.effect for problem in listed} | problems.effects
-    found, incomplete = (
+    robot_problems, incomplete = (
         problems.listed,
         _why_incomplete(document, robot) if effects.intersection(_FATAL) else "",
     )
     is_meant = document.is_meant and "rejects" not in problems.effects
     undone: tuple[Word, ...] = ()
-    if document.is_meant and not is_meant and not incomplete and len(causes(found)) <= _MAX_CAUSES:
+    if (
+        document.is_meant
+        and not is_meant
+        and not incomplete
+        and len(causes(robot_problems)) <= _MAX_CAUSES
+    ):
         from grader.ros.urdf.meant import read_as_meant  # late: few files are rejected
 
         meant = read_as_meant(root, robot, read)
         if meant is not None:
             is_meant, robot, undone = True, meant.robot, tuple(meant.words)
             problems.undone = {word.place: word.fixes for word in undone}
-            own = _without_other_guesses(read, causes(found), meant.problems)
-            found = [*own, *meant.problems]
+            independent = _without_other_guesses(read, causes(robot_problems), meant.problems)
+            robot_problems = [*independent, *meant.problems]
     if document.root is None:
         broken = {problem.location.line for problem in listed}
-        found = [
-            it for it in found if not it.kind.is_consequence and it.location.line not in broken
+        robot_problems = [
+            problem
+            for problem in robot_problems
+            if not problem.kind.is_consequence and problem.location.line not in broken
         ]
-    listed += found
+    listed += robot_problems
     if problems.unlisted:
         message = f"{problems.unlisted} more problems of this file are not listed"
         listed.append(
@@ -236,9 +245,9 @@ def _problems_for_python(document: XmlDocument, robot: Robot) -> Iterator[Proble
         return
     at = document.source.at(error.offset)
     same_line = (
-        it.subject
-        for it in document.problems
-        if it.location.line == at.line and it.kind is NOT_WELL_FORMED
+        problem.subject
+        for problem in document.problems
+        if problem.location.line == at.line and problem.kind is NOT_WELL_FORMED
     )
     message = f"joint_state_publisher cannot read this file ({next(same_line, error.message)})"
     message += ": in RViz no moving link has a transform"
@@ -252,7 +261,7 @@ def _verdict(effects: Collection[Effect]) -> Verdict:
 
 
 def _without_other_guesses(
-    read: Callable[[int], tuple[Robot, Problems]], found: list[Problem], assumed: list[Problem]
+    read: Callable[[int], tuple[Robot, Problems]], reported: list[Problem], assumed: list[Problem]
 ) -> list[Problem]:
     """Return problems without guesses where words of another line are read as others: these tell
     what is meant.
@@ -261,7 +270,7 @@ def _without_other_guesses(
     _, problems = read(NO_GUESSES)
     plain = {(problem.kind, problem.location): problem.message for problem in problems.listed}
     changed = []
-    for problem in found:
+    for problem in reported:
         message = problem.message
         if problem.location.line not in lines:
             message = plain.get((problem.kind, problem.location), message)

@@ -114,16 +114,16 @@ class RobotSlips:
     ) -> Iterator[Slip]:
         """Yield the slip in the name of an attribute, in its value, or in both."""
         source, start = self._place(element)
-        found = markup.attribute(source.text, start, name)
-        if found is None:
+        attribute = markup.attribute(source.text, start, name)
+        if attribute is None:
             return
-        written = source.text[slice(*found.value)]
+        written = source.text[slice(*attribute.value)]
         value = written if numbers is None else numbers
         if numbers is not None and written != element.get(name):  # xacro makes the value of texts
             value = _without_separators(written)
-        before = source.text[found.start + len(name) : found.value_start]
-        after = source.text[found.value_end : found.end]
-        edit = source.edit(found.start, found.end, f"{meant}{before}{value}{after}")
+        before = source.text[attribute.start + len(name) : attribute.value_start]
+        after = source.text[attribute.value_end : attribute.end]
+        edit = source.edit(attribute.start, attribute.end, f"{meant}{before}{value}{after}")
         if edit.old == edit.new or "\n" in edit.old:
             return
         reaction = f"ROS 2 cannot read {name}={quoted(cut(written, _MAX_SHOWN))} of <{tag}>"
@@ -159,10 +159,10 @@ class RobotSlips:
             written, right = (meant, name) if is_definition else (name, meant)
             for element in misspelt:
                 source, start = self._place(element)
-                found = markup.attribute(source.text, start, "name")
-                if found is not None and source.text[slice(*found.value)] == written:
-                    text = source.text[found.start : found.end].replace(written, right)
-                    edit = source.edit(found.start, found.end, text)
+                attribute = markup.attribute(source.text, start, "name")
+                if attribute is not None and source.text[slice(*attribute.value)] == written:
+                    text = source.text[attribute.start : attribute.end].replace(written, right)
+                    edit = source.edit(attribute.start, attribute.end, text)
                     reaction = f"there is no material {quoted(name)}"
                     assumption = f"the material {quoted(written)} is read as {quoted(right)}"
                     slips[element] = self._slip(element, (edit,), reaction, assumption, "name")

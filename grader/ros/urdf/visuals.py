@@ -10,11 +10,11 @@ from grader.ros.urdf.shapes import PlacedShape
 
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     """Return the visuals of a link that have a size; raise MissingElement if there is none."""
-    found = robot.link(link)
-    shown = tuple(visual for visual in found.visuals if not visual.geometry.is_empty)
+    shown_link = robot.link(link)
+    shown = tuple(visual for visual in shown_link.visuals if not visual.geometry.is_empty)
     if not shown:
         message = f"link {link!r} has no visual with a size"
-        raise MissingElement("visual", link, message=message, location=place(found.location))
+        raise MissingElement("visual", link, message=message, location=place(shown_link.location))
     return shown
 
 

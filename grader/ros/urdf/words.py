@@ -79,10 +79,10 @@ def meant_value(text: str, attribute: str) -> str | None:
     plain = "".join(words)
     decimal = _DECIMAL_COMMA.sub(".", plain)
     ways = {plain, _SEPARATORS.sub(" ", plain).strip(), _SEPARATORS.sub(" ", decimal).strip()}
-    found = {way for way in ways if _is_read(way, count)}
-    if len(found) == 1:
-        return found.pop()
-    readable = readable_numbers(text, count) if not found else None
+    readable_ways = {way for way in ways if _is_read(way, count)}
+    if len(readable_ways) == 1:
+        return readable_ways.pop()
+    readable = readable_numbers(text, count) if not readable_ways else None
     return " ".join(readable) if readable is not None and len(readable) == count else None
 
 

@@ -76,9 +76,9 @@ class Corrections:
         if parameters:
             return _correction(parameters, location, is_of_element=True)
         if unknown is not None:
-            found = self._correct_unknown(place, attribute, unknown)
-            if found is not None:
-                return found
+            correction = self._correct_unknown(place, attribute, unknown)
+            if correction is not None:
+                return correction
         ways: tuple[Callable[[Refusal], Edits], ...] = (
             _power,
             self._decimal_commas,
@@ -204,11 +204,11 @@ class Corrections:
         is_value = any(unknown.name in node.attributes.values() for node in self.nodes())
         if unknown.kind != "property" or not (is_value or unknown.meant is None):
             return ()
-        for own, text, quote in _values(place, attribute):
+        for attribute_name, text, quote in _values(place, attribute):
             other = '"' if quote == "'" else "'"
             if "${" in text and compared.search(text):
                 return _with_value(
-                    place, own, compared.sub(rf"\g<1>{other}{unknown.name}{other}", text)
+                    place, attribute_name, compared.sub(rf"\g<1>{other}{unknown.name}{other}", text)
                 )
         return ()
 
@@ -235,17 +235,21 @@ class Corrections:
         """Return the edits that write decimal points in the numbers that an expression uses."""
         _, place, attribute = refusal
         expressions = [
-            it for _, text, _ in _values(place, attribute) for it in _EXPRESSION.findall(text)
+            expression
+            for _, text, _ in _values(place, attribute)
+            for expression in _EXPRESSION.findall(text)
         ]
         names = {name for text in expressions for name in _NAME.findall(text)}
         edits: list[Edit] = []
         for node in self.nodes():
-            own = {
+            named_by = {
                 "value": node.attributes.get("name", ""),
                 "default": node.attributes.get("name", ""),
             }
             for key, text in node.attributes.items() if node.tag.startswith("xacro:") else ():
-                name = own.get(key, key) if node.tag in ("xacro:property", "xacro:arg") else key
+                name = (
+                    named_by.get(key, key) if node.tag in ("xacro:property", "xacro:arg") else key
+                )
                 if name in names and _DECIMAL_COMMA.fullmatch(text):
                     edits += _with_value(node.place, key, text.replace(",", "."))
         return tuple(edits)
@@ -262,7 +266,9 @@ class Corrections:
         known name.
         """
         properties = {
-            it.attributes.get("name", "") for it in self.nodes() if it.tag == "xacro:property"
+            element.attributes.get("name", "")
+            for element in self.nodes()
+            if element.tag == "xacro:property"
         }
         edits: list[Edit] = []
         for root in self._files.documents.values():
@@ -290,18 +296,18 @@ def _defined_name(node: XacroNode) -> str:
 def _marked(text: str, known: Iterable[str]) -> str:
     """Return a text in which each known name that is meant to be evaluated is in ${}."""
 
-    def marked(found: re.Match[str]) -> str:
-        name = found["brace"] or found["paren"]
+    def marked(match: re.Match[str]) -> str:
+        name = match["brace"] or match["paren"]
         if name is not None:
             if name in known:
                 return f"${{{name}}}"
-            return found[0]
-        bare = found["bare"] or ""
+            return match[0]
+        bare = match["bare"] or ""
         ends = [len(bare), *(at.start() for at in reversed([*re.finditer("_", bare)]))]
         end = next((end for end in ends if bare[:end] in known), 0)
         if end:
             return f"${{{bare[:end]}}}{bare[end:]}"
-        return found[0]
+        return match[0]
 
     return _UNMARKED.sub(marked, text)
 
@@ -311,7 +317,10 @@ def _power(refusal: Refusal) -> Edits:
     _, place, attribute = refusal
     for name, text, _ in _values(place, attribute):
         new = _EXPRESSION.sub(
-            lambda it: it[0] if TEXT_IN_QUOTES.search(it[0]) else it[0].replace("^", "**"), text
+            lambda match: (
+                match[0] if TEXT_IN_QUOTES.search(match[0]) else match[0].replace("^", "**")
+            ),
+            text,
         )
         if new != text:
             return _with_value(place, name, new)
@@ -323,12 +332,15 @@ def _values(place: ScopePlace, attribute: str | None) -> Iterator[tuple[str, str
     attributes of the tag.
     """
     source, start = place.source.element(place.tag)
-    for found in markup.attributes(source.text, start):
-        if attribute in (None, found.name) and found.value_end - found.value_start <= _MAX_VALUE:
+    for markup_attribute in markup.attributes(source.text, start):
+        if (
+            attribute in (None, markup_attribute.name)
+            and markup_attribute.value_end - markup_attribute.value_start <= _MAX_VALUE
+        ):
             yield (
-                found.name,
-                source.text[found.value_start : found.value_end],
-                source.text[found.value_end],
+                markup_attribute.name,
+                source.text[markup_attribute.value_start : markup_attribute.value_end],
+                source.text[markup_attribute.value_end],
             )
 
 
@@ -378,13 +390,13 @@ def values_of_other_calls(
     """Yield the edits that give a call the values that it lacks, from other calls of the macro,
     also negated.
     """
-    own = next((node for node in nodes if node.place[:2] == place[:2]), None)
+    own_call = next((node for node in nodes if node.place[:2] == place[:2]), None)
     for other in nodes:
         given = other.attributes
         if (
-            own is not None
-            and other is not own
-            and other.tag == own.tag
+            own_call is not None
+            and other is not own_call
+            and other.tag == own_call.tag
             and set(lacking) <= given.keys()
         ):
             copied = {name: given[name] for name in lacking}
@@ -397,10 +409,10 @@ def _mirrored(text: str) -> Iterator[str]:
     """Yield a text with each of its numbers and expressions negated: one on the other side differs
     in one of them.
     """
-    for found in _WORD.finditer(text):
-        new = negated(found[0])
-        if new != found[0] and found[0].strip("0."):
-            yield f"{text[: found.start()]}{new}{text[found.end() :]}"
+    for match in _WORD.finditer(text):
+        new = negated(match[0])
+        if new != match[0] and match[0].strip("0."):
+            yield f"{text[: match.start()]}{new}{text[match.end() :]}"
 
 
 def negated(text: str) -> str:
@@ -419,7 +431,7 @@ def _give(place: ScopePlace, values: Mapping[str, str]) -> Edits:
     source, start = place.source.element(place.tag)
     ends = [
         markup.name_end(source.text, start),
-        *(it.end for it in markup.attributes(source.text, start)),
+        *(other.end for other in markup.attributes(source.text, start)),
     ]
     return (
         source.edit(
@@ -437,11 +449,11 @@ def _rename(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edi
         tags = tag_edits(*place.written, f"xacro:{old}", f"xacro:{new}")
         if tags:
             return tags
-    for found in markup.attributes(source.text, start):
-        whole = source.text[found.start : found.end]
+    for markup_attribute in markup.attributes(source.text, start):
+        whole = source.text[markup_attribute.start : markup_attribute.end]
         changed = re.sub(
             rf"(?<![\w.]){re.escape(old)}(?!\w)", new, whole, count=0 if "$" in whole else 1
         )
-        if attribute in (None, found.name) and changed != whole:
-            return (source.edit(found.start, found.end, changed),)
+        if attribute in (None, markup_attribute.name) and changed != whole:
+            return (source.edit(markup_attribute.start, markup_attribute.end, changed),)
     return ()

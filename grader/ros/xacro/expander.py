@@ -85,12 +85,12 @@ class Expander:
         self.files = files
         self.budget = budget
         # `texts` is set below, so that the lambda is needed.
-        own = document_functions(
+        functions = document_functions(
             self._load_yaml,
             lambda name: self.texts.argument(name),  # noqa: PLW0108
             lambda name: self.texts.note(name),  # noqa: PLW0108
         )
-        self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
+        self.texts = Texts(dict(arguments), self.budget, self.report, functions, files.has_package)
         self.own_tags = [tag.removeprefix("xacro:") for tag in handlers]
         self.problems: list[Problem] = []
         self.warnings: list[Problem] = []  # what xacro writes to stderr, and notes

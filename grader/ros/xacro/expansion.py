@@ -130,7 +130,7 @@ class ExpandedSource(Source):
     @property
     def open_reason(self) -> str:
         """Why something could not be expanded; empty if everything was."""
-        return next((found.reason for found in self._expander.undetermined), "")
+        return next((part.reason for part in self._expander.undetermined), "")
 
     def inventory(self, budget: Budget) -> "Inventory":
         """Return what its files define and use. Raises NotDecided where that takes too much."""
@@ -141,15 +141,15 @@ class ExpandedSource(Source):
         except OutOfBudget as error:
             raise NotDecided(str(error)) from None
 
-    def check_known(self, found: "Inventory") -> None:
+    def check_known(self, read_inventory: "Inventory") -> None:
         """Raise NotDecided if what seems to be missing may be in a part that is not known."""
         is_open = any(
-            (place.source.path, place.tag) not in self.includes for place in found.includes
+            (place.source.path, place.tag) not in self.includes for place in read_inventory.includes
         )
         if self.open_reason and is_open:
             raise NotDecided(self.open_reason)
-        if found.dynamic:
-            place = found.dynamic[0].at()
+        if read_inventory.dynamic:
+            place = read_inventory.dynamic[0].at()
             reason = "xacro evaluates the name of a property or macro"
             raise NotDecided(f"{reason} ({place.path}, line {place.line})", reason)
 
@@ -198,12 +198,14 @@ class _Expansion(NamedTuple):
         problem in it.
         """
         undetermined = [
-            Problem(xacro_problems.XACRO_UNDETERMINED, found.reason, found.location)
-            for found in self.undetermined
+            Problem(xacro_problems.XACRO_UNDETERMINED, part.reason, part.location)
+            for part in self.undetermined
         ]
         problems = [*self.problems, *undetermined, *self.warnings]
-        found = XmlDocument(self.root, self.source, problems, 0, self.unresolved, is_expanded=True)
-        return found._replace(recovered=self.recovered, is_meant=self.is_meant)
+        expanded = XmlDocument(
+            self.root, self.source, problems, 0, self.unresolved, is_expanded=True
+        )
+        return expanded._replace(recovered=self.recovered, is_meant=self.is_meant)
 
 
 def expand(
@@ -233,15 +235,15 @@ def expand(
         meant, expander = read(_by_path(corrected))
     while expander is not None and expander.corrections and len(assumed) < _MAX_ASSUMED:
         of_elements = [
-            found for found in expander.corrections if found.is_of_element
+            correction for correction in expander.corrections if correction.is_of_element
         ]  # first: they may define names
         new = of_elements or expander.corrections
-        if all(corrected.keys() >= set(found.fix.edits) for found in new):
+        if all(corrected.keys() >= set(correction.fix.edits) for correction in new):
             break
-        for found in new:
-            corrected |= dict.fromkeys(found.fix.edits)
-            sentence = found.fix.assumption
-            assumed.setdefault(sentence, Problem(RECOVERED, sentence, found.location))
+        for correction in new:
+            corrected |= dict.fromkeys(correction.fix.edits)
+            sentence = correction.fix.assumption
+            assumed.setdefault(sentence, Problem(RECOVERED, sentence, correction.location))
         meant, expander = read(_by_path(corrected))
     if expander is None or meant is expansion:
         return expansion
@@ -325,7 +327,7 @@ def _instructions(text: Source) -> Iterator[Problem]:
     TinyXML2 refuses it.
     """
     instruction = next(
-        (found for found in _INSTRUCTION.finditer(text.text) if found["target"]), None
+        (match for match in _INSTRUCTION.finditer(text.text) if match["target"]), None
     )
     if instruction is not None:
         what = f"<?{instruction['target'][:40]}?>"
@@ -347,17 +349,17 @@ def _element(
         if node.unresolved or node.open is not None:
             unresolved[element] = Unresolved(node.unresolved, node.open)
         children: list[tuple[XacroNode, Element]] = []
-        for kind, found in groupby(node.children, type):
+        for kind, group in groupby(node.children, type):
             if kind is XacroNode:
-                inside = [child for child in found if isinstance(child, XacroNode)]
+                inside = [child for child in group if isinstance(child, XacroNode)]
                 children += [
-                    (it, make_element(_name(it.tag), _attributes(it.attributes), element))
-                    for it in inside
+                    (child, make_element(_name(child.tag), _attributes(child.attributes), element))
+                    for child in inside
                 ]
             elif children:
-                children[-1][1].tail = "".join(map(str, found))
+                children[-1][1].tail = "".join(map(str, group))
             else:
-                element.text = "".join(map(str, found))
+                element.text = "".join(map(str, group))
         pending += reversed(children)
     return made
 
@@ -375,4 +377,4 @@ def _name(tag: str) -> str:
 def _attributes(attributes: dict[str, str]) -> dict[str, str]:
     if ":" not in "".join(attributes):
         return attributes
-    return {_name(name): it for name, it in attributes.items()}
+    return {_name(name): text for name, text in attributes.items()}

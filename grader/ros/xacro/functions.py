@@ -76,17 +76,17 @@ def document_functions(
 
     `note` is called with the full name of each function that writes to stderr when it is called.
     """
-    own = {
+    functions = {
         **_XACRO,
         "load_yaml": PlainFunction("load_yaml", load_yaml),
         "arg": PlainFunction("arg", argument),
     }
-    old = {name: own[name] for name in ("load_yaml", "abs_filename", "dotify")}
+    old = {name: functions[name] for name in ("load_yaml", "abs_filename", "dotify")}
     old |= {name: BUILTINS[name] for name in ("sorted", "range")}
-    own |= {name: _noted(f"xacro.{name}", own[name], note) for name in _MESSAGES}
+    functions |= {name: _noted(f"xacro.{name}", functions[name], note) for name in _MESSAGES}
     return {
-        "xacro": namespace("xacro", own),
-        **{name: _noted(name, it, note) for name, it in old.items()},
+        "xacro": namespace("xacro", functions),
+        **{name: _noted(name, function, note) for name, function in old.items()},
     }
 
 

@@ -36,13 +36,13 @@ class Inventory:
     @staticmethod
     def first_places(definitions: _Definitions, paths: Sequence[str]) -> dict[str, Location]:
         """Return where names are first defined in some files."""
-        found: dict[str, Location] = {}
+        first: dict[str, Location] = {}
         for name, places in definitions.items():
             for place in places:
                 if place.source.path in paths:
-                    found[name] = place.at("name")
+                    first[name] = place.at("name")
                     break
-        return found
+        return first
 
     def define(self, definitions: _Definitions, name: str, place: ScopePlace) -> None:
         """Note a definition, or that its name is evaluated."""
@@ -56,7 +56,7 @@ def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
     """Return what files define and use; a macro's parameter is no use of a property of its name.
     Raises OutOfBudget.
     """
-    found, roots = Inventory(), [*documents]
+    inventory, roots = Inventory(), [*documents]
     namespaces = {
         node.attributes.get("ns")
         for root in roots
@@ -66,21 +66,21 @@ def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
     waiting = [(root, frozenset[str]()) for root in reversed(roots)]
     while waiting:
         node, hidden = waiting.pop()
-        own = _note_tag(node, found)
+        tag_name = _note_tag(node, inventory)
         texts = [
             *node.attributes.values(),
             *(child for child in node.children if isinstance(child, str)),
         ]
         dotted = {name.partition(".") for text in texts for name in _names_in(text)}
         names = {other if first in namespaces else first for first, _, other in dotted}
-        found.used.update(names - hidden - {own})
+        inventory.used.update(names - hidden - {tag_name})
         if node.tag == "xacro:macro":
-            hidden |= _parameters(node, found, budget)
+            hidden |= _parameters(node, inventory, budget)
         waiting += [(child, hidden) for child in reversed(node.elements)]
-    return found
+    return inventory
 
 
-def _note_tag(node: XacroNode, found: Inventory) -> str:
+def _note_tag(node: XacroNode, inventory: Inventory) -> str:
     """Note what a tag of xacro defines or calls; return the name of a property, whose own text is
     no use of it.
     """
@@ -88,25 +88,25 @@ def _note_tag(node: XacroNode, found: Inventory) -> str:
     match node.tag:
         case "xacro:property":
             if node.attributes.get("remove") in (None, "false"):
-                found.define(found.properties, name, node.place)
+                inventory.define(inventory.properties, name, node.place)
             return name
         case "xacro:macro":
-            found.define(found.macros, name.removeprefix("xacro:"), node.place)
+            inventory.define(inventory.macros, name.removeprefix("xacro:"), node.place)
         case "xacro:include":
-            found.includes.append(node.place)
+            inventory.includes.append(node.place)
         case "xacro:insert_block":
-            found.used.add(name)
+            inventory.used.add(name)
         case "xacro:call":
             called = node.attributes.get("macro", "")
-            found.called.add(called.rpartition(".")[2])
+            inventory.called.add(called.rpartition(".")[2])
             if "$" in called:
-                found.dynamic.append(node.place)
+                inventory.dynamic.append(node.place)
         case tag if tag.startswith("xacro:") and tag not in HANDLERS:
-            found.called.add(tag.removeprefix("xacro:").rpartition(".")[2])
+            inventory.called.add(tag.removeprefix("xacro:").rpartition(".")[2])
     return ""
 
 
-def _parameters(node: XacroNode, found: Inventory, budget: Budget) -> frozenset[str]:
+def _parameters(node: XacroNode, inventory: Inventory, budget: Budget) -> frozenset[str]:
     """Return the names of a macro's parameters; forwarding one uses the caller's property. Raises
     OutOfBudget.
     """
@@ -114,7 +114,7 @@ def _parameters(node: XacroNode, found: Inventory, budget: Budget) -> frozenset[
         parameters = read_parameters(node.attributes.get("params", ""), budget)
     except (EvaluationFails, Undetermined):
         return frozenset()
-    found.used.update(parameter.name for parameter in parameters if parameter.is_forwarded)
+    inventory.used.update(parameter.name for parameter in parameters if parameter.is_forwarded)
     return frozenset(parameter.name.lstrip("*") for parameter in parameters)
 
 
@@ -125,5 +125,5 @@ def _names_in(text: str) -> Iterator[str]:
         position = piece.end()
         if piece["substitution"] is not None:
             yield from _names_in(piece["substitution"])
-        for found in _NAME.finditer(TEXT_IN_QUOTES.sub("''", piece["expression"] or "")):
-            yield found[0]
+        for match in _NAME.finditer(TEXT_IN_QUOTES.sub("''", piece["expression"] or "")):
+            yield match[0]

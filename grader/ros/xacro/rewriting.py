@@ -130,10 +130,14 @@ def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written
     """
     source, at = place.source.element(place.tag)
     if attribute:
-        found = markup.attribute(source.text, at, attribute)
-        if found is None:
+        markup_attribute = markup.attribute(source.text, at, attribute)
+        if markup_attribute is None:
             return None
-        start, end, span = found.value_start, found.value_end, (found.start, found.end)
+        start, end, span = (
+            markup_attribute.value_start,
+            markup_attribute.value_end,
+            (markup_attribute.start, markup_attribute.end),
+        )
     else:
         start = markup.head_end(source.text, at)[0]
         end = source.text.rfind("</", start, markup.element_end(source.text, at))
@@ -155,10 +159,10 @@ def _definition_text(definition: XacroDefinition) -> _Written | None:
     """
     whole = _find_text(definition.place, definition.attribute, definition.scope)
     if whole is not None and definition.attribute == "params" and whole.text != definition.text:
-        found = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
-        if found is None or not whole.text.startswith(definition.text, found.end()):
+        match = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
+        if match is None or not whole.text.startswith(definition.text, match.end()):
             return None
-        whole = whole.part(found.end(), found.end() + len(definition.text))
+        whole = whole.part(match.end(), match.end() + len(definition.text))
     if whole is not None:
         return whole._replace(key=definition.key)
     return None
@@ -224,12 +228,12 @@ class _Rewriter:
             if depth:
                 yield from self._solved_origins(text, scope, old, new, depth)
             return
-        own, inside, was, value = defined
-        if _LOADED.match(own.text):
+        written, inside, was, value = defined
+        if _LOADED.match(written.text):
             return
-        parts = _parts(own, _Use(inside, was, value))
-        if not self.definitions(own):
-            yield self._rewritten(own, value)
+        parts = _parts(written, _Use(inside, was, value))
+        if not self.definitions(written):
+            yield self._rewritten(written, value)
         elif len(parts) == 1 and depth:
             part, before, after = parts[0]
             yield from self._origins(part, inside, before, after, depth - 1)
@@ -266,14 +270,14 @@ class _Rewriter:
         try:
             at = float(self._texts.written(self._texts.find(name, scope)))
             first = value_with(at)
-            found = at + (float(new) - first) / (value_with(at + 1) - first)
+            solution = at + (float(new) - first) / (value_with(at + 1) - first)
             is_solved = _is_equal(old, repr(first)) and isclose(
-                value_with(found), float(new), abs_tol=1e-9
+                value_with(solution), float(new), abs_tol=1e-9
             )
         except (EvaluationSignal, ArithmeticError, ValueError, TypeError):
             return
         if is_solved:
-            yield repr(at), format_number(found)
+            yield repr(at), format_number(solution)
 
     def _in_calls(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
         """Return the edits that give a parameter, of which a text is the default, in the calls
@@ -320,14 +324,14 @@ class _Rewriter:
         defined = self._defined(text, scope, old, new) if depth else None
         if defined is None:
             return []
-        own, inside, was, inner = defined
-        if self.definitions(own):
-            parts = _parts(own, _Use(inside, was, inner))
+        written, inside, was, inner = defined
+        if self.definitions(written):
+            parts = _parts(written, _Use(inside, was, inner))
             changes = [self._definitions(part, inside, a, b, depth - 1) for part, a, b in parts]
             if all(changes):
                 return [change for several in changes for change in several]
             return []
-        return [self._rewritten(own, inner)]
+        return [self._rewritten(written, inner)]
 
     def _defined(
         self, text: _Written, scope: XacroScope, old: str, new: str
@@ -335,34 +339,34 @@ class _Rewriter:
         """Return the definition of the one name that gives a text, its scope, and what it is and
         should be.
         """
-        found = _ALONE.fullmatch(text.text)
-        before, after = (found["before"], found["after"]) if found else ("", "")
+        match = _ALONE.fullmatch(text.text)
+        before, after = (match["before"], match["after"]) if match else ("", "")
         is_inside = (
             new.startswith(before) and new.endswith(after) and len(new) > len(before) + len(after)
         )
-        if found is None or not is_inside:
+        if match is None or not is_inside:
             return None
         inner = new[len(before) : len(new) - len(after)]
         was = old[len(before) : len(old) - len(after)]
-        if found["sign"]:
+        if match["sign"]:
             inner, was = _negate(inner), _negate(was)
-        name = found["argument"]
+        name = match["argument"]
         definition = (
-            self._texts.defaults.get(name) if name else self._definition_of(found["name"], scope)
+            self._texts.defaults.get(name) if name else self._definition_of(match["name"], scope)
         )
-        own = _definition_text(definition) if definition is not None else None
-        if definition is not None and own is not None:
-            return (own, definition.scope, was, inner)
+        written = _definition_text(definition) if definition is not None else None
+        if definition is not None and written is not None:
+            return (written, definition.scope, was, inner)
         return None
 
-    def _rewritten(self, own: _Written, value: str) -> _TextChange:
+    def _rewritten(self, written: _Written, value: str) -> _TextChange:
         """Return the change of a definition to a value, which stays in quotes."""
-        is_quoted = own.text[:1] == "'" == own.text[-1:]
-        return _TextChange(own, f"'{value}'" if is_quoted else merged(own.text, value))
+        is_quoted = written.text[:1] == "'" == written.text[-1:]
+        return _TextChange(written, f"'{value}'" if is_quoted else merged(written.text, value))
 
     def _is_loaded(self, text: _Written) -> bool:
         """Return whether a YAML file gives a text."""
-        return any(_LOADED.match(it.text) for it in self.definitions(text))
+        return any(_LOADED.match(definition.text) for definition in self.definitions(text))
 
     def _definition_of(self, name: str, scope: XacroScope) -> XacroDefinition | None:
         holder = scope.holder(name)
@@ -372,16 +376,16 @@ class _Rewriter:
 
     def definitions(self, text: _Written) -> list[_Written]:
         """Return the texts with which the names in a text are defined, also by way of others."""
-        found: dict[object, _Written] = {}
+        by_key: dict[object, _Written] = {}
         waiting = [text]
-        while waiting and len(found) < _MAX_DEFINITIONS:
+        while waiting and len(by_key) < _MAX_DEFINITIONS:
             one = waiting.pop(0)
             for definition in self._named(one):
-                own = _definition_text(definition)
-                if own is not None and definition.key not in found:
-                    found[definition.key] = own._replace(scope=definition.scope)
-                    waiting.append(found[definition.key])
-        return list(found.values())
+                written = _definition_text(definition)
+                if written is not None and definition.key not in by_key:
+                    by_key[definition.key] = written._replace(scope=definition.scope)
+                    waiting.append(by_key[definition.key])
+        return list(by_key.values())
 
     def _named(self, text: _Written) -> Iterator[XacroDefinition]:
         for expression in _EXPRESSION.findall(text.text):
@@ -397,7 +401,11 @@ class _Rewriter:
         """Return the texts that define numbers from which an attribute is computed."""
         text = _find_text(place, attribute, scope)
         if text is not None:
-            return [it for it in self.definitions(text) if _NUMBER.fullmatch(it.text)]
+            return [
+                definition
+                for definition in self.definitions(text)
+                if _NUMBER.fullmatch(definition.text)
+            ]
         return []
 
 
@@ -413,7 +421,7 @@ def _parts(text: _Written, use: _Use) -> list[tuple[_Written, str, str]]:
     """Return the parts of a text that should be others, each with what it is and should be:
     words, or the whole.
     """
-    tokens = [text.part(*found.span()) for found in _TOKEN.finditer(text.text)]
+    tokens = [text.part(*match.span()) for match in _TOKEN.finditer(text.text)]
     old, new = use.old.split(), use.new.split()
     if len(tokens) != len(old) or len(old) != len(new) or len(tokens) < 2:
         return [(text, use.old, use.new)]
@@ -424,11 +432,11 @@ def _around(text: _Written, use: _Use) -> str:
     """Return a text with another one around its only expression, whose value stays:
     ${side}_joint; empty if it goes.
     """
-    found = _ALONE.fullmatch(text.text)
-    if found is None or not (found["before"] or found["after"]):
+    match = _ALONE.fullmatch(text.text)
+    if match is None or not (match["before"] or match["after"]):
         return ""
-    value = use.old[len(found["before"]) : len(use.old) - len(found["after"])]
-    expression = text.text[len(found["before"]) : len(text.text) - len(found["after"])]
+    value = use.old[len(match["before"]) : len(use.old) - len(match["after"])]
+    expression = text.text[len(match["before"]) : len(text.text) - len(match["after"])]
     if value.isidentifier() and use.new.count(value) == 1:
         return use.new.replace(value, expression)
     return ""
@@ -450,7 +458,7 @@ def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
     """Return the edits that correct a text in quotes in the condition of an <xacro:if> or
     <xacro:unless>: 'rigth'.
     """
-    found: list[Edits] = []
+    edits: list[Edits] = []
     for tag in re.finditer(r"<xacro:(?:if|unless)\b", source.text):
         value = markup.attribute(source.text, tag.start(), "value")
         if value is None:
@@ -461,8 +469,8 @@ def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
             meant = near(word, known) if word not in known else None
             if meant is not None:
                 new = re.sub(rf"\b{word}\b", meant, text)
-                found.append((with_attribute(source, tag.start(), "value", new),))
-    return found
+                edits.append((with_attribute(source, tag.start(), "value", new),))
+    return edits
 
 
 class _XacroMistake(NamedTuple):
@@ -515,8 +523,8 @@ class ExpandedEdits:
     def numbers(self, tag: int, attribute: str) -> "list[NumberDefinition]":
         """Return the definitions of the numbers from which an attribute is computed."""
         place = self._source.nodes[tag].place
-        found = self._rewriter.numbers(place, attribute, place.scope or XacroScope())
-        return [NumberDefinition(written) for written in found]
+        definitions = self._rewriter.numbers(place, attribute, place.scope or XacroScope())
+        return [NumberDefinition(written) for written in definitions]
 
     def siblings(self, tag: int) -> list[int]:
         """Return the indices of the expanded elements that come from the same place of the
@@ -527,10 +535,10 @@ class ExpandedEdits:
 
     @cached_property
     def _by_place(self) -> dict[tuple[str, int], list[int]]:
-        found: dict[tuple[str, int], list[int]] = {}
+        indices: dict[tuple[str, int], list[int]] = {}
         for index, node in enumerate(self._source.nodes):
-            found.setdefault((node.place.source.path, node.place.tag), []).append(index)
-        return found
+            indices.setdefault((node.place.source.path, node.place.tag), []).append(index)
+        return indices
 
     def corrections(self, names: Sequence[str]) -> list[_XacroMistake]:
         """Return edits that may correct undeclared and undefined names, calls of macros, and
@@ -541,29 +549,38 @@ class ExpandedEdits:
         written = Source(self._source.path, self._source.text)
         if self._source.corrected:
             texts = in_backticks(edit.old for edit in self._source.corrected)
-            found = [_XacroMistake(self._source.corrected, f"xacro refuses {texts or 'this'}")]
+            mistakes = [_XacroMistake(self._source.corrected, f"xacro refuses {texts or 'this'}")]
         else:
-            found = []
-        found += _corrections(written, self._source.documents, self._source.refused)
+            mistakes = []
+        mistakes += _corrections(written, self._source.documents, self._source.refused)
         given = sorted({word for name in names for word in name.split("_")})
         for document in self._source.documents.values():
             edited = _conditions(document.place.source, given)
-            found += [_XacroMistake(edits, "a text in a condition") for edits in edited]
-        return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
+            mistakes += [_XacroMistake(edits, "a text in a condition") for edits in edited]
+        return list({correction.edits: correction for correction in reversed(mistakes)}.values())[
+            ::-1
+        ]
 
     def calls(self, edit: Edit) -> dict[str, list[Location]]:
         """Return the calls of the macros that an edit is in, by their names."""
-        found: dict[str, dict[Location, None]] = {}
+        calls_by_name: dict[str, dict[Location, None]] = {}
         if not edit.old:
             return {}
         for node in self._source.nodes:
             place = node.place.at(
-                next((it for it in node.attributes if it and edit.old.startswith(f"{it}=")), None)
+                next(
+                    (
+                        parameter
+                        for parameter in node.attributes
+                        if parameter and edit.old.startswith(f"{parameter}=")
+                    ),
+                    None,
+                )
             )
             if node.place.calls and place[:3] == edit[:3]:
                 name, call = node.place.calls[-1]
-                found.setdefault(name, {})[call.at()] = None
-        return {name: [*calls] for name, calls in found.items()}
+                calls_by_name.setdefault(name, {})[call.at()] = None
+        return {name: [*calls] for name, calls in calls_by_name.items()}
 
     @cached_property
     def _rewriter(self) -> _Rewriter:
@@ -589,9 +606,10 @@ def _corrections(
             edits = tag_edits(*node.place.written, node.tag, f"xacro:{node.tag}")
             yield _XacroMistake(edits, f"<{node.tag}> without xacro:")
     named = [
-        it
-        for it in refusals
-        if isinstance(it[0], XacroFails) and (it[0].unknown is not None or it[0].lacking)
+        refusal
+        for refusal in refusals
+        if isinstance(refusal[0], XacroFails)
+        and (refusal[0].unknown is not None or refusal[0].lacking)
     ]
     for error, place, attribute in named[:_MAX_NAMES]:
         assert isinstance(error, XacroFails)

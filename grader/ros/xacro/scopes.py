@@ -170,26 +170,27 @@ class XacroScope:
         """Return the names that are known here, each with the tag and attribute that define it
         where there is one.
         """
-        found = self.parent.definitions() if self.parent is not None else {}
+        visible = self.parent.definitions() if self.parent is not None else {}
         for name, definition in (
             (name, bound.definition) for name, bound in self.properties.items()
         ):
             if _is_compared(name):
                 attribute = _NAMED_IN.get(definition.attribute) if definition is not None else None
-                found[name] = (
+                visible[name] = (
                     (definition.place, attribute) if definition is not None and attribute else None
                 )
-        return found
+        return visible
 
     def blocks(self) -> dict[str, tuple[ScopePlace, str] | None]:
         """Return the names of the blocks of this macro, with its own tag."""
         bound = {
-            name.lstrip("*"): it.definition
-            for name, it in self.properties.items()
+            name.lstrip("*"): block_property.definition
+            for name, block_property in self.properties.items()
             if name.startswith("*")
         }
         return {
-            name: (it.place, it.attribute) if it is not None else None for name, it in bound.items()
+            name: (block.place, block.attribute) if block is not None else None
+            for name, block in bound.items()
         }
 
     def bind(
@@ -212,27 +213,27 @@ class XacroScope:
 
     def value(self, name: str, evaluate: _Evaluate, report: ReportFailure) -> Value:
         """Return the value of a name that this scope binds itself."""
-        found = self.properties[name]
-        if found.failure is not None:
-            raise found.failure.with_traceback(None)
-        if not found.is_lazy:
-            return found.value
-        if found.is_open:
+        binding = self.properties[name]
+        if binding.failure is not None:
+            raise binding.failure.with_traceback(None)
+        if not binding.is_lazy:
+            return binding.value
+        if binding.is_open:
             raise EvaluationFails(f"the property {name} is defined by itself")
-        found.is_open = True
+        binding.is_open = True
         try:
-            found.value, found.is_lazy = _literal(evaluate(found.value, self)), False
+            binding.value, binding.is_lazy = _literal(evaluate(binding.value, self)), False
         except EvaluationFails as error:
-            if found.definition is not None and not isinstance(error, Reported):
-                report(error, found.definition.place, "value")
-            found.failure = Reported(str(error))
-            raise found.failure from None
+            if binding.definition is not None and not isinstance(error, Reported):
+                report(error, binding.definition.place, "value")
+            binding.failure = Reported(str(error))
+            raise binding.failure from None
         except Undetermined as error:
-            found.failure = error
+            binding.failure = error
             raise
         finally:
-            found.is_open = False
-        return found.value
+            binding.is_open = False
+        return binding.value
 
 
 def _is_compared(name: str) -> bool:

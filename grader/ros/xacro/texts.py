@@ -65,7 +65,7 @@ class Texts:
         arguments: dict[str, str | None],
         budget: Budget,
         report: ReportFailure,
-        own: dict[str, Value],
+        functions: dict[str, Value],
         is_own: Callable[[str], bool],
     ) -> None:
         """`own` are functions that need the document, such as load_yaml; `is_own`: whether a
@@ -79,7 +79,7 @@ class Texts:
         self._budget = budget
         self._is_own = is_own
         self._report = report
-        self._globals = {**GLOBALS, **own}
+        self._globals = {**GLOBALS, **functions}
         self.noted: dict[
             tuple[str, str], None
         ] = {}  # functions that write to stderr, and ^, each with the expression
@@ -138,18 +138,20 @@ class Texts:
         raise XacroFails(*self.unknown("property", name, scope, self._globals))
 
     def unknown(
-        self, kind: str, name: str, scope: XacroScope, own: Iterable[str] = ()
+        self, kind: str, name: str, scope: XacroScope, nearer: Iterable[str] = ()
     ) -> tuple[str, UnknownName]:
         """Return that a name is undefined, and the known ones. Raises OutOfBudget: finding a
         similar one takes long.
         """
-        known: Known = {**dict.fromkeys(own), **scope.definitions()}
+        known: Known = {**dict.fromkeys(nearer), **scope.definitions()}
         self._budget.charge(len(known))
         key = (name, *known)
         if key not in self._similar:
             self._budget.charge(_OF_NAME * len(known))
             values = [
-                it for it in known if isinstance(self._globals.get(it, 0), int | float)
+                candidate
+                for candidate in known
+                if isinstance(self._globals.get(candidate, 0), int | float)
             ]  # no functions
             self._similar[key] = did_you_mean(name, known), near(name, values)
         guess, meant = self._similar[key]
@@ -238,12 +240,12 @@ class Texts:
             raise EvaluationFails(f"$({text}): no $ and no ( can be inside of $(...)")
         if command not in ("find", "arg") or len(args) != 1:
             raise EvaluationFails(f"$({text}): expected $(find PACKAGE) or $(arg NAME)")
-        found: str = self._charge(
+        result: str = self._charge(
             self.share(args[0]) if command == "find" else self.argument(args[0])
         )
-        if "$(" in found:
-            return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found)
-        return found
+        if "$(" in result:
+            return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), result)
+        return result
 
     def share(self, package: str) -> str:
         """Return the text that $(find package) gives."""

@@ -195,7 +195,7 @@ class Files:
             edits = ()
         conflicts = find_conflicts(source.text)
         assumed = (
-            "; ".join(found.message for found in repaired.assumed[:3])
+            "; ".join(assumption.message for assumption in repaired.assumed[:3])
             or "the first version is read"
         )
         if conflicts:

@@ -65,9 +65,9 @@ def walk(node: XacroNode) -> Iterator[XacroNode]:
     """Yield an element and all in it, in the order of the text."""
     waiting = [node]
     while waiting:
-        found = waiting.pop()
-        yield found
-        waiting += reversed(found.elements)
+        current = waiting.pop()
+        yield current
+        waiting += reversed(current.elements)
 
 
 def read_nodes(
@@ -90,9 +90,9 @@ def _read(data: bytes, path: str, is_repaired: bool, edits: Edits) -> tuple[Xacr
     """Return the root of an XML file, and what its attributes are charged."""
     source = Source(path, data.decode())
     text, origin = _edited(source, edits)
-    xml = _DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1)
+    xml = _DECLARATION.sub(lambda match: " " * len(match[0]), text, count=1)
     if is_repaired:
-        xml = _MISPLACED.sub(lambda found: " " * len(found[0]), xml)
+        xml = _MISPLACED.sub(lambda match: " " * len(match[0]), xml)
         xml = xml if "xmlns:xacro" in xml else _UNDECLARED.sub(r"\1xacro" + _STAND_IN, xml)
     root = parse_xml(xml.encode("utf-8", "surrogateescape"))
     definitions = root.getroottree().docinfo.internalDTD
@@ -100,13 +100,13 @@ def _read(data: bytes, path: str, is_repaired: bool, edits: Edits) -> tuple[Xacr
         raise Undetermined("entities of a DOCTYPE are not supported")
     if "<![CDATA[" in text and any("$" in section for section in _CDATA.findall(text)):
         raise Undetermined("a CDATA section with $ is not supported")
-    own = Budget()
+    budget = Budget()
     if edits:
         written, count = Source(path, text), sum(1 for _ in root.iter())
         source = Source(
             path, source.text, [origin(written.element(index)[1]) for index in range(count)]
         )
-    return _nodes(root, source, own), own.used
+    return _nodes(root, source, budget), budget.used
 
 
 def _edited(source: Source, edits: Edits) -> tuple[str, Callable[[int], int]]:
@@ -155,8 +155,13 @@ def recovered_nodes(
     repaired = repair(text)
     source = Source(path, written.text, [*map(origin, repaired.offsets)])
     assumed = [
-        Problem(found.kind, found.message, source.at(origin(found.offset)), found.subject)
-        for found in repaired.assumed
+        Problem(
+            assumption.kind,
+            assumption.message,
+            source.at(origin(assumption.offset)),
+            assumption.subject,
+        )
+        for assumption in repaired.assumed
     ]
     return _nodes(parse_xml(repaired.xml), source, budget) if repaired.xml else None, assumed
 

@@ -88,8 +88,8 @@ def words_of_foreign(root: Element) -> set[str]:
     """Return the words in the elements for simulators and controllers, such as names of joints and
     paths.
     """
-    found = [inner for element in foreign_elements(root) for inner in element.iter("*")]
+    foreign = [inner for element in foreign_elements(root) for inner in element.iter("*")]
     texts = [
-        text for inner in found for text in (inner.text or "", *map(str, inner.attrib.values()))
+        text for inner in foreign for text in (inner.text or "", *map(str, inner.attrib.values()))
     ]
     return {word for text in texts for word in text.split()}

@@ -158,7 +158,7 @@ def _why_repaired(text: str, scanned: "Scan") -> list["Difference"]:
     if scanned.is_refused:
         return scanned.differences
     is_empty = scanned.xml.endswith(b"/>") and len(scanned.offsets) == 1
-    if is_empty and any(found.kind is SEVERAL_ROOTS for found in scanned.differences):
+    if is_empty and any(difference.kind is SEVERAL_ROOTS for difference in scanned.differences):
         message = "the / in the tag of <robot> closes it before its links; ROS 2 finds no link"
         return [Difference(MISMATCHED_TAG, message, scanned.offsets[0])]
     return []
@@ -181,8 +181,10 @@ def _read_repaired(
 
 def _problems(differences: "Iterable[Difference]", source: Source) -> list[Problem]:
     return [
-        Problem(found.kind, found.message, source.at(found.offset), found.subject)
-        for found in differences
+        Problem(
+            difference.kind, difference.message, source.at(difference.offset), difference.subject
+        )
+        for difference in differences
     ]
 
 

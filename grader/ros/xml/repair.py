@@ -114,17 +114,17 @@ def unclosed_comments(text: str) -> list[tuple[int, int]]:
     """Return the offsets of comments that end with -> by mistake: they run to the end of another
     one or of the text.
     """
-    found: list[tuple[int, int]] = []
+    comments: list[tuple[int, int]] = []
     position = text.find("<!--")
-    while position >= 0 and len(found) < _MAX_ASSUMED:
+    while position >= 0 and len(comments) < _MAX_ASSUMED:
         end = text.find("-->", position + 4)
         whole = end if end >= 0 else len(text)
         arrow = _ARROW.search(text, position + 4, whole)
         if arrow is not None and (end < 0 or text.find("<!--", arrow.end(), whole) >= 0):
-            found.append((position, arrow.end()))
+            comments.append((position, arrow.end()))
             whole = arrow.end()
         position = text.find("<!--", whole)
-    return found
+    return comments
 
 
 class _Repairer:
@@ -194,13 +194,13 @@ class _Repairer:
             self._start(tag)
         return end
 
-    def _repair_declaration(self, found: re.Match[str]) -> None:
+    def _repair_declaration(self, match: re.Match[str]) -> None:
         """Remove a declaration that is not at the top, and end one that has no end."""
-        start, end = found.span()
-        if start and found[0].startswith("<?xml ") and self._text[:start].strip("\ufeff \t\r\n"):
+        start, end = match.span()
+        if start and match[0].startswith("<?xml ") and self._text[:start].strip("\ufeff \t\r\n"):
             self._replace(start, end, "")
-        elif found["declaration"]:
-            self._replace(start, end, found[0].rstrip("?> \t\r\n") + "?>")
+        elif match["declaration"]:
+            self._replace(start, end, match[0].rstrip("?> \t\r\n") + "?>")
 
     def _tag(self, start: int) -> tuple[Tag | None, int]:
         """Return the tag at an offset, and the offset after it; a broken one with the attributes
@@ -209,12 +209,12 @@ class _Repairer:
         try:
             tag, end = read_tag(self._text, start, lambda *_: None)
         except MalformedTagError as error:
-            found = _BROKEN.match(self._text, start)
-            if found is None:
+            match = _BROKEN.match(self._text, start)
+            if match is None:
                 self._assume("a < without the name of a tag is ignored", start)
                 self._replace(start, start + 1, "")
                 return None, max(error.resume, start + 1)
-            tag, end = self._broken(found), found.end()
+            tag, end = self._broken(match), match.end()
         if tag.form == "empty" and self._has_end(tag, end):
             self._assume(f"<{short(tag.name)} .../> is read as <{short(tag.name)} ...>", start)
             self._replace(
@@ -233,14 +233,14 @@ class _Repairer:
             return tag._replace(form="close"), end
         return tag, end
 
-    def _broken(self, found: re.Match[str]) -> Tag:
+    def _broken(self, match: re.Match[str]) -> Tag:
         """Return a broken tag as it is read: a value without a name is that of the attribute
         that the tag needs.
         """
-        name, rest = found["name"], found["rest"].rstrip()
-        if found["close"]:
-            self._replace(*found.span(), f"</{name}>")
-            return Tag(name, "close", {}, found.start())
+        name, rest = match["name"], match["rest"].rstrip()
+        if match["close"]:
+            self._replace(*match.span(), f"</{name}>")
+            return Tag(name, "close", {}, match.start())
         attributes: dict[str, str] = {}
         given = [
             (key, decode("".join(values)))
@@ -265,12 +265,12 @@ class _Repairer:
         else:
             what = "without attributes"
         self._assume(
-            f"<{short(name)}> is read {what}", found.start(), name if is_value_lost else ""
+            f"<{short(name)}> is read {what}", match.start(), name if is_value_lost else ""
         )
         form: Literal["open", "empty"] = "empty" if rest.endswith("/") else "open"
         written = "".join(f' {key}="{escape(value)}"' for key, value in attributes.items())
-        self._replace(*found.span(), f"<{name}{written}{'/' if form == 'empty' else ''}>")
-        return Tag(name, form, attributes, found.start())
+        self._replace(*match.span(), f"<{name}{written}{'/' if form == 'empty' else ''}>")
+        return Tag(name, form, attributes, match.start())
 
     def _has_end(self, tag: Tag, end: int) -> bool:
         """Return whether the content of an element and its own end tag follow, although its tag
@@ -282,8 +282,8 @@ class _Repairer:
         return other is not None and other[1] == "/"
 
     def _is_before_child(self, tag: Tag, end: int) -> bool:
-        found = _NAME.search(self._text, end)
-        return found is not None and found[1] in CHILDREN.get(tag.name, ())
+        match = _NAME.search(self._text, end)
+        return match is not None and match[1] in CHILDREN.get(tag.name, ())
 
     def _start(self, tag: Tag) -> None:
         if self._robot is None:
@@ -306,9 +306,9 @@ class _Repairer:
             self._open.append(tag)
 
     def _close(self, tag: Tag, end: int) -> None:
-        found = [index for index, opened in enumerate(self._open) if opened.name == tag.name]
-        if found:
-            self._leave(found[-1] + 1, tag.offset)
+        indices = [index for index, opened in enumerate(self._open) if opened.name == tag.name]
+        if indices:
+            self._leave(indices[-1] + 1, tag.offset)
             self._open.pop()
         elif (
             self._open
@@ -402,12 +402,12 @@ class _Repairer:
                     length += len(piece)
                 position = change.end
         places.append((length, position))
-        found = scan("".join([*pieces, self._text[position:end]]))
+        scanned = scan("".join([*pieces, self._text[position:end]]))
         offsets = []
-        for offset in found.offsets:
+        for offset in scanned.offsets:
             after, before = places[bisect_right(places, offset, key=lambda place: place[0]) - 1]
             offsets.append(before + offset - after)
-        return found.xml, offsets
+        return scanned.xml, offsets
 
 
 def _is_never_filled(tag: str) -> bool:
@@ -432,9 +432,9 @@ def _other_attribute(tag: str, given: set[str], value: str) -> str:
     known = TAGS[tag].attributes if tag in TAGS else {}
     absent = [name for name in known if name not in given and _is_value_of(name, value)]
     needed = [name for name in absent if name in REQUIRED.get(tag, ())]
-    found = needed or absent
-    if len(found) == 1:
-        return found[0]
+    candidates = needed or absent
+    if len(candidates) == 1:
+        return candidates[0]
     return ""
 
 
@@ -446,18 +446,18 @@ def _is_value_of(attribute: str, value: str) -> bool:
 
 def _joined(changes: list[_TextEdit]) -> list[_TextEdit]:
     """Return the changes with inserted end tags as a part of the change that they touch."""
-    found: list[_TextEdit] = []
+    joined: list[_TextEdit] = []
     for change in changes:
-        last = found[-1] if found else None
+        last = joined[-1] if joined else None
         if (
             last is not None
             and last.end == change.start
             and not (last.is_replacement and change.is_replacement)
         ):
-            found[-1] = _TextEdit(last.start, change.end, last.new + change.new)
+            joined[-1] = _TextEdit(last.start, change.end, last.new + change.new)
         else:
-            found.append(change)
-    return found
+            joined.append(change)
+    return joined
 
 
 def _broken_tag(text: str, start: int) -> str:
@@ -465,9 +465,9 @@ def _broken_tag(text: str, start: int) -> str:
     try:
         read_tag(text, start, lambda *_: None)
     except MalformedTagError:
-        found = _BROKEN.match(text, start)
-        if found is not None:
-            return found[0].rstrip()
+        match = _BROKEN.match(text, start)
+        if match is not None:
+            return match[0].rstrip()
         return ""
     return ""
 

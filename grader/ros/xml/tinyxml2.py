@@ -53,13 +53,13 @@ def decode(raw: str) -> str:
     references = _References(source)
     decoded = bytearray()
     read = 0
-    while (found := _KNOWN_REFERENCE.search(source, read)) is not None:
-        _copy(source, read, found.start(), decoded)
+    while (match := _KNOWN_REFERENCE.search(source, read)) is not None:
+        _copy(source, read, match.start(), decoded)
         piece, width = (
-            (_ENTITIES[found[1]], len(found[0])) if found[1] else references.at(found.start())
+            (_ENTITIES[match[1]], len(match[0])) if match[1] else references.at(match.start())
         )
         decoded += piece
-        read = found.start() + width
+        read = match.start() + width
     _copy(source, read, len(source), decoded)
     return bytes(decoded).split(b"\0")[0].decode("utf-8", "surrogateescape")
 
@@ -102,8 +102,8 @@ class _References:
         if len(source) == offset + 2:
             return b"", 1
         if self._semicolon < offset:
-            found = source.find(b";", offset)
-            self._semicolon = found if found >= 0 else len(source)
+            semicolon = source.find(b";", offset)
+            self._semicolon = semicolon if semicolon >= 0 else len(source)
             self._hexadecimal = self._decimal = None
         if self._semicolon == len(source):
             return b"&", 1
@@ -257,11 +257,11 @@ def read_tag(text: str, start: int, note: _Note) -> tuple[Tag, int]:
     if position > start + 1:
         note("space", "white space after <", start)
     closing = text.startswith("/", position)
-    found = _NAME.match(text, position + 1 if closing else position)
-    if found is None:
+    match = _NAME.match(text, position + 1 if closing else position)
+    if match is None:
         raise MalformedTagError("there is no tag name after <", start, _resume_after(text, start))
-    name = found[0]
-    attributes, position = _read_attributes(text, start, found.end(), name, note)
+    name = match[0]
+    attributes, position = _read_attributes(text, start, match.end(), name, note)
     form: Literal["open", "close", "empty"] = "close" if closing else "open"
     if text.startswith("/", position):
         form, position = "empty", position + 1
@@ -422,9 +422,9 @@ class _Scanner:
         first_tag = self._top_level[0].offset if self._top_level else 0
         if self._errors:
             errors = [
-                found
-                for found in self._differences
-                if found.kind is not xml_problems.NOT_WELL_FORMED
+                difference
+                for difference in self._differences
+                if difference.kind is not xml_problems.NOT_WELL_FORMED
             ]
             return Scan(b"", [], first_tag, errors, is_refused=True)
         robot = next((tag for tag in self._top_level if tag.name == "robot"), None)
