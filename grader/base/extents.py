@@ -98,8 +98,9 @@ def end_offset(source: Source, start: int) -> int:
 
 
 def ended(where: Location, source_of: Callable[[str], Source | None]) -> Location:
-    """Return a location with its end, and those of the macro calls that led to it; without the file
-    it ends where it begins.
+    """Return a location with its end, and those of the macro calls that led to it.
+
+    Without the file it ends where it begins.
     """
     source = source_of(where.path)
     line, column = (where.line, where.column) if source is None else end_of(source, where)

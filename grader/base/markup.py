@@ -1,5 +1,4 @@
-"""The extent of tags, attributes and elements in the text of a markup file, for edits that change
-nothing else.
+"""The extent of tags, attributes and elements in a markup file, for edits of nothing else.
 
 The text need not be well-formed XML: what a lenient parser reads can be edited, too.
 """
@@ -16,8 +15,9 @@ _STEP = "   "  # of indentation, where the file shows none
 
 
 class Attribute(NamedTuple):
-    """An attribute of a start tag, such as xyz="0 0 1": the offsets of its name, its value and its
-    end.
+    """The offsets of the name, the value and the end of an attribute, such as xyz="0 0 1".
+
+    The attribute is one of a start tag.
     """
 
     name: str
@@ -64,8 +64,9 @@ def name_end(text: str, start: int) -> int:
 
 
 def head_end(text: str, start: int) -> tuple[int, bool]:
-    """Return the offset after the start tag at an offset, and whether it is an empty element
-    (<a/>).
+    """Return the offset after the start tag at an offset, and whether the element is empty.
+
+    An empty element is written <a/>.
     """
     match = _HEAD.match(text, start)
     if match is None:
@@ -75,8 +76,9 @@ def head_end(text: str, start: int) -> tuple[int, bool]:
 
 
 def element_end(text: str, start: int) -> int:
-    """Return the offset after the end tag of the element at an offset; the end of the text where
-    that is missing.
+    """Return the offset after the end tag of the element at an offset.
+
+    Returns the end of the text where the end tag is missing.
     """
     position, is_empty = head_end(text, start)
     if is_empty:
@@ -97,16 +99,18 @@ def element_end(text: str, start: int) -> int:
 
 
 def indentation(text: str, start: int) -> str:
-    """Return the blank text between the start of a line and an offset; empty if there is something
-    else.
+    """Return the blank text between the start of a line and an offset.
+
+    It is empty if there is something else.
     """
     line = text[text.rfind("\n", 0, start) + 1 : start]
     return line if line.isspace() else ""
 
 
 def indented(xml: str, indent: str, newline: str) -> str:
-    """Return the text of an element with its lines moved to an indentation; the first line has
-    none.
+    """Return the text of an element with its lines moved to an indentation.
+
+    The first line has none.
     """
     lines = xml.replace("\r", "").split("\n")
     margin = min((len(line) - len(line.lstrip()) for line in lines[1:] if line.strip()), default=0)
@@ -116,8 +120,9 @@ def indented(xml: str, indent: str, newline: str) -> str:
 
 
 def child_indentation(text: str, start: int) -> str:
-    """Return the indentation of the children of the element at an offset: its first child's, else
-    one step more.
+    """Return the indentation of the children of the element at an offset.
+
+    It is that of its first child, else one step more than that of the element.
     """
     own_indentation = indentation(text, start)
     end, is_empty = head_end(text, start)

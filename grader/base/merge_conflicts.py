@@ -1,5 +1,6 @@
-"""Unresolved merge conflicts of git in a text, and the text with the first version of each,
-which keeps its lines.
+"""Unresolved merge conflicts of git in a text, and the text with the first version of each.
+
+This text keeps its lines.
 """
 
 import re
@@ -10,8 +11,9 @@ _VISIBLE = re.compile(r"[^\r\n]")
 
 
 class _MergeConflict(NamedTuple):
-    """The offsets of a conflict, and those that go: its marker lines, and every version but the
-    first.
+    """The offsets of a conflict, and those of the parts that are removed.
+
+    Removed are its marker lines, and every version but the first.
     """
 
     start: int
@@ -41,8 +43,9 @@ def find_conflicts(text: str) -> list[_MergeConflict]:
 
 
 def without_conflicts(text: str, conflicts: list[_MergeConflict]) -> str:
-    """Return a text with blanks for what goes of its conflicts, so that all else stays where it
-    is.
+    """Return a text with blanks for what is removed of its conflicts.
+
+    Nothing else moves.
     """
     pieces: list[str] = []
     position = 0
@@ -63,8 +66,9 @@ def describe_conflicts(text: str, conflicts: list[_MergeConflict]) -> str:
 
 
 class _ResolvedFile(NamedTuple):
-    """The bytes of a file with the first version of each conflict, what is wrong, and the line of
-    the first.
+    """The bytes of a file with the first version of each conflict, and what is wrong.
+
+    `line` is that of the first conflict.
     """
 
     data: bytes

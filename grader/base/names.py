@@ -126,8 +126,9 @@ def _sides_in(words: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _are_siblings(sides: tuple[str, ...], others: tuple[str, ...]) -> bool:
-    """Return whether two names differ in the numbers or sides that both of them have. Numbers of
-    another length may be mistyped.
+    """Return whether two names differ in the numbers or sides that both of them have.
+
+    Numbers of another length may be mistyped.
     """
     if len(sides) != len(others):
         return False
@@ -138,8 +139,9 @@ def _are_siblings(sides: tuple[str, ...], others: tuple[str, ...]) -> bool:
 
 
 def is_misspelling(name: str, known: str) -> bool:
-    """Return whether a name is similar to another, and so is each of its words: not robot_arm and
-    robot_base.
+    """Return whether a name is similar to another, and so is each of its words.
+
+    The names robot_arm and robot_base are not similar in this sense.
     """
     if closest(name, [known]) is None:
         return False
@@ -155,31 +157,35 @@ def is_misspelling(name: str, known: str) -> bool:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return `; did you mean 'x'?` for the end of a message, or nothing if no known name is
-    close.
+    """Return the end of a message: `; did you mean 'x'?`.
+
+    Returns nothing if no known name is close.
     """
     match = closest(name, known)
     return f"; did you mean {quoted(match)}?" if match else ""
 
 
 def similar_there(name: str, known: Iterable[str]) -> str:
-    """Return `; there is 'x'` for the end of a message that asks for a name, or nothing if no known
-    name is close: the one that is asked for is the right one.
+    """Return the end of a message that asks for a name: `; there is 'x'`.
+
+    Returns nothing if no known name is close: the one that is asked for is the right one.
     """
     match = closest(name, known)
     return f"; there is {quoted(match)}" if match else ""
 
 
 def folded(name: str) -> str:
-    """Return the letters and digits of a name in lower case: my_robot, My-Robot and MYROBOT are
-    one name.
+    """Return the letters and digits of a name in lower case.
+
+    The names my_robot, My-Robot and MYROBOT become one name.
     """
     return "".join(filter(str.isalnum, name.casefold()))
 
 
 def near(name: str, known: Iterable[str], suffix: str = "") -> str | None:
-    """Return the known name that another one surely stands for; None if none is near, or several
-    are equally near.
+    """Return the known name that another one surely stands for.
+
+    Returns None if none is near, or several are equally near.
 
     Words are compared one by one, whatever their case: one letter, or one exchanged pair, may
     differ in a known word of four letters or more, two in seven or more. `suffix`, the kind of
@@ -201,8 +207,9 @@ def near(name: str, known: Iterable[str], suffix: str = "") -> str | None:
 
 
 def are_of_one_side(name: str, other: str) -> bool:
-    """Return whether two names have the same numbers and words of side, place and measure, in
-    any order.
+    """Return whether two names have the same numbers and words of side, place and measure.
+
+    The order of these does not matter.
     """
     words = _words(name), _words(other)
     pairs: Iterable[tuple[str, str]] = ()
@@ -229,8 +236,9 @@ def _letters(words: tuple[str, ...]) -> str:
 def _distance(
     name: tuple[str, ...], known: tuple[str, ...], suffix: str
 ) -> tuple[int, bool] | None:
-    """Return how many letters differ, and whether the suffix is missing; None for names that are
-    not near.
+    """Return how many letters differ, and whether the suffix is missing.
+
+    Returns None for names that are not near.
     """
     texts = [_letters(name), _letters(known)]
     if not all(texts) or max(map(len, texts)) > MAX_LENGTH:
@@ -251,8 +259,9 @@ def _distance(
 
 
 def _differing_letters(word: str, known: str) -> int | None:
-    """Return how many letters or exchanged pairs differ in two words; None if these are too
-    many.
+    """Return how many letters or exchanged pairs differ in two words.
+
+    Returns None if these are too many.
     """
     if word == known:
         return 0
@@ -278,8 +287,9 @@ def _most_differing(word: str, known: str) -> int:
 
 
 def _are_distinct(word: str, known: str) -> bool:
-    """Return whether two words differ in a side, axis or measure that is, or may be, joined to
-    another word.
+    """Return whether two words differ in a side, axis or measure.
+
+    This word may be joined to another word.
     """
     if {word, known} <= _DISTINCT or word[1:] == known[1:]:  # posx and posy, lwheel and rwheel
         return True

@@ -18,8 +18,9 @@ _SPARE = 0.25  # seconds of a limit of the shell that are left to say so
 
 
 def limit_processor_time(seconds: float) -> None:
-    """Raise OutOfTime in the main thread after more seconds of processor time, and end the process
-    by SIGXCPU later. An earlier limit no longer counts.
+    """Raise OutOfTime in the main thread after more seconds of processor time.
+
+    SIGXCPU ends the process later. An earlier limit no longer counts.
 
     A lower limit of the process itself, as of `ulimit -t`, stays.
     """
@@ -59,8 +60,9 @@ def lift_processor_time() -> None:
 
 @cache
 def _own_limits() -> tuple[float, float]:
-    """Return the limits that this process has been started with: the lower one, and that which it
-    cannot raise.
+    """Return the limits that this process has been started with.
+
+    These are the lower one, and that which it cannot raise.
     """
     import resource
 

@@ -101,8 +101,9 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
 
 
 def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Path) -> None:
-    """Raise RubricError with a line for each complaint, in the order of the file, if there are
-    any.
+    """Raise RubricError with a line for each complaint, if there are any.
+
+    The lines are in the order of the file.
     """
     if complaints:
         lines, shown = key_lines(text), printable_path(path)
@@ -115,8 +116,9 @@ def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Pat
 
 
 def one_line_each(path: Path, complaints: Iterable[tuple[int, str]]) -> list[str]:
-    """Return what was found in a file by its lines; what several lines share once, with all of
-    them.
+    """Return complaints about a file by its lines.
+
+    What several lines share stands there once, with all of them.
     """
     places: dict[str, list[int]] = {}
     for line, what in sorted(complaints, key=lambda complaint: complaint[0]):
@@ -136,8 +138,9 @@ def _also(lines: Sequence[int]) -> str:
 
 
 def _syntax_mistake(error: str, text: str) -> str:
-    """Return the place of the mistake that a message of tomllib is about, what it means, and the
-    line.
+    """Return the place of the mistake that a message of tomllib is about.
+
+    Also returns what it means, and the line.
     """
     text = text.replace("\r\n", "\n")
     lines = text.split("\n")
@@ -175,8 +178,9 @@ def _why_not_utf8(data: bytes, at: int) -> str:
 
 
 def key_lines(text: str) -> dict[TomlPath, int]:
-    """Return the line of every table header and key of a valid TOML text, by its path; arrays
-    count from 0.
+    """Return the line of every table header and key of a valid TOML text, by its path.
+
+    Arrays count from 0.
     """
     lines: dict[TomlPath, int] = {(): 1}
     for line, path in _statement_paths(text):
@@ -293,8 +297,9 @@ class TomlRowReader:
     def row(
         self, where: TomlPath, row: TomlRow, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING
     ) -> TomlRow:
-        """Return the valid values of a table, converted; complain of the others and of missing
-        ones.
+        """Return the valid values of a table, converted.
+
+        Complains of the others and of missing ones.
         """
         parsed: TomlRow = {**defaults}
         for key, value in row.items():
@@ -314,8 +319,9 @@ class TomlRowReader:
         return parsed
 
     def guess(self, name: str, known: Iterable[str]) -> str:
-        """Return which known name a misspelt one may mean, as a clause; empty if none is
-        similar.
+        """Return which known name a misspelt one may mean, as a clause.
+
+        It is empty if none is similar.
         """
         self._guesses -= 1
         if self._guesses >= 0:

@@ -61,8 +61,9 @@ _DECOMPRESSORS: dict[str, Any] = {"gz": gzip.open, "bz2": bz2.open, "xz": lzma.o
 def read_archive(
     file: IO[bytes], kind: str, name: str, allowance: limits.Allowance | None = None
 ) -> Tree:
-    """Return the files in an archive. `file` is closed with the tree, or at once if it cannot be
-    read (InputError).
+    """Return the files in an archive.
+
+    `file` is closed with the tree, or at once if it cannot be read (InputError).
     """
     allowance = allowance or limits.Allowance()
     with ExitStack() as opened:
@@ -107,8 +108,9 @@ def _decompress(
 
 
 class ArchiveMember(NamedTuple):
-    """One entry of an archive. `reason` says why one of kind other is not read; `open` gives the
-    content of a file.
+    """One entry of an archive.
+
+    `reason` says why one of kind other is not read; `open` gives the content of a file.
     """
 
     path: str
@@ -121,8 +123,9 @@ class ArchiveMember(NamedTuple):
 def tree_of(
     members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX_UNPACKED_SIZE
 ) -> Tree:
-    """Return the file tree that the members of an archive make; raises InputError if they are too
-    many or too large.
+    """Return the file tree that the members of an archive make.
+
+    Raises InputError if they are too many or too large.
     """
     kept: dict[str, ArchiveMember] = {}
     ignored: list[IgnoredFile] = []
@@ -178,8 +181,9 @@ def _path_in_tree(member: ArchiveMember) -> str | IgnoredFile:
 
 
 def _check_limits(members: Iterable[ArchiveMember], name: str, limit: int) -> list[ArchiveMember]:
-    """Return the members; raises InputError for too many, or too much in those that are not ignored
-    for their size.
+    """Return the members of an archive that is within the limits.
+
+    Raises InputError for too many, or too much in those that are not ignored for their size.
     """
     listed: list[ArchiveMember] = []
     total = 0
@@ -274,8 +278,9 @@ def _open_tar_member(archive: tarfile.TarFile, info: tarfile.TarInfo) -> IO[byte
 
 
 def safe_path(name: str) -> str | None:
-    """Return a member's name as a printable path inside the archive; empty for its root; None where
-    it leads out.
+    """Return a member's name as a printable path inside the archive.
+
+    It is empty for the root of the archive, and None for a name that leads out of it.
     """
     plain = name.replace("\\", "/")
     if plain.startswith("/") or plain[1:2] == ":" or ".." in plain.split("/"):
@@ -284,8 +289,9 @@ def safe_path(name: str) -> str | None:
 
 
 def error_text(error: BaseException, shown: str) -> str:
-    """Return what an error of an archive says, fit for a message; raises MachineError if that is
-    not the cause.
+    """Return what an error of an archive says, fit for a message.
+
+    Raises MachineError if that is not the cause.
     """
     MachineError.check(error, shown)
     return printable_path(" ".join(str(error).split())[:200]) or type(error).__name__

@@ -53,8 +53,9 @@ _IN_MEMORY = 16 * 1024 * 1024
 
 
 class Children(NamedTuple):
-    """The names in one folder, unsorted. `refused` are names that are not read, each with its
-    reason.
+    """The names in one folder, unsorted.
+
+    `refused` are names that are not read, each with its reason.
     """
 
     folders: list[str]
@@ -63,8 +64,9 @@ class Children(NamedTuple):
 
 
 def _is_litter(name: str) -> bool:
-    """Return whether a file is not worth reporting: hidden, or left by an operating system or a
-    tool.
+    """Return whether a file is not worth reporting.
+
+    Such a file is hidden, or left by an operating system or a tool.
     """
     return name.startswith(".") or name in _NOT_REPORTED
 
@@ -79,8 +81,9 @@ class ClassDirectory:
         self._root, self._top = root, os.fspath(root)
 
     def children(self, folder: str, limit: int | None = None) -> Children:
-        """Return the names in a folder, at most `limit`; none if it cannot be opened, but
-        InputError for the top.
+        """Return the names in a folder, at most `limit`.
+
+        Returns none if it cannot be opened, but raises InputError for the top.
         """
         children = Children([], [], [])
         try:
@@ -133,8 +136,9 @@ class ClassDirectory:
         return os.fdopen(open_regular(Path(self._root, path), top=str(self._root)), "rb")
 
     def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
-        """Return the files of an archive, whose bytes update the digest; None for a file of another
-        kind.
+        """Return the files of an archive, whose bytes update the digest.
+
+        Returns None for a file of another kind.
         """
         tree = outer_tree(Path(self._root, path), str(self._root))
         try:
@@ -163,6 +167,7 @@ def _add_entry(entry: "os.DirEntry[str]", children: Children) -> None:
 
 class ClassZip:
     """An open zip of many submissions; paths are those of its `members`, with forward slashes.
+
     Raises InputError.
 
     `outside` are the members that lead out of it, and cannot be read.
@@ -248,8 +253,9 @@ class ClassZip:
         return self._member(path).open()
 
     def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
-        """Return the files of an archive in it, whose bytes update the digest; None for a file of
-        another kind.
+        """Return the files of an archive in it, whose bytes update the digest.
+
+        Returns None for a file of another kind.
         """
         member, name = self._member(path), path.rpartition("/")[2]
         if member.kind != "file":
@@ -287,8 +293,9 @@ class ClassZip:
 
 
 def _copy_archive(member: ArchiveMember, to: IO[bytes], digest: "hashlib._Hash") -> str | None:
-    """Copy an archive and update the digest; return its kind, or None for a file that is not an
-    archive.
+    """Copy an archive and update the digest.
+
+    Returns its kind, or None for a file that is not an archive.
     """
     with member.open() as content:
         chunk = content.read(_CHUNK)

@@ -143,8 +143,9 @@ def _size(entry: "os.DirEntry[str]", shown: str) -> int:
 
 
 def file_at(path: Path, name: str, top: str) -> File:
-    """Return a single file under its name in a submission; raises InputError if it is a symlink or
-    missing.
+    """Return a single file under its name in a submission.
+
+    Raises InputError if it is a symlink or missing.
 
     Below the folder `top` no symlink is followed.
     """
@@ -158,8 +159,9 @@ def file_at(path: Path, name: str, top: str) -> File:
 
 
 def _generated_files(folder: Path, path: str) -> list[str]:
-    """Return the files of packages below a build folder: they are named in the report, never
-    read.
+    """Return the files of packages below a build folder.
+
+    They are named in the report, never read.
     """
     generated: list[str] = []
     seen = 0
@@ -175,8 +177,9 @@ def _generated_files(folder: Path, path: str) -> list[str]:
 
 
 def _find_settings(top: str) -> list[File]:
-    """Return the hidden files of a folder that say how packages are built; no symlink is
-    followed.
+    """Return the hidden files of a folder that say how packages are built.
+
+    No symlink is followed.
     """
     settings: list[File] = []
     waiting = [""]
@@ -199,8 +202,9 @@ def _find_settings(top: str) -> list[File]:
 
 
 def _read_file(path: str, shown: str, top: str, limit: int, *, first: bool = False) -> bytes:
-    """Return the bytes of a file; messages use its name in the submission, so they are the same on
-    every machine.
+    """Return the bytes of a file.
+
+    Messages use its name in the submission, so they are the same on every machine.
     """
     if first:
         return read_start(path, limit, shown, top)

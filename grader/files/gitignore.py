@@ -93,8 +93,9 @@ def _is_ignored(path: Sequence[str], rules: Sequence[_IgnoreRule], *, is_folder:
 
 
 def _rules_above(folder: Path) -> tuple[tuple[str, ...], tuple[_IgnoreRule, ...]]:
-    """Return the folders from the root of the repository down to a folder, and the rules that hold
-    there; none where git ignores it itself.
+    """Return the folders from the root of the repository down to a folder, and the rules there.
+
+    Returns none where git ignores the folder itself.
     """
     real = Path(os.path.realpath(folder))
     root = next((above for above in (real, *real.parents) if (above / ".git").exists()), real)

@@ -1,5 +1,6 @@
-"""RViz configuration files: the fixed frame and the enabled displays, as RViz of ROS 2 reads
-them.
+"""RViz configuration files as RViz of ROS 2 reads them.
+
+What is read are the fixed frame and the enabled displays.
 """
 
 from collections.abc import Iterator
@@ -76,8 +77,9 @@ class Display(NamedTuple):
 
 
 class RvizFile(NamedTuple):
-    """The content of an RViz file. `fault` is set where it cannot be read: nothing else is known
-    then.
+    """The content of an RViz file.
+
+    `fault` is set where it cannot be read: nothing else is known then.
     """
 
     source: Source
@@ -136,8 +138,9 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
 
 
 def _switched_on(node: YamlNode | None, *, default: bool) -> bool:
-    """Return a setting as RViz reads it: everything but false, 0 and the empty text is on
-    (QVariant::toBool).
+    """Return a setting as RViz reads it.
+
+    Everything but false, 0 and the empty text is on (QVariant::toBool).
     """
     if node is None or node.text is None:
         return default
@@ -145,8 +148,9 @@ def _switched_on(node: YamlNode | None, *, default: bool) -> bool:
 
 
 def _displays(root: YamlNode) -> Iterator[Display]:
-    """Yield the displays of the root group and of the groups in it; in a disabled group they are
-    disabled.
+    """Yield the displays of the root group and of the groups in it.
+
+    In a disabled group they are disabled.
     """
     listed = root.get("Displays")
     is_on = _switched_on(root.get("Enabled"), default=_switched_on(root.get("Value"), default=True))

@@ -1,5 +1,6 @@
-"""The slips for which a YAML file cannot be read: a tab, a blank after a colon, a bracket or a
-quote.
+"""The slips for which a YAML file cannot be read.
+
+A slip is a tab, a blank after a colon, a bracket or a quote.
 """
 
 import re
@@ -21,8 +22,9 @@ _CLOSING = {"[": "]", "{": "}"}
 
 
 def yaml_slips(data: bytes, path: str) -> list[Slip]:
-    """Return what YAML refuses in a file, each with the change of one line after which it can be
-    read on; nothing where a line may mean several things.
+    """Return what YAML refuses in a file, each with the change of one line.
+
+    After this change it can be read on. Returns nothing where a line may mean several things.
     """
     if len(data) > _MAX_BYTES:
         return []

@@ -220,8 +220,9 @@ class CppEvaluation:
         return self._value_of_shared(node, field.text, node.text)
 
     def _value_of_shared(self, node: CppNode, name: str, written: str) -> CppValue:
-        """Return the value of the variable of a namespace or class that a name means at a place;
-        the name as it is written, where none has it.
+        """Return the value of the variable of a namespace or class that a name means at a place.
+
+        Returns the name as it is written, where none has it.
         """
         variables = self._variables_at(node, name)
         return self._value_of_variable(variables, node) if variables else CppName(written, node)
@@ -245,8 +246,9 @@ class CppEvaluation:
         return self._locals[key]
 
     def uses_of(self, name: CppNode) -> Sequence[CppNode] | None:
-        """Return where the variable is written that a name means at a place; None where that is
-        not known.
+        """Return where the variable is written that a name means at a place.
+
+        Returns None where that is not known.
         """
         function = self.unit.function_around(name)
         local = self._local_variable(name.text, function) if function is not None else None
@@ -380,8 +382,10 @@ class CppEvaluation:
     # ----------------------------------------------------------------------
 
     def _effect_of(self, use: CppNode, declaration: CppNode | None) -> list[_Write] | Unknown:
-        """Return the values that a variable gets where its name is written; Unknown where that is
-        not known. `declaration` is that of a local one, whose methods may change it.
+        """Return the values that a variable gets where its name is written.
+
+        Returns Unknown where that is not known. `declaration` is that of a local one, whose methods
+        may change it.
         """
         node = use
         if is_member_of_this(use) and use.parent is not None:
@@ -432,8 +436,9 @@ class CppEvaluation:
     def _effect_of_method(
         self, node: CppNode, parent: CppNode, declaration: CppNode | None
     ) -> list[_Write] | Unknown:
-        """Return the effect of a method on a variable: one that is called in a statement after the
-        declaration is part of its value.
+        """Return the effect of a method on a variable.
+
+        A method that is called in a statement after the declaration is part of its value.
         """
         call, field = parent.parent, parent.child("field")
         name = field.text if field is not None else ""
@@ -524,9 +529,7 @@ def _is_unconditional(node: CppNode) -> bool:
 
 
 def _is_statement(node: CppNode) -> bool:
-    """Return whether an expression is a statement of the body of its function, which is always
-    executed.
-    """
+    """Return whether an expression is an always executed statement of its function's body."""
     statement = node.parent
     if statement is None or statement.kind != "expression_statement":
         return False
@@ -547,8 +550,9 @@ def is_member_of_this(use: CppNode) -> bool:
 
 
 def _declaration_of(name: CppNode) -> CppNode | None:
-    """Return the declaration that declares a name as a local variable or a parameter; None for a
-    name that is used.
+    """Return the declaration that declares a name as a local variable or a parameter.
+
+    Returns None for a name that is used.
     """
     node = name
     for around in name.ancestors():

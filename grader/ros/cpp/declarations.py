@@ -33,8 +33,10 @@ class CppClass(NamedTuple):
 
 
 class CppFunction(NamedTuple):
-    """A function that is defined. `owner` is the class or namespace that its name begins with, as
-    it is written, or the full name of the class around it.
+    """A function that is defined.
+
+    `owner` is the class or namespace that its name begins with, as it is written, or the full name
+    of the class around it.
     """
 
     name: str
@@ -315,8 +317,9 @@ def _is_given(parameter: CppNode) -> bool:
 
 
 def is_argument(node: CppNode) -> bool:
-    """Return whether a name is an argument although the grammar takes it for the type of a
-    parameter: in a function, `Type name(argument);`.
+    """Return whether a name is an argument although the grammar takes it for a parameter's type.
+
+    In a function, such a name is in `Type name(argument);`.
     """
     parent = node.parent
     is_name = node.kind in ("type_identifier", "qualified_identifier")

@@ -86,8 +86,10 @@ class CppNode:
 
 
 class CppSyntax:
-    """A C++ file: its text, and the root of its syntax. `unread` says why it is not read, as part
-    of a sentence; `error` is the place of the first text that is no C++.
+    """A C++ file: its text, and the root of its syntax.
+
+    `unread` says why it is not read, as part of a sentence; `error` is the place of the first text
+    that is no C++.
     """
 
     def __init__(self, path: str, text: str) -> None:

@@ -86,8 +86,9 @@ class CppUnit:
         return frozenset(name for file in self.files for name in file.called_macros)
 
     def meanings(self, name: str, scopes: Sequence[str] = ()) -> tuple[str, ...]:
-        """Return the full names that a name of a type may stand for, in these scopes; what is not
-        defined in the files is itself, also in the namespaces that are opened.
+        """Return the full names that a name of a type may stand for, in these scopes.
+
+        What is not defined in the files is itself, also in the namespaces that are opened.
         """
         for _ in range(_MAX_ALIASES):
             target = self._target_of(name, scopes)
@@ -216,8 +217,9 @@ def template_arguments(call: CppNode) -> tuple[str, ...]:
 
 
 def resolve_include(path: str, included: str, files: Mapping[str, object]) -> str | None:
-    """Return the file of a package that an `#include` in another one means; None for one of another
-    package.
+    """Return the file of a package that an `#include` in another one means.
+
+    Returns None for one of another package.
 
     Args:
         path: The path of the file with the `#include`.

@@ -85,8 +85,9 @@ _SEARCHED = ("AMENT_PREFIX_PATH", "PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "HOME
 
 @dataclass(slots=True)
 class ActionVisitor:
-    """A visitor of actions that adds its findings. `when` is whether an action is executed, None
-    if this is unknown.
+    """A visitor of actions that adds its findings.
+
+    `when` is whether an action is executed, None if this is unknown.
     """
 
     findings: Findings
@@ -106,8 +107,9 @@ class ActionVisitor:
     depth: int = 0
 
     def launch(self, description: Value, context: Context, at: Position) -> None:
-        """Execute a description, and then what its timers and the start and end of its processes
-        execute.
+        """Execute a description, and then what its timers and events execute.
+
+        The events are the start and end of its processes.
         """
         self.visit(description, context, context.when, at)
         for _ in range(_MAX_DEPTH):
@@ -126,8 +128,9 @@ class ActionVisitor:
                 self.visit_all(actions, call, inner, is_started if when else None)
 
     def _is_started(self, target: Value) -> bool | None:
-        """Return whether the process is started on which an action waits; True if it waits on
-        none.
+        """Return whether the process is started on which an action waits.
+
+        Returns True if it waits on none.
         """
         if not isinstance(target, Call):
             return True
@@ -162,8 +165,9 @@ class ActionVisitor:
         self.depth -= 1
 
     def add_form(self, signal: EvaluationSignal, at: Position, when: bool | None) -> None:
-        """Add an error in the form of a description: launch looks at all of it before it
-        executes any of it.
+        """Add an error in the form of a description.
+
+        Launch looks at all of it before it executes any of it.
         """
         at, is_silent = signal.at or at, self.findings.is_silent
         if not isinstance(signal, EvaluationFails):
@@ -241,8 +245,9 @@ class ActionVisitor:
             self.visit(action, context, when, call.at)
 
     def perhaps(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
-        """Visit what may never be executed: errors in it do not count, but for what is no
-        action.
+        """Visit what may never be executed.
+
+        Errors in it do not count, but for what is no action.
         """
         was_silent, executed = self.findings.is_silent, self.executed
         self.findings.is_silent, self.executed = True, {}

@@ -1,5 +1,6 @@
-"""The arguments of launch files as they are written: where a file declares them, and where it uses
-them.
+"""The arguments of launch files where a file declares them, and where it uses them.
+
+They are as they are written.
 """
 
 import ast
@@ -42,8 +43,9 @@ class _ArgumentName(NamedTuple):
 
 
 def argument_names(data: bytes, path: str) -> tuple[Source, list[_ArgumentName]]:
-    """Return the text of a launch file, and the names of arguments in it in the order of the
-    text.
+    """Return the text of a launch file, and the names of arguments in it.
+
+    The names are in the order of the text.
     """
     if path.endswith(".py"):
         code = parse(data, path)

@@ -1,5 +1,6 @@
-"""The constructors of launch's classes, and what they require of their arguments, as they check it
-themselves.
+"""The constructors of launch's classes, and what they require of their arguments.
+
+They check it themselves.
 
 An argument is a text (a string or substitutions), a list of them, a parameter of a node, and so on:
 `_CHECKS` has a check of each kind, which returns what is wrong.
@@ -131,8 +132,9 @@ class LaunchFunctions(dict[str, Any]):
 
 
 def _find_function(name: str) -> "Callable[[Evaluation, Call], Value] | None":
-    """Return the constructor of a class of launch, or one that fails: of a name that is not
-    there.
+    """Return the constructor of a class of launch, or one that fails.
+
+    It fails for a name that is not there.
     """
     owner, _, member = name.rpartition(".")
     names, cls = exports().get(owner), class_named(owner)
@@ -187,8 +189,9 @@ def _fail_missing(message: str, *_: object) -> Value:
 
 
 def check(cls: LaunchClass, call: Call) -> Unknown | None:
-    """Name and check the arguments of a constructor; return what is not evaluated. Raises
-    EvaluationFails.
+    """Name and check the arguments of a constructor; return what is not evaluated.
+
+    Raises EvaluationFails.
     """
     if cls.short not in _EVALUATED and not is_a(cls.name, SOURCE):
         return Unknown(f"{cls.short} is not evaluated", call.at)
@@ -244,8 +247,9 @@ _NO_LIST = _Fault("has to be a list: put [ ] around it")
 
 
 def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> str:
-    """Return what is wrong with an argument, or, without a name, with all together. Raises
-    Undetermined.
+    """Return what is wrong with an argument, or, without a name, with all together.
+
+    Raises Undetermined.
     """
     if bound := _find_bound(value):
         text = unparse(bound)[:60]
@@ -420,8 +424,9 @@ def _wrong_typed(call: Call) -> str:
 
 
 def type_of(call: Call) -> "type | None":
-    """Return the type that ParameterValue is given; None for none. Raises Undetermined for the type
-    of a list.
+    """Return the type that ParameterValue is given; None for none.
+
+    Raises Undetermined for the type of a list.
     """
     given = call.kwargs.get("value_type")
     if given is None:

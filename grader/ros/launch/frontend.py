@@ -1,5 +1,6 @@
-"""Launch files in XML and YAML: read as entities, which become the actions that a Python launch
-file would create.
+"""Launch files in XML and YAML, read as entities.
+
+The entities become the actions that a Python launch file would create.
 
 Their values are texts with substitutions, by launch's grammar, and texts that are numbers.
 """
@@ -252,8 +253,9 @@ class _Entity:
 
 
 def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> _Entity | LaunchFault:
-    """Return the root entity of a launch file in XML or YAML, or why it cannot be read. Never
-    raises.
+    """Return the root entity of a launch file in XML or YAML, or why it cannot be read.
+
+    Never raises.
     """
     try:
         data.decode()  # as open does, whatever the file itself says of its encoding
@@ -318,8 +320,9 @@ def _xml_root(file: XmlFile) -> _Entity:
 
 @dataclass(slots=True)
 class _YamlReader:
-    """A reader of entities from YAML's lists and mappings; aliases can multiply them, so they are
-    counted.
+    """A reader of entities from YAML's lists and mappings.
+
+    Aliases can multiply them, so they are counted.
     """
 
     count: int = 0
@@ -557,8 +560,9 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
 
 
 def _read_component(entity: _Entity) -> Call:
-    """Return a component, whose parameters are not evaluated, without its remappings. Raises
-    EvaluationSignal.
+    """Return a component, whose parameters are not evaluated, without its remappings.
+
+    Raises EvaluationSignal.
     """
     given = _read_attributes(entity, _NESTED[entity.kind])
     condition = _take_condition(given, entity)
@@ -610,8 +614,9 @@ def _read_parameter(entity: _Entity) -> Value:
 
 
 def _read_parameter_value(entity: _Entity, given: Mapping[str, Any]) -> Value:
-    """Return the value of a <param> as the ParameterValue that it is in Python. Raises
-    EvaluationSignal.
+    """Return the value of a <param> as the ParameterValue that it is in Python.
+
+    Raises EvaluationSignal.
     """
     if "value" not in given:
         raise EvaluationFails("a <param> needs a value", entity.at)
@@ -642,8 +647,9 @@ def _read_parameter_value(entity: _Entity, given: Mapping[str, Any]) -> Value:
 
 
 def _converted(text: str, kind: type, entity: _Entity) -> dict[str, Value]:
-    """Return the arguments of ParameterValue for a value in XML with a type, as launch's
-    type_utils.py converts it. Raises EvaluationFails.
+    """Return the arguments of ParameterValue for a value in XML with a type.
+
+    They are converted as by launch's type_utils.py. Raises EvaluationFails.
     """
     if "$(" in text:
         of_kind = Call(f"builtins.{kind.__name__}", [], {}, entity.at)
@@ -656,8 +662,9 @@ def _converted(text: str, kind: type, entity: _Entity) -> dict[str, Value]:
 
 
 def _separated_values(entity: _Entity, kind: str | None) -> list[Value]:
-    """Return the list that a value in XML is with the attribute value-sep, as launch_xml's
-    entity.py splits it.
+    """Return the list that a value in XML is with the attribute value-sep.
+
+    It is split as by launch_xml's entity.py.
     """
     text, separator = str(entity.attributes["value"]), str(entity.attributes["value-sep"])
     if not separator:
@@ -684,8 +691,9 @@ def _parse_if_text(value: Any, at: Position) -> Any:
 
 
 def _command_line(text: str, at: Position) -> list[list[Value]]:
-    """Return the words of a line as launch splits it: strings are split, the values of
-    substitutions are not.
+    """Return the words of a line as launch splits it.
+
+    Strings are split, the values of substitutions are not.
     """
     words: list[list[Value]] = [[]]
     for piece in _parse_value(text, at):
@@ -708,8 +716,9 @@ def _command_line(text: str, at: Position) -> list[list[Value]]:
 
 
 def _typed_text(text: str, kind: type | None, at: Position) -> Any:
-    """Return the value of a text in XML as a type, by default any scalar; a text that is none of it
-    stays a text.
+    """Return the value of a text in XML as a type, by default any scalar.
+
+    A text that is none of it stays a text.
     """
     if kind is float:
         try:
@@ -729,8 +738,9 @@ def _typed_text(text: str, kind: type | None, at: Position) -> Any:
 
 
 def _is_typed(value: Any, kind: type | None, at: Position) -> bool:
-    """Return whether a value is a text or of a type; with None, whether it is a scalar. Raises
-    Undetermined.
+    """Return whether a value is a text or of a type; with None, whether it is a scalar.
+
+    Raises Undetermined.
     """
     if isinstance(value, list) and kind is None:
         raise Undetermined("a list in this place is not evaluated", at)

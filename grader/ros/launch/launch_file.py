@@ -319,8 +319,9 @@ def _references_of(findings: Findings) -> list[NamedFile]:
 
 @dataclass(slots=True)
 class _PythonLaunchFile:
-    """The evaluation of a launch file; `context` is that of the action which calls one of its
-    functions.
+    """The evaluation of a launch file.
+
+    `context` is that of the action which calls one of its functions.
     """
 
     context: Context
@@ -359,9 +360,7 @@ class _PythonLaunchFile:
     def call(
         self, function: Function, at: Position, args: Sequence[Value] | None, context: Context
     ) -> Value:
-        """Return the value of a call of one of the file's functions, in the context of an
-        action.
-        """
+        """Return the value of a call of a function of the file, in an action's context."""
         before, self.context = self.context, context
         try:
             return self.interpreter.call_from_outside(function, at, args)

@@ -1,5 +1,6 @@
-"""The package moveit_configs_utils of ROS 2 Jazzy: MoveItConfigsBuilder, and the nodes that its
-launch functions start.
+"""The package moveit_configs_utils of ROS 2 Jazzy: MoveItConfigsBuilder and launch functions.
+
+The launch functions start nodes.
 
 The builder reads the files of a MoveIt configuration while the launch file is loaded; one that it
 needs and that is not installed stops it.
@@ -164,7 +165,8 @@ class _Configuration:
 
 @dataclass(slots=True)
 class MoveItConfigurations:
-    """The functions of moveit_configs_utils, in a launch file whose context is `context()`;
+    """The functions of moveit_configs_utils, in a launch file whose context is `context()`.
+
     `reads` are its files.
     """
 
@@ -268,8 +270,9 @@ class MoveItConfigurations:
         return posixpath.join(configuration.folder, text)
 
     def _names(self, configuration: _Configuration) -> Sequence[str] | None:
-        """Return the names of the files that are installed in the folder config; None where this
-        is not known.
+        """Return the names of the files that are installed in the folder config.
+
+        Returns None where this is not known.
         """
         return self.context().machine.files_in(
             f"{configuration.folder}/config".removeprefix(f"{PREFIX}/")
@@ -481,8 +484,9 @@ class MoveItConfigurations:
     def _found_in(
         self, configs: Namespace, name: str, at: Position
     ) -> Iterator[StartRow | Unknown]:
-        """Yield the rows of what a function starts for controllers or virtual joints; Unknown
-        for unknown ones.
+        """Yield the rows of what a function starts for controllers or virtual joints.
+
+        Yields Unknown for unknown ones.
         """
         if name == "generate_spawn_controllers_launch":
             for controller in _controllers_in(configs.find("trajectory_execution"), at):
@@ -504,8 +508,9 @@ class MoveItConfigurations:
 
 
 def _named(call: Call, names: Sequence[str]) -> dict[str, Value]:
-    """Return the arguments of a call by their names, but those that are None. Raises
-    EvaluationFails.
+    """Return the arguments of a call by their names, but those that are None.
+
+    Raises EvaluationFails.
     """
     wrong = next((name for name in call.kwargs if name not in names), None)
     if wrong is not None or len(call.args) > len(names):
@@ -560,8 +565,9 @@ def _as_dict(parts: Mapping[str, Value]) -> dict[str, Value]:
 
 @dataclass(frozen=True, slots=True)
 class _Actions:
-    """Makes the actions of a description from the rows of the table, as if they were written at
-    a place.
+    """Makes the actions of a description from the rows of the table.
+
+    They are made as if they were written at a place.
     """
 
     at: Position
@@ -619,9 +625,7 @@ class _Actions:
         return [node(condition=self.when("debug", _UNLESS)), debugged]
 
     def when(self, name: str, kind: str = _IF) -> Call:
-        """Return the condition that a launch argument is true, or with another kind that it is
-        not.
-        """
+        """Return the condition that a launch argument is true, or, of another kind, not true."""
         return self.made(kind, predicate_expression=self.value(f"${name}"))
 
 

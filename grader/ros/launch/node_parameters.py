@@ -82,8 +82,9 @@ _Read = Iterator[GivenParameters | EvaluationSignal]
 def evaluate_parameters(
     call: Call, context: Context, location: Location
 ) -> tuple[Iterator[GivenParameters], EvaluationSignal | None]:
-    """Evaluate the parameters of a Node action up to the first error or doubt, at which launch_ros
-    stops.
+    """Evaluate the parameters of a Node action up to the first error or doubt.
+
+    There launch_ros stops.
 
     Returns:
         What each item gives the node: what follows the first error or doubt is evaluated when it is
@@ -150,8 +151,9 @@ def _make_file(path: Resolved, place: _Place, *, is_plain: bool = True) -> Given
 
 
 def _read_table(table: dict[Any, Value], place: _Place) -> _Read:
-    """Yield the values in a dict, each unknown for itself; all are unknown if a name is. Raises
-    EvaluationSignal for names and for dicts in it.
+    """Yield the values in a dict, each unknown for itself; all are unknown if a name is.
+
+    Raises EvaluationSignal for names and for dicts in it.
     """
     context, at, location, is_named = place
     values: dict[str, ParameterValue] = {}
@@ -188,8 +190,9 @@ def _resolve_path(call: Call, context: Context) -> Resolved:
 
 
 def _evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> dict[str, Any]:
-    """Return the values in a dict of parameters, those of dicts in it by dotted names. Raises
-    EvaluationSignal.
+    """Return the values in a dict of parameters, those of dicts in it by dotted names.
+
+    Raises EvaluationSignal.
     """
     values: dict[str, Any] = {}
     for key, value in table.items():
@@ -302,8 +305,9 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
 
 
 def _is_never_yaml(text: str) -> bool:
-    """Return whether a URDF is no YAML after xacro either, which keeps comments, texts and
-    values.
+    """Return whether a URDF is no YAML after xacro either.
+
+    The reason is that xacro keeps comments, texts and values.
     """
     if "xacro:" in text or "${" in text or "$(" in text:
         return False
@@ -327,8 +331,9 @@ _OpenFile = Callable[
 def set_for_all(
     name: Value, value: Value, context: Context, at: Position, location: Location
 ) -> GivenParameters:
-    """Return what SetParameter gives to all nodes; unknown where its name is not known. Raises
-    EvaluationSignal for its value.
+    """Return what SetParameter gives to all nodes; unknown where its name is not known.
+
+    Raises EvaluationSignal for its value.
     """
     evaluated = _evaluate_dict({"": value}, context, at)
     try:
@@ -437,8 +442,9 @@ def _scalar(text: str) -> "bool | int | float | str":
 
 
 class NodeParameters(NamedTuple):
-    """The parameters that a node is given, by their names. If something is `unknown`, there may be
-    more of them.
+    """The parameters that a node is given, by their names.
+
+    If something is `unknown`, there may be more of them.
 
     The value of one is Unknown where it is not evaluated, or may be replaced by what is unknown.
     """
@@ -554,6 +560,7 @@ def _read_tables(
     given: GivenParameters, open_file: _OpenFile, full_name: str | None, read: _ReadFile
 ) -> Sequence[_Table]:
     """Return the parameters by keys of nodes; `full_name` is the one that the launch file gives.
+
     Raises Undetermined.
     """
     if given.unknown:
@@ -573,8 +580,9 @@ def _read_tables(
 
 
 def _find_key(given: GivenParameters, full_name: str | None) -> str | None:
-    """Return for which nodes the parameters of a launch file are; None for the node itself, whose
-    name is not known.
+    """Return for which nodes the parameters of a launch file are.
+
+    Returns None for the node itself, whose name is not known.
     """
     if given.is_named:
         return full_name
@@ -614,8 +622,9 @@ def _flat(
 
 
 def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:
-    """Return the value that a parameter file has for a parameter; of a file that is not plain,
-    launch replaces `$(`.
+    """Return the value that a parameter file has for a parameter.
+
+    In a file that is not plain, launch replaces `$(`.
     """
     if not is_plain and _SUBSTITUTION in str(node.text):
         return ParameterValue(
@@ -627,8 +636,9 @@ def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:
 def _select_values(
     by_key: Mapping[str | None, Mapping[str, ParameterValue]], full: str | None
 ) -> dict[str, ParameterValue]:
-    """Return the values that count for a node, of all sections in the order in which their keys are
-    met first.
+    """Return the values that count for a node.
+
+    They are of all sections in the order in which their keys are met first.
     """
     if full is None:
         return _select_for_any_name(by_key)
@@ -638,8 +648,9 @@ def _select_values(
 def _select_for_any_name(
     by_key: Mapping[str | None, Mapping[str, ParameterValue]],
 ) -> dict[str, ParameterValue]:
-    """Return the values of sections for every node; those that another section may replace are
-    unknown.
+    """Return the values of sections for every node.
+
+    Those that another section may replace are unknown.
     """
     doubt = Unknown("the name of the node is not known", START)
     known = _merge(values for key, values in by_key.items() if key in (_EVERY_NODE, None))
@@ -655,8 +666,10 @@ def _merge(tables: Iterable[Mapping[str, ParameterValue]]) -> dict[str, Paramete
 
 
 def is_key_of(key: str | None, full: str) -> bool:
-    """Return whether the key of a section names a node by its full name: `*` stands for one name,
-    `**` for any number of them. The keys of what a launch file gives are None.
+    """Return whether the key of a section names a node by its full name.
+
+    `*` stands for one name, `**` for any number of them. The keys of what a launch file gives are
+    None.
     """
     if key is None or "*" not in key:
         return key == full
@@ -677,8 +690,9 @@ def remap_rules(words: Sequence[str]) -> list[tuple[str, str, str]]:
 
 
 def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
-    """Return the controllers that a spawner starts, as nodes with the files and remappings that it
-    gives them.
+    """Return the controllers that a spawner starts, as nodes.
+
+    The nodes have the files and remappings that it gives them.
 
     None if not all are known. A controller has the namespace of its controller manager, in whose
     process it runs: what that is given applies to it as well, and what the spawner gives counts

@@ -1,5 +1,6 @@
-"""The nodes that a launch file starts, as launch_ros does: their names, and the files that they are
-given.
+"""The nodes that a launch file starts, as launch_ros does.
+
+They have their names, and the files that they are given.
 
 These files are the robot and the configuration of RViz. The files in `ros/known/packages` list the
 nodes that launch files of well-known packages start, which workspaces include but do not contain.
@@ -93,8 +94,9 @@ def start_node(
     when: bool | None,
     parameters: Iterable[GivenParameters] = (),
 ) -> None:
-    """Add the node that a Node action starts, and the files that it is given. `parameters` are
-    those that the action has for it.
+    """Add the node that a Node action starts, and the files that it is given.
+
+    `parameters` are those that the action has for it.
     """
     package, executable = (
         _text_if_known(call.kwargs.get(name), context, call.at)
@@ -128,8 +130,9 @@ def _add_names(
     findings: Findings,
     own_parameters: Iterable[GivenParameters],
 ) -> StartedNode:
-    """Return a node with its name, arguments, parameters and remappings, and whether it is given
-    the robot itself.
+    """Return a node with its name, arguments, parameters and remappings.
+
+    Also returns whether it is given the robot itself.
     """
     words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
     ros_words: list[str] = []
@@ -167,8 +170,9 @@ def _add_remaps(
     call: Call,
     context: Context,
 ) -> StartedNode:
-    """Return a node with its namespace and remappings; `rules` are those among the words of its
-    command line.
+    """Return a node with its namespace and remappings.
+
+    `rules` are those among the words of its command line.
     """
     remaps: list[tuple[str, ...] | None] = [(name, to) for name, _, to in rules]
     remaps += context.to_all.get(REMAPS, ())
@@ -251,8 +255,9 @@ def _has_none_of(words: Sequence[str], options: Sequence[str]) -> bool:
 
 
 def _node_of_command(words: list[str], call: Call) -> Call | None:
-    """Return the Node action that does the same as a command; None for a command that is not
-    known.
+    """Return the Node action that does the same as a command.
+
+    Returns None for a command that is not known.
     """
     is_run = (
         words[:2] == ["ros2", "run"]
@@ -270,8 +275,9 @@ def _node_of_command(words: list[str], call: Call) -> Call | None:
 
 
 def evaluate_node(call: Call, context: Context) -> None:
-    """Evaluate what launch_ros does with the arguments of a node besides their texts. Raises
-    EvaluationSignal.
+    """Evaluate what launch_ros does with the arguments of a node besides their texts.
+
+    Raises EvaluationSignal.
     """
     evaluate_process(call, context)
     name, namespace = call.kwargs.get("name"), call.kwargs.get("namespace")
@@ -288,8 +294,9 @@ def evaluate_node(call: Call, context: Context) -> None:
 
 
 def evaluate_process(call: Call, context: Context) -> None:
-    """Evaluate what launch does with the arguments of a process besides their texts. Raises
-    EvaluationSignal.
+    """Evaluate what launch does with the arguments of a process besides their texts.
+
+    Raises EvaluationSignal.
     """
     if "cmd" in call.kwargs:
         if not items_in(call.kwargs["cmd"]):
@@ -515,8 +522,9 @@ def is_of_ros(package: str) -> bool:
 
 
 def start_known_file(findings: Findings, path: str, call: Call, context: Context) -> bool:
-    """Add what an included launch file of a well-known package starts; return whether the path is
-    that of one.
+    """Add what an included launch file of a well-known package starts.
+
+    Returns whether the path is that of one.
     """
     prefix, _, name = path.rpartition("/share/")
     package, _, file = name.partition("/launch/")

@@ -41,8 +41,9 @@ _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", 
 
 
 def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Resolved:
-    """Return the text of a value, or the contents of a file; Unknown where it certainly is a text,
-    but not known.
+    """Return the text of a value, or the contents of a file.
+
+    Returns Unknown where it certainly is a text, but not known.
 
     Raises EvaluationFails where launch certainly raises an error, Undetermined where it may.
     """
@@ -100,8 +101,9 @@ def not_a_text(value: Contents | Unknown, at: Position) -> Undetermined:
 
 
 def boolean(text: str, at: Position) -> bool:
-    """Return the value of a text as launch reads it where it wants a boolean, by the rules of
-    YAML.
+    """Return the value of a text as launch reads it where it wants a boolean.
+
+    It reads it by the rules of YAML.
     """
     truth: object = _BOOLEANS[text] if text in ("0", "1") else None
     if truth is None and len(text) < 20:
@@ -325,8 +327,9 @@ def no_package(name: str, meant: str) -> str:
 
 
 def check_program(package: str, name: str, context: Context, at: Position) -> None:
-    """Raise EvaluationFails if a package certainly has no such program, Undetermined if this is not
-    known.
+    """Raise EvaluationFails if a package certainly has no such program.
+
+    Raises Undetermined if this is not known.
     """
     if not context.machine.has_package(package):
         raise Undetermined(f"whether the package {package!r} is installed is not evaluated", at)
@@ -403,8 +406,9 @@ def _find_name(name: str) -> Value:
 
 
 def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr: bool) -> Contents:
-    """Return the contents of the file that a command prints, whose parts have these texts. Raises
-    EvaluationSignal.
+    """Return the contents of the file that a command prints, whose parts have these texts.
+
+    Raises EvaluationSignal.
     """
     command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[
         :MAX_TEXT
@@ -436,8 +440,9 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
 
 
 def check_xacro_words(words: Sequence[str], at: Position) -> None:
-    """Raise EvaluationFails for a command of xacro that certainly has not one file, or an argument
-    that is none.
+    """Raise EvaluationFails for a wrong command of xacro.
+
+    Such a command certainly has not one file, or an argument that is none.
     """
     program = posixpath.basename(words[0]).removesuffix(".py") if words else ""
     if program != "xacro" or any(word.startswith("-") for word in words):

@@ -21,8 +21,10 @@ _OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|_test\.")
 
 
 def cmake_problems(package: Package, setup: Installation) -> Iterator[Problem]:
-    """Yield programs that no target compiles, targets that no install() names, and packages that a
-    target needs; nothing where a part of CMakeLists.txt is not known.
+    """Yield programs, targets and packages that CMakeLists.txt forgets.
+
+    These are programs that no target compiles, targets that no install() names, and packages that a
+    target needs. Yields nothing where a part of CMakeLists.txt is not known.
     """
     is_known = setup.doubt is None and not setup.unknown and not setup.stops
     if not is_known or not all(target.is_certain for target in setup.targets):
@@ -47,8 +49,9 @@ def _not_installed(package: Package, setup: Installation, target: CmakeTarget) -
 
 
 def _not_linked(package: Package, setup: Installation, target: CmakeTarget) -> Iterator[Problem]:
-    """Yield packages whose headers a target includes, and that neither ament_target_dependencies()
-    names nor what it names exports.
+    """Yield packages whose headers a target includes and that it does not depend on.
+
+    Neither ament_target_dependencies() names them nor what it names exports them.
     """
     exports = cmake_words().exports
     if any(word in setup.source.text for word in _OTHER_WAYS):

@@ -1,5 +1,6 @@
-"""The programs of a Python package: the entry points that its setup.py names, and whether their
-functions exist.
+"""The entry points that a package's setup.py names, and whether their functions exist.
+
+They are the programs of a Python package.
 """
 
 import ast
@@ -38,8 +39,9 @@ class _EntryPoint(NamedTuple):
 
 
 class _EntryFault(NamedTuple):
-    """Why a program certainly does not start, where setup.py names it, and the word in it that
-    may mean another one.
+    """Why a program certainly does not start, and where setup.py names it.
+
+    It has the word there that may mean another one.
     """
 
     message: str
@@ -50,8 +52,9 @@ class _EntryFault(NamedTuple):
 
 @lru_cache(maxsize=4)
 def entry_points(package: Package) -> Sequence[_EntryPoint]:
-    """Return the entry points that are known: those of console_scripts in setup.py that are
-    written as texts.
+    """Return the entry points that are known.
+
+    These are those of console_scripts in setup.py that are written as texts.
     """
     setup = package.installation
     scripts = setup.console_scripts if setup is not None else None
@@ -77,8 +80,9 @@ def _places_of_names(package: Package) -> dict[str, int]:
 
 
 def _locate_name(package: Package, name: str, places: Mapping[str, int]) -> Location:
-    """Return where setup.py writes an entry point; where it calls setup() if the text is
-    computed.
+    """Return where setup.py writes an entry point.
+
+    Returns where it calls setup() if the text is computed.
     """
     setup = package.installation
     assert setup is not None
@@ -171,8 +175,9 @@ def module_path(package: Package, module: str) -> str | None:
 
 
 def _lacks_module(package: Package, module: str) -> bool:
-    """Return whether importing a module certainly fails: its parent packages are here, and none of
-    them has it.
+    """Return whether importing a module certainly fails.
+
+    Then its parent packages are here, and none of them has it.
     """
     top, stem = module.partition(".")[0], module.replace(".", "/")
     tree = package.tree
@@ -199,8 +204,9 @@ def _lacks_module(package: Package, module: str) -> bool:
 
 
 def _misspelt_package(package: Package, entry: _EntryPoint) -> _EntryFault | None:
-    """Return that the top package of an entry point is not one that setup.py installs, but like
-    one; None where another package may have it.
+    """Return that the top package of an entry point is not one that setup.py installs.
+
+    It is like one that it installs. Returns None where another package may have it.
     """
     setup, top = package.installation, entry.module.partition(".")[0]
     names = setup.packages if setup is not None else ()
@@ -236,8 +242,9 @@ def _missing_module(package: Package, entry: _EntryPoint) -> _EntryFault:
 def _fault(
     entry: _EntryPoint, message: str, written: str, known: list[str], fallback: str = ""
 ) -> _EntryFault:
-    """Return the fault of an entry point, with the name that may be meant, else the names that
-    there are.
+    """Return the fault of an entry point, with the name that may be meant.
+
+    If none may be, it has the names that there are.
     """
     meant = closest(written, known) or fallback or None
     if meant is not None:

@@ -42,8 +42,9 @@ _ENDINGS = {
 
 
 class FilePlace(NamedTuple):
-    """Where a launch file looks for a file: found there, or why it is not. `missing`: a build does
-    not install it.
+    """Where a launch file looks for a file, or why it is not there.
+
+    `missing`: a build does not install it.
 
     `mistake` is the text without what differs between students, `cause` one of those of the check
     `launch_finds_files`.
@@ -76,8 +77,9 @@ class FilePlace(NamedTuple):
         return self.file.purpose in ("read", "include") or self.file.by != ""
 
     def is_in_misnamed(self, package: Package) -> bool:
-        """Return whether the file is looked for below a wrong name of the package, which is not on
-        the machine.
+        """Return whether the file is looked for below a wrong name of the package.
+
+        No package of this name is on the machine.
         """
         owner, _ = share_parts(self.file.path or "")
         return self.state == "wrong" and bool(owner) and package.find(owner) is None
@@ -109,8 +111,9 @@ class FilePlace(NamedTuple):
 def find_places(
     package: Package, launch: "Launch", *purposes: "Purpose", built: bool
 ) -> list[FilePlace]:
-    """Return where a launch file looks for files. Raises MissingElement for one that a build does
-    not install.
+    """Return where a launch file looks for files.
+
+    Raises MissingElement for one that a build does not install.
     """
     places = [_place_of(package, file, built=built) for file in launch.named(*purposes)]
     present = {
@@ -128,8 +131,9 @@ def find_places(
 
 
 def _missing_file(package: Package, place: FilePlace) -> MissingElement:
-    """Return what the package is missing for a named file, by the kinds and names that the checks
-    of packages use.
+    """Return what the package is missing for a named file.
+
+    It has the kinds and names that the checks of packages use.
     """
     setup, purpose, name = package.installation, place.file.purpose, package.folder
     if setup is not None and setup.misspelt is not None:
@@ -183,8 +187,9 @@ def _place_of(package: Package, file: "NamedFile", *, built: bool) -> FilePlace:
 
 
 def _fault_of_path(package: Package, path: str) -> str:
-    """Return a path that is not below a share folder, with why no file is there; empty where that
-    is not known.
+    """Return a path that is not below a share folder, with why no file is there.
+
+    It is empty where that is not known.
     """
     if is_of_one_machine(path):
         return f"{path.replace(HOME, '~')}, which exists on one machine only"
@@ -201,8 +206,9 @@ def _fault_of_path(package: Package, path: str) -> str:
 
 
 def _place_in_unknown(package: Package, owner: str, rest: str, file: "NamedFile") -> FilePlace:
-    """Return what is known of a path in the share folder of a package that is not part of the
-    workspace.
+    """Return what is known of a path in the share folder of an unknown package.
+
+    The package is not part of the workspace.
 
     Raises MissingElement if it should be.
     """
@@ -220,8 +226,9 @@ def _place_in_unknown(package: Package, owner: str, rest: str, file: "NamedFile"
 
 
 def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
-    """Return how the name of a package that is not part of the workspace is wrong; empty where
-    that is not known.
+    """Return how the name of a package that is not part of the workspace is wrong.
+
+    It is empty where that is not known.
     """
     # A path may lack a slash after the package's name: get_package_share_directory(...) +
     # 'my_robot.urdf'.
@@ -264,8 +271,9 @@ def _place_in_package(owner: Package, target: str, file: "NamedFile") -> FilePla
 
 
 def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> FilePlace | None:
-    """Return where reading a file stops the launch file, because its text is not UTF-8; None where
-    it does not.
+    """Return where reading a file stops the launch file, because its text is not UTF-8.
+
+    Returns None where it does not.
     """
     try:
         if file.by in BY_UTF8:

@@ -58,15 +58,17 @@ _WORDS = frozenset(
 
 
 def is_backup(path: str) -> bool:
-    """Return whether a file or folder is named like a backup: old_ws, my_robot - Copy,
-    my_robot.urdf.bak.
+    """Return whether a file or folder is named like a backup.
+
+    Examples are old_ws, my_robot - Copy, my_robot.urdf.bak.
     """
     return not _WORDS.isdisjoint(_WORD.findall(_CAMEL.sub(" ", path).casefold()))
 
 
 def find_packages(tree: Tree, names: Sequence[str], most: int = _MAX_PACKAGES) -> list[str]:
-    """Return the folders of packages: those with a package.xml, and those of these names with only
-    a setup.py.
+    """Return the folders of packages.
+
+    These are those with a package.xml, and those of these names with only a setup.py.
     """
     with_manifest, with_setup = [], []
     for path in tree.files:
@@ -165,8 +167,9 @@ def _depth(folder: str) -> tuple[int, str]:
 
 
 def missing_files(package: Package, urdf: str) -> tuple[int, bool]:
-    """Return how many of its usual files a package lacks, and whether it lacks the URDF at its
-    path.
+    """Return how many of its usual files a package lacks.
+
+    Also returns whether it lacks the URDF at its path.
     """
     files = package.tree.files
     has_urdf = urdf in files and files[urdf].size > 0
@@ -175,8 +178,9 @@ def missing_files(package: Package, urdf: str) -> tuple[int, bool]:
 
 
 def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
-    """Return the package that has this name, or is in a folder of this name; any if the name is
-    empty.
+    """Return the package that has this name, or is in a folder of this name.
+
+    Returns any package if the name is empty.
     """
     if packages and (not name or _name_distance(packages[0], name) <= _IN_NAMED_FOLDER):
         return packages[0]
@@ -184,8 +188,9 @@ def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
 
 
 def packages_named(packages: Sequence[Package], names: Sequence[str]) -> dict[str, Package]:
-    """Return the package that each name means: that of the name, else in a folder of it, else of a
-    similar name.
+    """Return the package that each name means.
+
+    This is that of the name, else in a folder of it, else of a similar name.
     """
     chosen: dict[str, Package] = {}
     for distance, name in product((_NAMED, _IN_NAMED_FOLDER, _SIMILAR), names):

@@ -1,5 +1,6 @@
-"""The problems of a package's files, whatever they are graded on, with their codes and
-locations.
+"""The problems of a package's files, with their codes and locations.
+
+They are the same whatever the files are graded on.
 """
 
 from collections.abc import Collection, Iterable, Iterator
@@ -22,8 +23,9 @@ _MAX_FILES_NAMED = 3  # in a message
 
 
 def package_problems(package: Package) -> tuple[Problem, ...]:
-    """Return the problems of package.xml, setup.py, launch files and RViz files, each file's sorted
-    by location.
+    """Return the problems of package.xml, setup.py, launch files and RViz files.
+
+    Those of each file are sorted by location.
     """
     problems = build_problems(package)
     for path in package.launch_files[:_MAX_FILES]:
@@ -97,8 +99,9 @@ def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
 
 
 def _naming_problems(package: Package, setup: Installation) -> Iterator[Problem]:
-    """Yield what is wrong with the package's name in setup.py, and with the entries that register
-    the package.
+    """Yield what is wrong with the package's name in setup.py.
+
+    Also yields what is wrong with the entries that register the package.
     """
     start, targets = setup.location(setup.called_at), setup.installed()
     declared = package.manifest.name if package.manifest is not None else None
@@ -157,8 +160,9 @@ def syntax_fixes(source: Source) -> Fixes:
 
 
 def why_no_match(package: Package, pattern: str) -> str:
-    """Return the end of a message on a pattern of setup.py that matches no file: why, or which
-    files there are.
+    """Return the end of a message on a pattern of setup.py that matches no file.
+
+    It says why, or which files there are.
     """
     if "\\" in pattern:
         return ": separate the parts of a path with /, not with \\"

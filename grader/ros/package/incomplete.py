@@ -1,5 +1,6 @@
-"""The problems of a robot, which may not be read completely: what may be in the rest is not
-missing.
+"""The problems of a robot, which may not be read completely.
+
+What may be in the rest is not missing.
 """
 
 import re
@@ -52,8 +53,9 @@ def _is_chosen(problem: Problem, robot: Read, tree: Tree) -> bool:
 
 
 def _listed(problems: Sequence[Problem]) -> Iterator[Problem]:
-    """Yield the problems, those for which something cannot be determined as one, and none that the
-    part that is not read may undo.
+    """Yield the problems of a robot, but those that the unread part may undo.
+
+    Those for which something cannot be determined are one problem.
     """
     unknown = [problem for problem in problems if problem.kind.effect == "undetermined"]
     is_cut = any(problem.kind.is_before_ros for problem in problems)

@@ -1,5 +1,6 @@
-"""What xacro and RViz find of a robot once its packages are built: the files that it includes, and
-its meshes.
+"""What xacro and RViz find of a robot once its packages are built.
+
+This is the files that it includes, and its meshes.
 
 The file is read again from what builds install, so that the ordinary readers say what is not there.
 """

@@ -1,5 +1,6 @@
-"""What the name of a mesh means to ROS 2, and whether a build puts the file there. No mesh is
-loaded.
+"""What the name of a mesh means to ROS 2, and whether a build puts the file there.
+
+No mesh is loaded.
 """
 
 import posixpath
@@ -34,8 +35,9 @@ _MAX_WARNED = 20  # meshes of one file
 
 
 class MeshFile(NamedTuple):
-    """The file name of a <mesh>: the package that it names and the path in it, and why ROS 2 does
-    not find such a name.
+    """The file name of a <mesh>, or why ROS 2 does not find such a name.
+
+    It has the package that the name gives and the path in it.
 
     `doubt` says why it cannot be determined whether it does. `written` is the name as the student
     wrote it.
@@ -65,8 +67,9 @@ class MeshFile(NamedTuple):
         return f"the mesh {quoted_end(self.written)} of {quoted(link)} {fault}"
 
     def why_not_found(self, packages: Sequence[Package], tree: Tree) -> str:
-        """Return why ROS 2 does not find a package's file after a build; empty if it does, or if
-        there is no package.
+        """Return why ROS 2 does not find a package's file after a build.
+
+        It is empty if it does, or if there is no package.
 
         Raises NotDecided where that cannot be determined statically.
         """
@@ -88,8 +91,9 @@ class MeshFile(NamedTuple):
         return _fault_in_package(package, f"share/{self.package}/{path}", tree)
 
     def content_fault(self, packages: Sequence[Package]) -> str:
-        """Return what is wrong with the content of its file in the workspace; empty if
-        nothing is, or there is no such file. Raises NotDecided.
+        """Return what is wrong with the content of its file in the workspace.
+
+        It is empty if nothing is, or there is no such file. Raises NotDecided.
         """
         file = self.file_in(packages)
         return content_fault(file, self.path) if file is not None else ""
@@ -105,8 +109,9 @@ class MeshFile(NamedTuple):
 
 
 def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
-    """Return what the file name of a <mesh> means; `is_expanded` says whether xacro has been
-    expanded in it.
+    """Return what the file name of a <mesh> means.
+
+    `is_expanded` says whether xacro has been expanded in it.
     """
     match = _SCHEME.fullmatch(filename)
     scheme, slashes, rest = match.groups() if match is not None else ("", "", filename)
@@ -134,8 +139,9 @@ def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
 
 
 def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterator[Problem]:
-    """Yield a warning for each mesh that RViz certainly does not find on another machine, or after
-    a build.
+    """Yield a warning for each mesh that RViz certainly does not find.
+
+    It is not found on another machine, or after a build.
 
     A file of a package outside the workspace may be installed, and so may a file:// path outside
     of home folders.
@@ -174,8 +180,9 @@ def _sure_fault(file: MeshFile, packages: Sequence[Package], tree: Tree) -> str:
 
 
 def _fault_in_package(package: Package, target: str, tree: Tree) -> str:
-    """Return what is wrong with the file that a build installs at a path, or why it installs none
-    there.
+    """Return what is wrong with the file that a build installs at a path.
+
+    If it installs none there, returns why.
     """
     lookup, name = look_up(package, target), posixpath.basename(target)
     file = package.tree.files.get(lookup.path) if lookup.state == "installed" else None
@@ -208,8 +215,9 @@ def _path_from_xacro(path: str) -> tuple[str, str] | None:
 
 
 def _without_package(name: str, path: str, packages: Sequence[Package], tree: Tree) -> str:
-    """Return that no package of the workspace has a name; raise NotDecided if one may be in an
-    archive that is closed.
+    """Return that no package of the workspace has a name.
+
+    Raises NotDecided if one may be in an archive that is closed.
     """
     if tree.unopened:
         reason = "an archive could not be opened"

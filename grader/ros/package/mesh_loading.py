@@ -1,5 +1,6 @@
-"""The meshes of a robot as triangles, for pictures; each file is where a build of its package puts
-it.
+"""The meshes of a robot as triangles, for pictures.
+
+Each file is where a build of its package puts it.
 """
 
 import posixpath
@@ -45,8 +46,9 @@ class MeshLoader:
         self._free_size, self._free_triangles = _MAX_SIZE, _MAX_TRIANGLES
 
     def load(self, mesh: Mesh) -> "Triangles | str":
-        """Return the triangles of a mesh, before it is scaled; else why it cannot be shown, as the
-        end of a sentence that begins with its name.
+        """Return the triangles of a mesh, before it is scaled, or why it cannot be shown.
+
+        The reason is the end of a sentence that begins with its name.
         """
         if mesh.filename not in self._loaded:
             named = mesh_file(mesh.filename, is_expanded=self._robot.is_expanded)
@@ -114,8 +116,9 @@ class MeshLoader:
 
 
 def _find_in_package(named: MeshFile, package: Package, path: str, tree: Tree) -> File | str:
-    """Return the file of a package that a build installs where a mesh is looked for, or may
-    install; else why it does not.
+    """Return the file of a package that a build installs where a mesh is looked for.
+
+    It may also be one that a build may install there. If there is none, returns why.
     """
     target = f"share/{named.package}/{path}"
     place = look_up(package, target)

@@ -1,5 +1,6 @@
-"""A URDF that was looked for, as one of three states, and what ROS 2 makes of it with the files
-around.
+"""A URDF that was looked for, and what ROS 2 makes of it with the files around.
+
+It has one of three states.
 """
 
 import posixpath
@@ -65,8 +66,9 @@ class Unreadable(NamedTuple):
 
 
 class Read(NamedTuple):
-    """The URDF was read, even if ROS 2 rejects it; `reading` is of the expanded text if it is
-    xacro.
+    """The URDF was read, even if ROS 2 rejects it.
+
+    `reading` is of the expanded text if it is xacro.
 
     Of xacro that is loaded without xacro, `as_it_stands` is what ROS 2 makes of the text: whether
     it loads, and the verdict. The robot is that of `reading`, so that everything else is graded as
@@ -94,8 +96,9 @@ class Read(NamedTuple):
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """Every problem of the file; of xacro that is loaded without xacro, those of the expanded
-        text.
+        """Every problem of the file.
+
+        For xacro that is loaded without xacro, these are the problems of the expanded text.
         """
         if self.as_it_stands is None:
             return self.reading.problems
@@ -126,8 +129,9 @@ Urdf = Absent | Unreadable | Read
 
 
 class Surroundings(NamedTuple):
-    """The files and packages around a URDF, as launch files and xacro find them: the Workspace of
-    xacro.
+    """The files and packages around a URDF, as launch files and xacro find them.
+
+    This is the Workspace of xacro.
     """
 
     budget: Budget  # of what is expanded and evaluated
@@ -147,8 +151,9 @@ class Surroundings(NamedTuple):
     releases: Collection[Release] = ()  # of ROS 2 that read the robot; Jazzy without any
 
     def robot_references(self, path: str) -> "list[NamedFile]":
-        """Return where launch files of the graded package, else of others, read a URDF; or those in
-        a folder around.
+        """Return where launch files of the graded package, else of others, read a URDF.
+
+        If none does, returns those in a folder around.
         """
         around = self._launched_packages(path)
         return [
@@ -158,8 +163,9 @@ class Surroundings(NamedTuple):
         ]
 
     def runs_xacro_beside(self, path: str) -> bool:
-        """Return whether a launch file runs xacro on a file of the same folder, or names xacro and
-        makes a path of variables that may be this one.
+        """Return whether a launch file runs xacro on a file of the same folder.
+
+        It may also name xacro and make a path of variables that may be this one.
         """
         from grader.ros.package.made_paths import made_paths  # late: few robots need it
 
@@ -175,8 +181,9 @@ class Surroundings(NamedTuple):
         return False
 
     def other_arguments(self, path: str, references: "Sequence[NamedFile]") -> "OtherArguments":
-        """Return what is known of arguments of xacro that neither the user nor the launch file
-        gives.
+        """Return what is known of arguments of xacro that nobody gives.
+
+        Neither the user nor the launch file gives them.
         """
         launches = [
             launch for package in self._launched_packages(path) for launch in package.launches
@@ -188,8 +195,9 @@ class Surroundings(NamedTuple):
         return "none" if references and not self.arguments else "default"
 
     def expanded(self, data: bytes, path: str) -> "ExpandedSource":
-        """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at
-        all.
+        """Return a file as xacro.
+
+        Raises NotDecided or MissingElement where it cannot be expanded at all.
         """
         from grader.ros.xacro.expansion import ExpandedSource, expand  # late: most are no xacro
 
@@ -268,8 +276,9 @@ class Surroundings(NamedTuple):
             raise NotDecided(str(error)) from None
 
     def installed(self, package: str, inside: str) -> str | None:
-        """Return the file at a path in a package once it is built; without any package, the most
-        similar path.
+        """Return the file at a path in a package once it is built.
+
+        Without any package, returns the most similar path.
         """
         for owner in self._named(package):
             if self.assumes_defaults and inside in owner.tree.files:
@@ -299,8 +308,9 @@ class Surroundings(NamedTuple):
 
 
 def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]) -> list[Package]:
-    """Return the nearest folders around these files that have launch files outside of packages, as
-    packages.
+    """Return the nearest folders around these files with launch files, as packages.
+
+    These launch files are outside of packages.
     """
     packaged = tuple(package.path("") for package in packages)
     loose = tree.only(lambda path: not path.startswith(packaged)) if packaged else tree
@@ -317,8 +327,9 @@ def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]
 
 
 def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None) -> Read:
-    """Read a URDF as ROS 2 gets it: expanded if a launch file runs xacro on it, or else if its name
-    says xacro.
+    """Read a URDF as ROS 2 gets it.
+
+    It is expanded if a launch file runs xacro on it, or else if its name says xacro.
 
     Other xacro is loaded as it stands; unless that makes no difference, everything but that is
     graded on its expansion.
@@ -379,8 +390,9 @@ def _needs_xacro(data: bytes) -> bool:
 def _expanded(
     data: bytes, path: str, surroundings: Surroundings, references: "Sequence[NamedFile]"
 ) -> Reading:
-    """Return the robot that xacro makes of a file; where it fails under arguments that are assumed,
-    that without them.
+    """Return the robot that xacro makes of a file.
+
+    Where it fails under arguments that are assumed, returns the robot without them.
     """
     reading = _expand_xacro(data, path, surroundings, references)
     fails = any(problem.kind.is_before_ros for problem in reading.problems)
@@ -392,8 +404,9 @@ def _expanded(
 def _expand_xacro(
     data: bytes, path: str, surroundings: Surroundings, references: "Sequence[NamedFile]"
 ) -> Reading:
-    """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be
-    read of the text.
+    """Return the robot that xacro makes of a file.
+
+    Where it cannot be expanded at all, returns what can be read of the text.
 
     The folder that a build installs a package in is called differently in launch files and in
     xacro. A file that the launch file names there and that no build certainly installs stays as it

@@ -1,5 +1,6 @@
-"""Files that hold a robot: recognised by their content, whatever they are called. Nothing is
-parsed.
+"""Files that hold a robot: recognised by their content, whatever they are called.
+
+Nothing is parsed.
 """
 
 import re
@@ -112,8 +113,9 @@ class RobotFile(NamedTuple):
 def find_robots(
     tree: Tree, urdf_name: str = "", max_size: int = URDF_LIMIT
 ) -> tuple[RobotFile, ...]:
-    """Return the files of a tree that may be the URDF; one called `urdf_name` is whatever it
-    contains.
+    """Return the files of a tree that may be the URDF.
+
+    A file called `urdf_name` is among them whatever it contains.
 
     Of other files only those of at most `max_size` bytes are read, and of these the first bytes.
     """
@@ -142,8 +144,9 @@ def find_robots(
 
 
 def is_robot(read: Callable[[int], bytes]) -> bool:
-    """Return whether a file is a robot: its first element is <robot>. `read` reads its first
-    bytes.
+    """Return whether a file is a robot: its first element is <robot>.
+
+    `read` reads its first bytes.
     """
     data = read(_START)
     return _ROBOT.match(data, _end_of_prolog(data)) is not None
@@ -163,8 +166,9 @@ def parts_of(robots: Sequence[RobotFile]) -> frozenset[str]:
 
 
 def _robot_start(file: File) -> bytes | None:
-    """Return the beginning of a file from its <robot> on, a longer one of xacro; None if another
-    element is first.
+    """Return the beginning of a file from its <robot> on, a longer one of xacro.
+
+    Returns None if another element is first.
     """
     if not file.size:
         return None

@@ -1,5 +1,6 @@
-"""The frames that static_transform_publisher adds to a robot's tree, as the launch files of a
-package start it.
+"""The frames that static_transform_publisher adds to a robot's tree.
+
+It is started as the launch files of a package start it.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -30,8 +31,9 @@ _NORM_TOLERANCE = 10e-3  # of a quaternion; tf2 ignores others
 
 
 class _StaticFrame(NamedTuple):
-    """A frame that a launch file places. It is `open`, for a reason, where it is not known whether
-    and where.
+    """A frame that a launch file places.
+
+    It is `open`, for a reason, where it is not known whether and where.
     """
 
     parent: str
@@ -47,8 +49,9 @@ def with_transforms(
     paths: Sequence[str],
     source_of: Callable[[str], Source | None],
 ) -> Robot:
-    """Return a robot with the frames that launch files of a package publish, as links at
-    fixed joints.
+    """Return a robot with the frames that launch files of a package publish.
+
+    The frames are links at fixed joints.
 
     tf2 has one parent of each frame, the one that it was told of last: a frame with two is open.
     What places the root of the robot in the world is left out.
@@ -139,8 +142,9 @@ def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
 def _read_frame(
     node: StartedNode, source_of: Callable[[str], Source | None]
 ) -> _StaticFrame | None:
-    """Return the frame that a static_transform_publisher publishes, its child empty for none; None
-    if it is unknown.
+    """Return the frame that a static_transform_publisher publishes, its child empty for none.
+
+    Returns None if it is unknown.
     """
     words = _select_words(node)
     parent, child = frames_named(node)
@@ -168,8 +172,9 @@ def _select_words(node: StartedNode) -> tuple[str | None, ...]:
 
 
 def frames_named(node: StartedNode) -> tuple[str, str]:
-    """Return the parent and the child that a static_transform_publisher is given, empty where they
-    are not known.
+    """Return the parent and the child that a static_transform_publisher is given.
+
+    They are empty where they are not known.
     """
     options = _read_options(_select_words(node))
     parent, child = ((options.get(option) or "").removeprefix("/") for option in _FRAMES)
@@ -177,8 +182,9 @@ def frames_named(node: StartedNode) -> tuple[str, str]:
 
 
 def static_pose(node: StartedNode) -> Transform | None:
-    """Return T_parent_child that a static_transform_publisher is given; None where it is not known
-    or not valid.
+    """Return T_parent_child that a static_transform_publisher is given.
+
+    Returns None where it is not known or not valid.
     """
     words = _select_words(node)
     if None in words:
@@ -205,8 +211,9 @@ def _read_options(words: Sequence[str | None]) -> dict[str, str | None]:
 
 
 def _make_origin(options: Mapping[str, str], location: LazyLocation) -> Origin | None:
-    """Return where a frame is placed; None where the publisher ends with an error, or tf2 ignores
-    the transform.
+    """Return where a frame is placed.
+
+    Returns None where the publisher ends with an error, or tf2 ignores the transform.
     """
     known = {*_PLACE, *_RPY, *_QUATERNION, *_FRAMES}
     try:

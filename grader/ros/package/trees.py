@@ -1,5 +1,6 @@
-"""One tree of names, values and places for the files of a package: YAML, and XML such as SDF, SRDF
-and package.xml.
+"""One tree of names, values and places for the files of a package.
+
+The files are YAML, and XML such as SDF, SRDF and package.xml.
 
 A path names entries in it. In YAML, dots separate keys, in XML slashes: `a.b`, `world/model/@name`.
 As in parameters of ROS 2, a key may itself have dots: `limits.joint1.max` is found nested, as one
@@ -35,8 +36,9 @@ _Place = Location | LazyLocation
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TreeEntry:
-    """An entry of a tree: an element, attribute, key or row, with its text, what it contains, and
-    its place.
+    """An entry of a tree: an element, attribute, key or row.
+
+    It has its text, what it contains, and its place.
 
     The name of an attribute begins with @, that of the root and of a row of YAML is empty.
     """
@@ -88,16 +90,18 @@ def steps_of(path: str, *, is_xml: bool) -> list[PathStep]:
 
 
 class Search:
-    """Finds entries by paths, with a limit on the entries that are looked at: those of YAML may
-    have many parents.
+    """Finds entries by paths, with a limit on the entries that are looked at.
+
+    Those of YAML may have many parents.
     """
 
     def __init__(self) -> None:
         self._budget = Budget(_MAX_LOOKED_AT)
 
     def find(self, entry: TreeEntry, steps: Sequence[PathStep]) -> list[TreeEntry]:
-        """Return the entries at a path in an entry, in the order of the file. Raises NotDecided for
-        too many.
+        """Return the entries at a path in an entry, in the order of the file.
+
+        Raises NotDecided for too many.
         """
         try:
             return [*self._find(entry, steps)]

@@ -1,6 +1,4 @@
-"""The budget to which reading a workspace is charged: the work of documents, expressions and
-searches.
-"""
+"""The budget for reading a workspace: the work of documents, expressions and searches."""
 
 from collections.abc import Collection, Iterable
 from pathlib import PurePosixPath
@@ -23,8 +21,9 @@ class OutOfBudget(py.EvaluationSignal):
 
 
 class Budget:
-    """The parts of documents, expressions and values that may still be produced or looked at,
-    whatever comes of it.
+    """How many parts may still be produced or looked at, whatever comes of it.
+
+    They are parts of documents, expressions and values.
 
     They are charged before the work, and counted, so that a result is the same on every machine.
     `stand_ins` are the texts that stand for folders that are not known: no value may depend on
@@ -77,8 +76,9 @@ class Budget:
         return self.left, self.whole.left if self.whole is not None else 0
 
     def repeat(self, cost: tuple[int, int]) -> bool:
-        """Charge again what was charged for the same work, as two marks tell; return whether it was
-        left.
+        """Charge again what was charged for the same work, as two marks tell.
+
+        Returns whether it was left.
         """
         cost_here, of_whole = cost
         if cost_here > self.left or (self.whole is not None and of_whole > self.whole.left):
@@ -89,8 +89,9 @@ class Budget:
         return True
 
     def measure(self, value: py.Value, kind: str = "plain") -> int:
-        """Charge a value and return its size: its parts, each as often as it occurs. Raises
-        Undetermined.
+        """Charge a value and return its size: its parts, each as often as it occurs.
+
+        Raises Undetermined.
 
         `kind` is that of the function that is given the value.
         """
@@ -111,8 +112,9 @@ class Budget:
         return size
 
     def checked(self, value: py.Value, kind: str = "holds") -> py.Value:
-        """Return a value that was produced, once it is charged. Raises Undetermined for one that
-        is too large.
+        """Return a value that was produced, once it is charged.
+
+        Raises Undetermined for one that is too large.
         """
         if type(value) not in (float, bool):
             self.measure(value, kind)
@@ -121,8 +123,9 @@ class Budget:
         return value
 
     def rooted(self, value: py.Value) -> py.Value:
-        """Return a text or path in which a stand-in is at most the beginning. Raises
-        Undetermined.
+        """Return a text or path in which a stand-in is at most the beginning.
+
+        Raises Undetermined.
         """
         for text in map(str, value if isinstance(value, tuple) else [value]):
             for stand_in in self.stand_ins:
@@ -134,8 +137,9 @@ class Budget:
         return value
 
     def _size_alone(self, part: py.Value, kind: str) -> int:
-        """Return the size of a part beyond one. Raises Undetermined for one that is too large, or
-        not known.
+        """Return the size of a part beyond one.
+
+        Raises Undetermined for one that is too large, or not known.
         """
         if isinstance(part, str):
             if len(part) > py.MAX_TEXT:

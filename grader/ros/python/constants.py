@@ -1,5 +1,6 @@
-"""The constants of a Python module, which is not run: the values of names that a scope binds
-once.
+"""The constants of a Python module, which is not run.
+
+These are the values of names that a scope binds once.
 """
 
 import ast
@@ -51,8 +52,9 @@ def binds_unseen(nodes: Sequence[ast.AST]) -> bool:
 
 
 class Constants(Interpreter):
-    """Evaluates expressions of a module whose names are constants. What it cannot evaluate is
-    Unknown.
+    """Evaluates expressions of a module whose names are constants.
+
+    What it cannot evaluate is Unknown.
     """
 
     def __init__(
@@ -64,8 +66,9 @@ class Constants(Interpreter):
         *,
         is_package: bool,
     ) -> None:
-        """`nodes` are those of the module; of calls, those of the functions are evaluated. `work`
-        is the budget of all files of the workspace.
+        """`nodes` are those of the module; of calls, those of the functions are evaluated.
+
+        `work` is the budget of all files of the workspace.
         """
         super().__init__(functions, {}, budget=Budget(_MAX_STEPS, whole=work))
         self._full_name, self._is_package, self._is_open = name, is_package, binds_unseen(nodes)
@@ -85,8 +88,9 @@ class Constants(Interpreter):
             return Unknown(str(error), START)
 
     def evaluate(self, node: ast.expr, scope: Scope) -> Value:
-        """Return the value of an expression; Unknown where it cannot be determined: nothing else
-        depends on it.
+        """Return the value of an expression.
+
+        Returns Unknown where it cannot be determined: nothing else depends on it.
         """
         try:
             return self.value(node, scope)
@@ -175,8 +179,9 @@ def dotted(node: ast.AST) -> str:
 
 
 def last_name(node: ast.AST) -> str:
-    """Return a name, or what is behind the last dot of an attribute; empty for any other
-    expression.
+    """Return a name, or what is behind the last dot of an attribute.
+
+    It is empty for any other expression.
     """
     match node:
         case ast.Attribute(attr=name) | ast.Name(id=name):
@@ -190,8 +195,9 @@ def offset_of(node: ast.AST) -> tuple[int, int]:
 
 
 def _replaces_names(node: ast.ImportFrom) -> bool:
-    """Return whether a star import may bind names of constants: those of messages and of Python
-    itself do not.
+    """Return whether a star import may bind names of constants.
+
+    Those of messages and of Python itself do not.
     """
     *_, last = (node.module or "").split(".")
     is_known = last in ("msg", "srv", "action") or last in sys.stdlib_module_names
@@ -199,8 +205,9 @@ def _replaces_names(node: ast.ImportFrom) -> bool:
 
 
 def _bindings(nodes: Sequence[ast.AST]) -> tuple[Counter[str], dict[str, ast.expr]]:
-    """Return how often statements bind or change each name with dots, and the expressions that are
-    assigned.
+    """Return how often statements bind or change each name with dots.
+
+    Also returns the expressions that are assigned.
     """
     counts, values = Counter[str](), dict[str, ast.expr]()
     for part in nodes:

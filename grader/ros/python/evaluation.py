@@ -1,5 +1,6 @@
-"""The state of the evaluation of a file, and the calls in it: of its own functions, of the table's,
-and of methods.
+"""The state of the evaluation of a file, and the calls in it.
+
+These are calls of its own functions, of the table's, and of methods.
 """
 
 import ast
@@ -21,8 +22,9 @@ from grader.ros.python.values import call_plain, iterate, known, reason_of
 
 
 class PythonError(NamedTuple):
-    """An error that certainly stops Python at this position: an undefined name, an import that
-    fails.
+    """An error that certainly stops Python at this position.
+
+    Examples are an undefined name, an import that fails.
     """
 
     message: str
@@ -67,8 +69,9 @@ class Evaluation(Expressions):
     def __init__(
         self, functions: py.FunctionTable, names: Mapping[str, py.Value], budget: Budget
     ) -> None:
-        """`functions` has every function that is evaluated; `names` are bound from the beginning,
-        such as __file__.
+        """`functions` has every function that is evaluated.
+
+        `names` are bound from the beginning, such as __file__.
         """
         super().__init__(self._builtin, budget)
         self.functions = functions
@@ -97,8 +100,9 @@ class Evaluation(Expressions):
         name: str = "",
         argument: str = "",
     ) -> None:
-        """Record once an error that certainly stops Python, such as an undefined name; raise it
-        where a try may catch it.
+        """Record once an error that certainly stops Python, such as an undefined name.
+
+        Raises it where a try may catch it.
         """
         if self.attempts:
             raise py.EvaluationFails(message, at, kind)
@@ -108,8 +112,9 @@ class Evaluation(Expressions):
             self.errors.append(PythonError(message, at, name, argument))
 
     def evaluate(self, node: ast.expr, scope: py.Scope) -> py.Value:
-        """Return the value of an expression; Unknown, with the reason, where it cannot be
-        determined.
+        """Return the value of an expression.
+
+        Returns Unknown, with the reason, where it cannot be determined.
 
         The evaluation stops if a part of the expression may have changed something and is not
         evaluated.
@@ -132,8 +137,9 @@ class Evaluation(Expressions):
             return py.unknown_after_error(position_of(node))
 
     def _name(self, node: ast.Name, scope: py.Scope) -> py.Value:
-        """Return the value of a name. An undefined name is an error; its value is the most likely
-        intended one.
+        """Return the value of a name.
+
+        An undefined name is an error; its value is the most likely intended one.
         """
         try:
             return scope.find(node.id)
@@ -158,8 +164,9 @@ class Evaluation(Expressions):
         return py.QualifiedName(full)
 
     def test(self, value: py.Value, branches: Collection[ast.expr]) -> bool:
-        """Return whether a condition holds; stop if that is unknown and a branch may change
-        something.
+        """Return whether a condition holds.
+
+        Stops if that is unknown and a branch may change something.
         """
         if isinstance(
             value, py.Unknown | py.Call | py.QualifiedName | py.BoundMethod
@@ -241,8 +248,9 @@ class Evaluation(Expressions):
         return result
 
     def _plain(self, function: py.PlainFunction, made: py.Call) -> py.Value:
-        """Return the value of Python's own function; stop where it would call others, or use up an
-        iterator.
+        """Return the value of Python's own function.
+
+        Stops where it would call others, or use up an iterator.
         """
         try:
             return call(
@@ -271,8 +279,9 @@ class Evaluation(Expressions):
         return function(self, made)
 
     def _method(self, owner: py.Value, name: str, made: py.Call) -> py.Value:
-        """Return the value of a method. Of what is not known, only a method of texts is known to
-        change nothing.
+        """Return the value of a method.
+
+        Of what is not known, only a method of texts is known to change nothing.
         """
         if isinstance(owner, PurePosixPath) and f"pathlib.Path.{name}" in self.functions:
             made.name, made.args = f"pathlib.Path.{name}", [owner, *made.args]
@@ -367,8 +376,9 @@ class Evaluation(Expressions):
         return bound
 
     def _binary(self, node: ast.BinOp, scope: py.Scope) -> py.Value:
-        """Return the value of a binary operator; of an object in the table it is its method for
-        division.
+        """Return the value of a binary operator.
+
+        For an object in the table it is its method for division.
         """
         left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
         if (
@@ -384,8 +394,9 @@ class Evaluation(Expressions):
 
 
 def record(evaluation: Evaluation, made: py.Call) -> py.Call:
-    """Record a call that is not evaluated further, and return it as its result: a function for the
-    table.
+    """Record a call that is not evaluated further, and return it as its result.
+
+    The result is a function for the table.
     """
     if len(evaluation.calls) < _MAX_CALLS:
         evaluation.calls.append(made)

@@ -1,5 +1,6 @@
-"""Evaluate a whole Python file without running it: its functions, branches, loops, assignments and
-imports.
+"""Evaluate a whole Python file without running it.
+
+This covers its functions, branches, loops, assignments and imports.
 
 A statement of any other kind, such as `try` or `while`, ends the evaluation: what follows is not
 known.
@@ -91,8 +92,9 @@ class Interpreter(Evaluation):
         exports: Mapping[str, Collection[str]] | None = None,
         local_modules: Collection[str] = (),
     ) -> None:
-        """`functions` may be called, by full name; `names` are bound from the beginning, such as
-        __file__.
+        """`functions` may be called, by full name.
+
+        `names` are bound from the beginning, such as __file__.
 
         `stand_ins` are texts that stand for folders that are not known; `exports` has the names of
         modules, besides those of Python itself; `local_modules` are beside the file, and imported
@@ -429,8 +431,9 @@ class Interpreter(Evaluation):
         return values
 
     def _separated(self, node: ast.expr) -> list[ast.expr]:
-        """Return an element; the two elements that a call of a tuple or list means, where a comma
-        is missing.
+        """Return an element, or the two elements that are meant where a comma is missing.
+
+        They are written as a call of a tuple or list.
         """
         match node:
             case ast.Call(
@@ -477,8 +480,9 @@ class Interpreter(Evaluation):
         return value if is_text else str_of(value)
 
     def _generatorexp(self, node: ast.GeneratorExp, scope: py.Scope) -> py.Value:
-        """Return a generator: the items of its first loop are evaluated now, the rest when it is
-        iterated.
+        """Return a generator.
+
+        The items of its first loop are evaluated now, the rest when it is iterated.
         """
         first = iterate(self.evaluate(node.generators[0].iter, scope))
         rounds = self.rounds(node.generators, py.Scope({}, scope), first)

@@ -1,5 +1,6 @@
-"""Python's library and ROS 2's modules: what an import binds, when it fails, and the functions that
-are evaluated.
+"""What imports of Python's library and ROS 2's modules bind, and when they fail.
+
+The functions of these that are evaluated are here too.
 
 None of the functions reads a file.
 """
@@ -283,8 +284,9 @@ def attribute_error(module: str, name: str) -> str | None:
 def imported_names(
     module: str, alias: ast.alias, exports: Mapping[str, Collection[str]]
 ) -> dict[str, py.QualifiedName]:
-    """Return what `import name` or `from module import name` binds; the name * represents unknown
-    names.
+    """Return what `import name` or `from module import name` binds.
+
+    The name * represents unknown names.
     """
     if alias.name == "*":
         return {
@@ -300,8 +302,9 @@ def imported_names(
 
 @cache
 def standard_functions(working_folder: str) -> py.FunctionTable:
-    """Return the functions by full name; `working_folder` is where Python runs, as an absolute
-    path.
+    """Return the functions by full name.
+
+    `working_folder` is where Python runs, as an absolute path.
     """
 
     def absolute(path: py.Value) -> str:

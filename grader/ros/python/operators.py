@@ -1,5 +1,6 @@
-"""Operators, subscripts, attributes and methods: Python's own, from an allow-list, on values of
-bounded size.
+"""Operators, subscripts, attributes and methods on values of bounded size.
+
+They are Python's own, from an allow-list.
 """
 
 import ast
@@ -20,8 +21,9 @@ _NUMBERS = (float, int)
 
 
 def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
-    """Return the value of an attribute: of a namespace, of a dict from YAML, or a method of a plain
-    value.
+    """Return the value of an attribute.
+
+    It is of a namespace, of a dict from YAML, or a method of a plain value.
     """
     if name.startswith("__"):
         raise py.EvaluationFails(f"names that begin with two underscores are not allowed: {name}")
@@ -49,8 +51,9 @@ def has_attribute(owner: py.Value, name: str) -> bool:
 
 
 def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | None:
-    """Return a method of a plain value that changes nothing, whose work is charged; None for any
-    other.
+    """Return a method of a plain value that changes nothing, whose work is charged.
+
+    Returns None for any other.
     """
     run = next(
         (table.get(name) for kind, table in _METHODS.items() if isinstance(owner, kind)), None

@@ -69,8 +69,9 @@ def every_node(tree: ast.Module) -> Sequence[ast.AST]:
 
 
 class SyntaxFault(NamedTuple):
-    """A file that Python cannot parse, with Python's message; `sure` is False where a newer
-    Python may parse it.
+    """A file that Python cannot parse, with Python's message.
+
+    `sure` is False where a newer Python may parse it.
     """
 
     source: Source
@@ -80,8 +81,9 @@ class SyntaxFault(NamedTuple):
 
 
 def location_in(source: Source, position: Position) -> Location:
-    """Return the location of a position that Python gives: it counts columns in bytes, a
-    location in characters.
+    """Return the location of a position that Python gives.
+
+    Python counts columns in bytes, a location in characters.
     """
     line = source.line(position.line)
     column = len(
@@ -91,8 +93,9 @@ def location_in(source: Source, position: Position) -> Location:
 
 
 def parse(data: bytes, path: str) -> Code | SyntaxFault:
-    """Parse the bytes of a Python file. Never raises: what Python refuses, also for its depth,
-    is a SyntaxFault.
+    """Parse the bytes of a Python file.
+
+    Never raises: what Python refuses, also for its depth, is a SyntaxFault.
     """
     resolved = resolve_conflicts(data)
     try:
@@ -165,8 +168,9 @@ def _is_of_newer_python(error: SyntaxError, text: str) -> bool:
 
 
 def parse_expression(text: str) -> ast.expr | str | None:
-    """Return an expression, or Python's message on why it is none; None if it is nested too
-    deeply.
+    """Return an expression, or Python's message on why it is none.
+
+    Returns None if it is nested too deeply.
     """
     try:
         with warnings.catch_warnings():
@@ -185,8 +189,9 @@ def parse_expression(text: str) -> ast.expr | str | None:
 
 
 def own_nodes(node: ast.AST) -> list[ast.AST]:
-    """Return the nodes of a function, class or statement, without those of the functions and
-    classes in it.
+    """Return the nodes of a function, class or statement itself.
+
+    Those of the functions and classes in it are not among them.
     """
     nodes: list[ast.AST] = []
     if isinstance(node, ast.FunctionDef | ast.ClassDef):

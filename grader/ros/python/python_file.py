@@ -1,6 +1,4 @@
-"""The text of a Python file with its syntax tree and strings, for edits that change nothing
-else.
-"""
+"""A Python file with its syntax tree and strings, for edits that change nothing else."""
 
 import ast
 import re
@@ -39,8 +37,9 @@ class _Literal(NamedTuple):
 
 
 class PythonFile:
-    """A Python file; offsets are in the text as the file has it, which may have other line breaks
-    than Python sees.
+    """A Python file for edits.
+
+    Offsets are in the text as the file has it, which may have other line breaks than Python sees.
     """
 
     def __init__(self, source: Source) -> None:
@@ -144,8 +143,9 @@ class PythonFile:
         return text
 
     def plain(self, node: ast.expr) -> str:
-        """Return the code of an expression without names for its parts and in one style, to compare
-        it.
+        """Return the code of an expression in one style, to compare it.
+
+        Its parts have no names in it.
         """
         if node not in self._plain:
             code = self.written(node)
@@ -196,8 +196,9 @@ class PythonFile:
         return sorted(matching, key=lambda node: (node.lineno, node.col_offset))
 
     def with_imports(self, names: Iterable[str]) -> list[Edit]:
-        """Return the edit that imports those of these names that have a usual meaning and are not
-        bound.
+        """Return the edit that imports those of these names that have a usual meaning.
+
+        Names that are bound are not imported.
         """
         missing = [name for name in dict.fromkeys(names) if name not in self.bound]
         lines = [self._import(name) for name in missing if name in USUAL_NAMES]

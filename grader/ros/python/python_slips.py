@@ -1,5 +1,6 @@
-"""The slips for which Python cannot read a file: a comma, a colon, a bracket or a quote that is
-missing, a keyword that is misspelt.
+"""The slips for which Python cannot read a file.
+
+A comma, a colon, a bracket or a quote is missing, or a keyword is misspelt.
 """
 
 import ast
@@ -41,8 +42,10 @@ class _Change(NamedTuple):
 
 
 def python_slips(data: bytes, path: str) -> list[Slip]:
-    """Return what Python refuses in a file, in the order in which it meets it, each with the change
-    of one line after which it reads on; nothing where a line may mean several things.
+    """Return what Python refuses in a file, each with the change of one line.
+
+    They are in the order in which Python meets them; after each change it reads on. Returns nothing
+    where a line may mean several things.
     """
     if len(data) > _MAX_BYTES:
         return []
@@ -83,8 +86,9 @@ def _parsed(lines: Sequence[str], path: str) -> Code | SyntaxFault:
 
 
 def _meant(fault: SyntaxFault, lines: list[str], path: str) -> _Change | None:
-    """Return the change of a line after which Python reads the file, or at least reads on; None if
-    different ones do.
+    """Return the change of a line after which Python reads the file, or at least reads on.
+
+    Returns None if different ones do.
     """
     for message, way in _WAYS:
         if message.search(fault.message) is None:
@@ -139,8 +143,9 @@ def _with_keyword(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
 
 
 def _with_quote(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
-    """Yield the line with the quote that ends its text, before what follows a text, or with the one
-    that begins it.
+    """Yield the line with a quote that is missing.
+
+    The quote ends its text, before what follows a text, or begins it.
     """
     index, column = fault.location.line - 1, fault.location.column - 1
     line = lines[index]
@@ -166,8 +171,9 @@ def _with_colon(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
 
 
 def _with_comma(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
-    """Yield a comma at the end of the line or of the one before, or between two of its words; also
-    for a semicolon or a point.
+    """Yield a comma at the end of the line or of the one before, or between two of its words.
+
+    The comma may also stand for a semicolon or a point.
     """
     index = fault.location.line - 1
     for at in (index, index - 1):
@@ -190,8 +196,10 @@ def _with_comma(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
 
 
 def _with_bracket_in_line(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
-    """Yield the line without a bracket that is too much, with the one that another one needs before
-    it, or with one of its own doubled.
+    """Yield the line with a bracket removed, inserted or doubled.
+
+    It is without a bracket that is too much, with the one that another one needs before it, or with
+    one of its own doubled.
     """
     index, column = fault.location.line - 1, fault.location.column - 1
     line = lines[index]
@@ -205,8 +213,9 @@ def _with_bracket_in_line(fault: SyntaxFault, lines: list[str]) -> Iterator[_Cha
 
 
 def _with_bracket_at_end(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
-    """Yield a line with a bracket at its end: from the line where one is opened to the first that
-    ends what is indented below it.
+    """Yield a line with a bracket at its end.
+
+    The lines are from that where one is opened to the first that ends what is indented below it.
     """
     index = fault.location.line - 1
     first, last = max(index - 1, 0), index + 1

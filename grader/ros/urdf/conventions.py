@@ -1,5 +1,6 @@
-"""The frames of a whole robot: whether everything in it is turned or moved alike, in comparison
-with a reference.
+"""Whether everything in a robot is turned or moved alike, in comparison with a reference.
+
+This is about the frames of a whole robot.
 
 It finds any quarter turn and any move, for a note that each report has, without hints too.
 """
@@ -29,8 +30,9 @@ _Pairs = list[tuple[Vector, Vector]]  # a point of the robot, and the same point
 
 
 class Convention(NamedTuple):
-    """How everything in a robot differs from the reference, and the robot without that
-    difference.
+    """How everything in a robot differs from the reference.
+
+    It has the robot without that difference.
     """
 
     description: str
@@ -38,8 +40,9 @@ class Convention(NamedTuple):
 
 
 def convention_of(robot: Configuration, reference: Configuration, base: str) -> Convention | None:
-    """Return how all is rotated by quarter turns or moved in the frame of `base`; None if it is
-    not, or not alike.
+    """Return how all is rotated by quarter turns or moved in the frame of `base`.
+
+    Returns None if it is not, or not alike.
 
     One link may be elsewhere: its own mistake.
     """
@@ -64,8 +67,9 @@ def convention_of(robot: Configuration, reference: Configuration, base: str) -> 
 def _matching_points(
     robot: Configuration, reference: Configuration, link: str, base: str
 ) -> tuple[Vector, Vector] | None:
-    """Return where the first shape of a link is in the frame of both robots' base, or its frame if
-    it has no shape.
+    """Return where the first shape of a link is in the frame of both robots' base.
+
+    If the link has no shape, returns where its frame is.
     """
     try:
         posed_visuals = [
@@ -123,8 +127,9 @@ def _describe_motion(T: Transform) -> str:
 def _reframe(
     robot: Configuration, reference: Configuration, base: str, T_base_other: Transform
 ) -> Robot:
-    """Return a robot with another frame of its base, and of each link that is turned alike; nothing
-    in it moves.
+    """Return a robot with another frame of its base, and of each link that is turned alike.
+
+    Nothing in the robot moves.
     """
     turned = Transform(T_base_other.rotation)
     frames = {base: T_base_other}

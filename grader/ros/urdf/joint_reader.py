@@ -1,5 +1,6 @@
-"""Joints as urdfdom reads them (`joint.cpp`), where each defect rejects the whole file, and the
-names they refer to.
+"""Joints as urdfdom reads them (`joint.cpp`), and the names they refer to.
+
+Each defect rejects the whole file.
 """
 
 from math import inf
@@ -158,8 +159,9 @@ def _read_limit(
 def _checked_limits(
     limit: Element, kind: str, reader: ElementReader
 ) -> tuple[float, float, float, float]:
-    """Return lower, upper, effort and velocity in a file of version 1.2: without limit if they are
-    not given, and never negative but for positions.
+    """Return lower, upper, effort and velocity in a file of version 1.2.
+
+    They are without limit if they are not given, and never negative but for positions.
     """
     if kind in _WITH_LIMIT:
         for attribute in ("lower", "upper"):
@@ -290,8 +292,9 @@ def _check_ends(robot: Robot, joint: Joint, links: list[str], problems: Problems
 
 
 def _check_controlled_joints(robot: Robot, joints: list[str], problems: Problems) -> None:
-    """Report what controller_manager stops at: unknown joints in ros2_control, and hardware without
-    plugin.
+    """Report what controller_manager stops at.
+
+    This is unknown joints in ros2_control, and hardware without plugin.
     """
     for system in problems.root.iterchildren("ros2_control"):
         for joint in system.iterchildren("joint"):

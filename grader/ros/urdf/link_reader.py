@@ -1,5 +1,6 @@
-"""Links as urdfdom reads them: what is lost with a bad element (`link.cpp`), and the material that
-each visual gets.
+"""Links as urdfdom reads them (`link.cpp`), with what is lost with a bad element.
+
+The material that each visual gets is here too.
 
 Its colour is that of `parseMaterial` in `link.cpp` and of `assignMaterial` in `model.cpp`.
 """
@@ -37,8 +38,9 @@ _COLLISION_LOST = "ROS 2 drops this collision of link {} and the collisions afte
 
 
 class Materials:
-    """The materials that are defined so far: first those under <robot>, then those in links, in
-    file order.
+    """The materials that are defined so far.
+
+    Those under <robot> come first, then those in links, in file order.
     """
 
     def __init__(self, problems: Problems) -> None:
@@ -102,8 +104,9 @@ class Materials:
     def _read_material(
         self, element: Element, name: str, consequence: str
     ) -> tuple[Material | None, bool]:
-        """Return the material that an element defines, if it does, and whether its colour is
-        reported as a problem.
+        """Return the material that an element defines, if it does.
+
+        Also returns whether its colour is reported as a problem.
         """
         inside = first_children(element)
         colour = inside.get("color")
@@ -159,8 +162,9 @@ class Materials:
 
 
 def read_link(element: Element, problems: Problems, materials: Materials) -> Link:
-    """Read one link with what ROS 2 keeps of it: a bad inertial loses all shapes, a bad shape
-    those after it.
+    """Read one link with what ROS 2 keeps of it.
+
+    A bad inertial loses all shapes, a bad shape those after it.
     """
     name = element.get("name")
     location = problems.location(element)
@@ -210,8 +214,9 @@ def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial 
 def _read_shape(
     element: Element, problems: Problems, link: str, materials: Materials | None
 ) -> Visual | Collision | None:
-    """Read a visual or collision; `materials` is None where it is dropped anyway, and defines
-    none.
+    """Read a visual or collision.
+
+    `materials` is None where it is dropped anyway, and defines none.
     """
     is_visual = element.tag == "visual"
     if is_visual:

@@ -1,5 +1,6 @@
-"""The words for which ROS 2 rejects a file and that surely stand for others: what the robot is if
-they are undone.
+"""Words for which ROS 2 rejects a file and that surely stand for others.
+
+It tells what the robot is if they are undone.
 """
 
 import re
@@ -43,8 +44,9 @@ _OF_JOINT = (
 
 
 class Word(NamedTuple):
-    """A word of an element that is read as another one, in a sentence; `tag` and `attributes` are
-    those as read.
+    """A word of an element that is read as another one, in a sentence.
+
+    `tag` and `attributes` are those as read.
     """
 
     element: Element
@@ -71,8 +73,9 @@ class _AsMeant(NamedTuple):
 def read_as_meant(
     root: Element, robot: Robot, read: Callable[[], tuple[Robot, Problems]]
 ) -> _AsMeant | None:
-    """Return what a rejected file means; None if a word can stand for several, or ROS 2 would still
-    reject the file.
+    """Return what a rejected file means.
+
+    Returns None if a word can stand for several, or ROS 2 would still reject the file.
 
     `robot` was read from `root`, and `read` reads it again. The elements are as before at the end.
     """
@@ -165,8 +168,9 @@ def _word_with_value(element: Element, attribute: str, value: str, what: str) ->
 
 
 def _misspelt_references(root: Element, robot: Robot) -> Iterator[Word]:
-    """Yield links that joints name and that do not exist, and joint types, each near one that can
-    be meant.
+    """Yield links that joints name and that do not exist, and joint types.
+
+    Each is near one that can be meant.
     """
     links = [link.name for link in robot.links]
     uses = Counter(name for joint in robot.joints for name in (joint.parent, joint.child))
@@ -194,8 +198,9 @@ def _misspelt_references(root: Element, robot: Robot) -> Iterator[Word]:
 def _misspelt_definitions(
     robot: Robot, links: Collection[str], uses: Mapping[str, int], unknown: Collection[str]
 ) -> dict[str, str]:
-    """Return the links whose definitions have the wrong word, each with the unknown name that is
-    meant.
+    """Return the links whose definitions have the wrong word.
+
+    Each has the unknown name that is meant.
 
     No joint names the link, and several joints name the other one, or a joint is named after it.
     """
@@ -216,8 +221,9 @@ def _misspelt_definitions(
 def _misspelt_ends(
     joint: Element, misspelt: Collection[str], links: Sequence[str], children: set[str]
 ) -> Iterator[Word]:
-    """Yield the misspelt parent and child of a joint; `children` grows by what is meant, which no
-    other joint can.
+    """Yield the misspelt parent and child of a joint.
+
+    `children` grows by what is meant, which no other joint can.
     """
     ends = {role: end for role in ("parent", "child") if (end := joint.find(role)) is not None}
     for role, end in ends.items():
@@ -235,8 +241,9 @@ def _misspelt_ends(
 
 
 def _readable_numbers(root: Element) -> Iterator[Word]:
-    """Yield numbers of joints that ROS 2 cannot read although they are clear: without them it
-    rejects the file.
+    """Yield numbers of joints that ROS 2 cannot read although they are clear.
+
+    Without them it rejects the file.
     """
     for joint in root.iterchildren("joint"):
         for element in joint:
@@ -250,8 +257,9 @@ def _readable_numbers(root: Element) -> Iterator[Word]:
 
 
 def _with_numbers(tag: str, name: str, given: dict[str, str]) -> dict[str, str] | None:
-    """Return the attributes of an element, one of them with the numbers that are meant; None where
-    it can be read, or may be several.
+    """Return the attributes of an element, one of them with the numbers that are meant.
+
+    Returns None where it can be read, or may be several.
     """
     count = len(PARTS.get(name, ()))
     if not count or name not in ATTRIBUTES[tag]:
@@ -266,8 +274,9 @@ def _with_numbers(tag: str, name: str, given: dict[str, str]) -> dict[str, str] 
 
 
 def _exchanged_ends(root: Element, robot: Robot) -> Iterator[Word]:
-    """Yield the parent and child of the one joint that are exchanged, so that one link has two
-    parents.
+    """Yield the parent and child of the one joint that are exchanged.
+
+    Because of it one link has two parents.
     """
     root_with = _roots_with_exchanged_ends(robot)
     usual = [index for index, name in root_with.items() if _ROOT.match(name)]
@@ -283,8 +292,9 @@ def _exchanged_ends(root: Element, robot: Robot) -> Iterator[Word]:
 
 
 def _roots_with_exchanged_ends(robot: Robot) -> dict[int, str]:
-    """Return the only root that the robot has if the ends of a joint are exchanged, by the number
-    of the joint: of those above the one link that has several parents.
+    """Return the only root of the robot if the ends of a joint are exchanged, by joint number.
+
+    The joints are those above the one link that has several parents.
     """
     counts = Counter(joint.child for joint in robot.joints)
     doubled = [child for child, count in counts.items() if count > 1]
@@ -301,8 +311,9 @@ def _roots_with_exchanged_ends(robot: Robot) -> dict[int, str]:
 
 
 def _pasted_children(root: Element, robot: Robot) -> Iterator[Word]:
-    """Yield the child that a second joint has by mistake: the one link that no joint names should
-    be there.
+    """Yield the child that a second joint has by mistake.
+
+    The one link that no joint names should be there.
     """
     counts = Counter(joint.child for joint in robot.joints)
     named = {*counts, *(joint.parent for joint in robot.joints)}
@@ -323,8 +334,9 @@ def _pasted_children(root: Element, robot: Robot) -> Iterator[Word]:
 
 
 def _repeated_names(root: Element) -> Iterator[Word]:
-    """Yield a name that is given twice, where one other name is used and not given: the later one
-    should have it.
+    """Yield a name that is given twice, where one other name is used and not given.
+
+    The later one should have it.
     """
     ends = [end for end in root.iterfind("joint/*") if end.tag in ("parent", "child")]
     used_links = dict.fromkeys(end.get("link") for end in ends)
@@ -340,8 +352,9 @@ def _repeated_names(root: Element) -> Iterator[Word]:
 
 
 def _misspelt_format(root: Element) -> Iterator[Word]:
-    """Yield tags and attributes that the format does not have there, each near one that it needs
-    and that is absent.
+    """Yield tags and attributes that the format does not have there.
+
+    Each is near one that the format needs and that is absent.
     """
     yield from _misspelt_tags(root, ("link", "joint"))
     yield from _misspelt_attributes(root)

@@ -26,8 +26,9 @@ _MAX_LENGTH = 1e6
 def penetration(
     a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed: float = 0.0
 ) -> float:
-    """Return the penetration depth of two shapes in metres if it is more than `allowed`; otherwise
-    0.0.
+    """Return the penetration depth of two shapes in metres if it is more than `allowed`.
+
+    Otherwise returns 0.0.
 
     Shapes that touch are separate. Off by less than 0.1 mm, or 1e-4 of the largest length where
     that is more than 10 m. Raises UnknownShape for a mesh.
@@ -51,8 +52,9 @@ def penetration(
 
 
 def least_overlap(a: Shape, b: Shape, T_a_b: Transform, limit: float = _ROUNDING) -> Vector:
-    """Return the unit direction along which two shapes overlap least, or one of an overlap up to
-    the limit.
+    """Return the unit direction along which two shapes overlap least.
+
+    It may also be one of an overlap up to the limit.
 
     A few directions are enough for parts that are side by side, and most are.
     """
@@ -119,8 +121,9 @@ def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]
 
 
 def _vector_from_nearest(shape: Shape, point: Vector) -> Vector:
-    """Return the vector to a point from the nearest point of a box, or from the centre of a round
-    shape.
+    """Return the vector to a point from the nearest point of a box.
+
+    For a round shape, it is the vector from the centre.
     """
     if not isinstance(shape, Box):
         return point
@@ -132,8 +135,9 @@ def _vector_from_nearest(shape: Shape, point: Vector) -> Vector:
 
 
 def _outside(shape: Shape, point: Vector) -> Vector:
-    """Return the vector to a point from the nearest point of a shape; zero for a point in it. Of a
-    sphere or capsule the centre or the axis counts alone.
+    """Return the vector to a point from the nearest point of a shape; zero for a point in it.
+
+    Of a sphere or capsule the centre or the axis counts alone.
     """
     if isinstance(shape, Capsule):
         x, y, z = point

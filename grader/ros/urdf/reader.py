@@ -1,5 +1,6 @@
-"""Read a URDF as a release of ROS 2 does, and report everything that is wrong with it, also names
-that look misspelt.
+"""Read a URDF as a release of ROS 2 does, and report everything that is wrong with it.
+
+Names that look misspelt are reported too.
 """
 
 import os
@@ -184,8 +185,9 @@ def read_robot(document: XmlDocument, newest: UrdfVersion = FIRST) -> Reading:
 
 
 def _read_content(document: XmlDocument, root: Element, newest: UrdfVersion) -> Reading:
-    """Return what is read of a robot: if ROS 2 rejects it for words that surely stand for
-    others, with these undone.
+    """Return what is read of a robot.
+
+    If ROS 2 rejects it for words that surely stand for others, these are undone.
     """
     listed = document.problems
     read = partial(_read_robot, document, root, newest)
@@ -236,8 +238,9 @@ def _read_content(document: XmlDocument, root: Element, newest: UrdfVersion) -> 
 
 
 def _problems_for_python(document: XmlDocument, robot: Robot) -> Iterator[Problem]:
-    """Yield that joint_state_publisher cannot read the file, if it has joints for which it
-    publishes positions.
+    """Yield that joint_state_publisher cannot read the file.
+
+    This matters if the file has joints for which it publishes positions.
     """
     is_moving = any(joint.has_position for joint in robot.joints)
     error = python_xml_error(document.source.text) if is_moving else None
@@ -263,8 +266,9 @@ def _verdict(effects: Collection[Effect]) -> Verdict:
 def _without_other_guesses(
     read: Callable[[int], tuple[Robot, Problems]], reported: list[Problem], assumed: list[Problem]
 ) -> list[Problem]:
-    """Return problems without guesses where words of another line are read as others: these tell
-    what is meant.
+    """Return problems without guesses where words of another line are read as others.
+
+    These tell what is meant.
     """
     lines = {problem.location.line for problem in assumed if problem.kind is RECOVERED}
     _, problems = read(NO_GUESSES)
@@ -335,8 +339,9 @@ def _refused_version(text: str, version: UrdfVersion | None, newest: UrdfVersion
 
 
 def _why_incomplete(document: XmlDocument, robot: Robot) -> str:
-    """Return why there may be more links and joints than are known: unknown content, or the name
-    of one is unknown.
+    """Return why there may be more links and joints than are known.
+
+    The reason is unknown content, or that the name of one is unknown.
     """
     root = document.root if document.root is not None else document.recovered
     unresolved = document.unresolved.get(root) if root is not None else None
@@ -379,8 +384,9 @@ def _check_root_inertia(robot: Robot, links: dict[str, Element], problems: Probl
 
 
 def find_xacro(text: str) -> int | None:
-    """Return the offset of the first xacro in a text outside of comments: a tag, ${...} or
-    $(...).
+    """Return the offset of the first xacro in a text outside of comments.
+
+    This is a tag, ${...} or $(...).
     """
     if "$" not in text and "xacro:" not in text:
         return None
@@ -416,8 +422,9 @@ def _check_text(problems: Problems, *, is_expanded: bool) -> None:
 
 
 def _check_spelling(root: Element, problems: Problems) -> None:
-    """Report misspelt names and repeated elements in what urdfdom reads; extensions of other tools
-    are skipped.
+    """Report misspelt names and repeated elements in what urdfdom reads.
+
+    Extensions of other tools are skipped.
     """
     if not ATTRIBUTES["robot"].issuperset(root.keys()):
         _check_attributes(root, problems)

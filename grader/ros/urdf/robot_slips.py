@@ -136,8 +136,9 @@ class RobotSlips:
         yield self._slip(element, (edit,), reaction, assumption, name)
 
     def _material_slips(self) -> dict[Element, Slip]:
-        """Return the slip of each material whose name is misspelt: where it is used, or where
-        nothing uses it as it is defined.
+        """Return the slip of each material whose name is misspelt.
+
+        It is where the name is used, or where nothing uses it as it is defined.
         """
         definitions = {}
         uses: dict[str, list[Element]] = {}

@@ -17,9 +17,11 @@ _OFF_AXIS = 0.05  # of the radius: how far from its axis the middle of a wheel m
 
 
 class WheelSize(NamedTuple):
-    """The wheel of a joint. `axis` is the unit axis of the joint, `middle` the middle of the wheel,
-    or the origin of the joint where no round shape is known. `radii` has those of all round shapes,
-    the largest first, and `half_width` is None without one.
+    """The wheel of a joint.
+
+    `axis` is the unit axis of the joint, `middle` the middle of the wheel, or the origin of the
+    joint where no round shape is known. `radii` has those of all round shapes, the largest first,
+    and `half_width` is None without one.
     """
 
     joint: Joint
@@ -68,8 +70,9 @@ def _standing_for(robot: Configuration, joint: Joint) -> Iterator[Joint]:
 
 
 def _measure_own(robot: Configuration, joint: Joint, base: str) -> WheelSize:
-    """Return the wheel that the cylinders and spheres about the axis of a joint make, on its link
-    and on those that are fixed to it.
+    """Return the wheel that the cylinders and spheres about the axis of a joint make.
+
+    They are on its link and on those that are fixed to it.
     """
     T_base_joint = robot.pose(joint.child, relative_to=base)
     axis = T_base_joint.rotate(robot.axis(joint))
@@ -99,8 +102,9 @@ def _measure_own(robot: Configuration, joint: Joint, base: str) -> WheelSize:
 
 
 def _links_below(robot: Configuration, link: str, *, is_fixed: bool = False) -> Iterable[str]:
-    """Return a link and those that joints connect to it, downward; with `is_fixed`, fixed joints
-    only.
+    """Return a link and those that joints connect to it, downward.
+
+    With `is_fixed`, only fixed joints count.
     """
     children: dict[str, list[str]] = {}
     for joint in robot.robot.joints:

@@ -16,8 +16,9 @@ _DIGIT_AND_LETTER = re.compile(r"(?=.*\d)[-+.\dOoIl]+(?:e[-+]?\d+)?")
 
 
 def meant_tag(tag: str, parent: str, present: set[str]) -> str | None:
-    """Return the child of `parent` that a tag surely stands for, which is not `present` yet; None
-    for a tag that is right, or that is of another tool.
+    """Return the child of `parent` that a tag surely stands for, which is not `present` yet.
+
+    Returns None for a tag that is right, or that is of another tool.
     """
     if tag in TAGS or tag.startswith("{"):
         return None
@@ -30,8 +31,9 @@ def meant_tag(tag: str, parent: str, present: set[str]) -> str | None:
 
 
 def meant_attribute(name: str, tag: str, values: Mapping[str, str]) -> str | None:
-    """Return the attribute of `tag` that a name surely stands for, which is not among its `values`
-    yet.
+    """Return the attribute of `tag` that a name surely stands for.
+
+    It is not among its `values` yet.
     """
     if name in ATTRIBUTES[tag] or name.startswith("{"):
         return None
@@ -47,8 +49,9 @@ def meant_attribute(name: str, tag: str, values: Mapping[str, str]) -> str | Non
 
 
 def _other_vector(name: str, value: str, tag: str, absent: list[str]) -> str | None:
-    """Return the one vector of an element whose name is written as that of another vector, as in
-    <axis rpy="0 0 1"/>.
+    """Return the one vector of an element whose name is written as another vector's.
+
+    An example is <axis rpy="0 0 1"/>.
     """
     count = len(PARTS[name])
     vectors = [other for other in TAGS[tag].attributes if len(PARTS[other]) == count]
@@ -64,8 +67,9 @@ def _may_have(attribute: str, value: str) -> bool:
 
 
 def meant_value(text: str, attribute: str) -> str | None:
-    """Return the numbers that a value surely stands for; None for one that ROS 2 reads, or that
-    may be several.
+    """Return the numbers that a value surely stands for.
+
+    Returns None for one that ROS 2 reads, or that may be several.
     """
     count = len(PARTS.get(attribute, ()))
     if not count or len(text) > _MAX_LENGTH or _is_read(text, count):

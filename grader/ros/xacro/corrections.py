@@ -1,5 +1,6 @@
-"""The edits that correct what xacro refuses: one edit, where it surely is meant, and others that
-hints try.
+"""The edits that correct what xacro refuses.
+
+There is one edit where it surely is meant, and others that hints try.
 """
 
 import re
@@ -58,8 +59,9 @@ Refusal = tuple[EvaluationFails, ScopePlace, str | None]
 
 
 class Corrections:
-    """Finds the correction that is surely meant of what xacro refuses in a document and the
-    files it includes.
+    """Finds the correction that is surely meant of what xacro refuses in a document.
+
+    The files that the document includes are part of it.
     """
 
     def __init__(self, files: Files, budget: Budget) -> None:
@@ -88,8 +90,9 @@ class Corrections:
         return _correction(edits, location) if edits else None
 
     def moved(self, unknown: UnknownName) -> tuple[Edits, Location] | None:
-        """Return the edits that move what defines a name to the top, and where it is; None if
-        nothing does, below.
+        """Return the edits that move what defines a name to the top, and where it is.
+
+        Returns None if nothing below defines it.
         """
         tag = {"property": "xacro:property", "macro": "xacro:macro"}.get(unknown.kind)
         root = next(iter(self._files.documents.values()))
@@ -161,8 +164,9 @@ class Corrections:
     def _respelt(
         self, place: ScopePlace, attribute: str | None, unknown: UnknownName, *, is_of_element: bool
     ) -> XacroCorrection | None:
-        """Return the correction of a name where it is used, or where it is defined if nothing
-        uses it as defined.
+        """Return the correction of a name where it is used.
+
+        If nothing uses it as defined, it is corrected where it is defined.
         """
         meant = unknown.meant or ""
         definition = unknown.known.get(meant)
@@ -179,9 +183,7 @@ class Corrections:
         return None
 
     def _uses(self, name: str) -> int:
-        """Return how many attributes use a name in an expression, or give an argument of this
-        name.
-        """
+        """Return how many attributes use a name in an expression, or give an argument of it."""
         used = re.compile(rf"(?<![\w.]){re.escape(name)}(?!\w)")
         texts = (text for node in self.nodes() for text in node.attributes.values() if "${" in text)
         given = sum(
@@ -196,8 +198,9 @@ class Corrections:
             yield from islice(walk(root), _MAX_NODES)
 
     def _quoted(self, place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Edits:
-        """Return the edit that puts a text in quotes with which something is compared: ${side ==
-        left}.
+        """Return the edit that puts a text in quotes with which something is compared.
+
+        An example is ${side == left}.
         """
         name = re.escape(unknown.name)
         compared = re.compile(rf"([=!]=\s*){name}(?![\w.(\[])|(?<![\w.]){name}(?=\s*[=!]=)")
@@ -262,8 +265,9 @@ class Corrections:
         return tuple(edit for edit in self.unmarked() if edit[:2] == place.at()[:2])
 
     def unmarked(self) -> Edits:
-        """Return the edits that write ${side} where {side}, $ {side}, $(side) or $side stands for a
-        known name.
+        """Return the edits that write ${side} where another form stands for a known name.
+
+        Such a form is {side}, $ {side}, $(side) or $side.
         """
         properties = {
             element.attributes.get("name", "")
@@ -328,8 +332,9 @@ def _power(refusal: Refusal) -> Edits:
 
 
 def _values(place: ScopePlace, attribute: str | None) -> Iterator[tuple[str, str, str]]:
-    """Yield the name, the text and the quote of an attribute; without a name, those of all
-    attributes of the tag.
+    """Yield the name, the text and the quote of an attribute.
+
+    Without a name, those of all attributes of the tag are yielded.
     """
     source, start = place.source.element(place.tag)
     for markup_attribute in markup.attributes(source.text, start):
@@ -345,8 +350,9 @@ def _values(place: ScopePlace, attribute: str | None) -> Iterator[tuple[str, str
 
 
 def _with_value(place: ScopePlace, name: str, new: str) -> Edits:
-    """Return the edit that gives an attribute another value; none where it is not written in the
-    tag.
+    """Return the edit that gives an attribute another value.
+
+    Returns none where it is not written in the tag.
     """
     source, start = place.source.element(place.tag)
     if markup.attribute(source.text, start, name) is None:
@@ -372,8 +378,9 @@ def sentence_of(edits: Edits) -> str:
 
 
 def respellings(place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
-    """Yield the edits that correct an unknown name where it is used, or where a similar one is
-    defined.
+    """Yield the edits that correct an unknown name where it is used.
+
+    Others correct a similar name where it is defined.
     """
     similar = closest(unknown.name, unknown.known)
     if similar is not None:
@@ -387,8 +394,9 @@ def respellings(place: ScopePlace, attribute: str | None, unknown: UnknownName) 
 def values_of_other_calls(
     place: ScopePlace, nodes: Sequence[XacroNode], lacking: tuple[str, ...]
 ) -> Iterator[tuple[Edits, Mapping[str, str]]]:
-    """Yield the edits that give a call the values that it lacks, from other calls of the macro,
-    also negated.
+    """Yield the edits that give a call the values that it lacks.
+
+    The values are from other calls of the macro, also negated.
     """
     own_call = next((node for node in nodes if node.place[:2] == place[:2]), None)
     for other in nodes:
@@ -406,8 +414,9 @@ def values_of_other_calls(
 
 
 def _mirrored(text: str) -> Iterator[str]:
-    """Yield a text with each of its numbers and expressions negated: one on the other side differs
-    in one of them.
+    """Yield a text with each of its numbers and expressions negated.
+
+    One on the other side differs in one of them.
     """
     for match in _WORD.finditer(text):
         new = negated(match[0])
@@ -441,8 +450,9 @@ def _give(place: ScopePlace, values: Mapping[str, str]) -> Edits:
 
 
 def _rename(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edits:
-    """Return the edit of an attribute's value; without an attribute, of an attribute's name, the
-    tag, or any value.
+    """Return the edit of an attribute's value.
+
+    Without an attribute, it is of an attribute's name, the tag, or any value.
     """
     source, start = place.source.element(place.tag)
     if attribute is None:

@@ -1,5 +1,6 @@
-"""A xacro file, expanded statically, as the document that ROS 2 reads; every element keeps its
-place in the source.
+"""A xacro file, expanded statically, as the document that ROS 2 reads.
+
+Every element keeps its place in the source.
 
 xacro (ros/xacro 2.1) stops at the first thing that it refuses. Here it becomes a problem, and the
 rest is expanded all the same, so that one defect does not hide another.
@@ -69,29 +70,33 @@ class ExpandedSource(Source):
         self._expander, self._work = expander, work
 
     def tag(self, index: int, attribute: str | None = None) -> Location:
-        """Return the location in the source of an expanded element, or of an attribute if it has
-        it.
+        """Return the location in the source of an expanded element.
+
+        With an attribute that the element has, it is the location of the attribute.
         """
         return self.nodes[index].place.at(attribute)
 
     def next_tag(self, index: int, name: str) -> int:
-        """Return the index of the first expanded element of this name after another one; that
-        one if there is none.
+        """Return the index of the first expanded element of this name after another one.
+
+        Returns the index of the other one if there is none.
         """
         others = range(index + 1, len(self.nodes))
         return next((other for other in others if self.nodes[other].tag == name), index)
 
     @property
     def documents(self) -> Mapping[str, XacroNode]:
-        """The files that it was expanded from, as they are written, by their paths: this one
-        first.
+        """The files that it was expanded from, as they are written, by their paths.
+
+        This file is the first one.
         """
         return self._expander.files.documents
 
     @property
     def includes(self) -> Mapping[tuple[str, int], list[str]]:
-        """The files that were included, by the path of the file and the index of the tag that
-        include them.
+        """The files that were included, by the path and the tag that include them.
+
+        The key is the path of the file and the index of the tag in it.
         """
         return self._expander.files.followed
 
@@ -159,8 +164,9 @@ class ExpandedSource(Source):
         return super().cost + self._work // _READING_OF_SHORT
 
     def element(self, tag: int) -> tuple[Source, int]:
-        """Return the text, perhaps of an included file, with an expanded element, and the offset
-        of its start tag.
+        """Return the text with an expanded element, and the offset of its start tag.
+
+        The text may be that of an included file.
         """
         place = self.nodes[tag].place
         return place.source.element(place.tag)
@@ -194,8 +200,9 @@ class _Expansion(NamedTuple):
 
     @property
     def document(self) -> XmlDocument:
-        """The expanded file as the reader of robots takes it; what cannot be determined is a
-        problem in it.
+        """The expanded file as the reader of robots takes it.
+
+        What cannot be determined is a problem in it.
         """
         undetermined = [
             Problem(xacro_problems.XACRO_UNDETERMINED, part.reason, part.location)
@@ -216,8 +223,9 @@ def expand(
     others: OtherArguments = "default",
     edits: Edits = (),
 ) -> _Expansion:
-    """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in
-    the workspace.
+    """Return a xacro file as xacro expands it with these arguments; never raises.
+
+    `path` is that in the workspace.
 
     `others` says what is known of other arguments. With `edits`, which surely are meant, `meant` is
     the expansion of the files after these, too.
@@ -304,8 +312,9 @@ def _expand(
 def _read(
     data: bytes, text: Source, budget: Budget, edits: Edits
 ) -> tuple[XacroNode | None, tuple[Problem, ...], bool]:
-    """Return the elements of a file, what xacro refuses in it, and whether they are only what
-    broken tags leave.
+    """Return the elements of a file, and what xacro refuses in it.
+
+    Also returns whether they are only what broken tags leave.
     """
     path = text.path
     try:
@@ -323,8 +332,9 @@ def _read(
 
 
 def _instructions(text: Source) -> Iterator[Problem]:
-    """Yield the first processing instruction: xacro keeps it, after its own comment, where
-    TinyXML2 refuses it.
+    """Yield the first processing instruction.
+
+    It stands after xacro's own comment, where TinyXML2 refuses it.
     """
     instruction = next(
         (match for match in _INSTRUCTION.finditer(text.text) if match["target"]), None
@@ -338,8 +348,9 @@ def _instructions(text: Source) -> Iterator[Problem]:
 def _element(
     root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, Unresolved]
 ) -> Element:
-    """Return the elements of lxml for expanded ones; `nodes` becomes the latter in document
-    order.
+    """Return the elements of lxml for expanded ones.
+
+    `nodes` becomes the latter in document order.
     """
     made = make_element(_name(root.tag), _attributes(root.attributes))
     pending: list[tuple[XacroNode, Element]] = [(root, made)]
@@ -365,8 +376,9 @@ def _element(
 
 
 def _name(tag: str) -> str:
-    """Return a name for lxml: a prefix stands for its namespace, because no element with one
-    belongs to a URDF.
+    """Return a name for lxml.
+
+    A prefix stands for its namespace, because no element with one belongs to a URDF.
     """
     if ":" not in tag:
         return tag

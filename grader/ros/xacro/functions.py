@@ -1,5 +1,6 @@
-"""The names that every xacro expression knows: Python's functions, math, and the namespaces python,
-math and xacro.
+"""The names that every xacro expression knows.
+
+They are Python's functions, math, and the namespaces python, math and xacro.
 """
 
 import re
@@ -71,8 +72,9 @@ def document_functions(
     argument: Callable[[str], str],
     note: Callable[[str], object],
 ) -> dict[str, Value]:
-    """Return the functions that need the document: those of the namespace xacro, and the old ones
-    outside of it.
+    """Return the functions that need the document.
+
+    These are those of the namespace xacro, and the old ones outside of it.
 
     `note` is called with the full name of each function that writes to stderr when it is called.
     """
@@ -135,8 +137,9 @@ GLOBALS: Mapping[str, Value] = {
 
 
 def read_yaml_values(data: bytes, find: Callable[[str], Value], budget: Budget) -> Value:
-    """Return the value of a YAML text. `find` returns the value of a name in an expression with a
-    unit: !radians pi/2.
+    """Return the value of a YAML text.
+
+    `find` returns the value of a name in an expression with a unit: !radians pi/2.
 
     Raises EvaluationFails for what is not YAML, Undetermined for what is too large or rarely used.
     """

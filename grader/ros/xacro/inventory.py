@@ -1,5 +1,6 @@
-"""The properties and macros that xacro files define, and the names that they use, as they are
-written.
+"""The properties and macros that xacro files define, and the names that they use.
+
+They are as they are written.
 """
 
 import re
@@ -22,8 +23,9 @@ _Definitions = dict[str, list[ScopePlace]]
 
 @dataclass(frozen=True, slots=True)
 class Inventory:
-    """The definitions in files, each with its places, and what is used; `dynamic` are tags with
-    evaluated names.
+    """The definitions in files, each with its places, and what is used.
+
+    `dynamic` are tags with evaluated names.
     """
 
     properties: _Definitions = field(default_factory=dict)
@@ -54,6 +56,7 @@ class Inventory:
 
 def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
     """Return what files define and use; a macro's parameter is no use of a property of its name.
+
     Raises OutOfBudget.
     """
     inventory, roots = Inventory(), [*documents]
@@ -81,8 +84,9 @@ def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
 
 
 def _note_tag(node: XacroNode, inventory: Inventory) -> str:
-    """Note what a tag of xacro defines or calls; return the name of a property, whose own text is
-    no use of it.
+    """Note what a tag of xacro defines or calls.
+
+    Returns the name of a property, whose own text is no use of it.
     """
     name = node.attributes.get("name", "")
     match node.tag:
@@ -107,8 +111,9 @@ def _note_tag(node: XacroNode, inventory: Inventory) -> str:
 
 
 def _parameters(node: XacroNode, inventory: Inventory, budget: Budget) -> frozenset[str]:
-    """Return the names of a macro's parameters; forwarding one uses the caller's property. Raises
-    OutOfBudget.
+    """Return the names of a macro's parameters; forwarding one uses the caller's property.
+
+    Raises OutOfBudget.
     """
     try:
         parameters = read_parameters(node.attributes.get("params", ""), budget)

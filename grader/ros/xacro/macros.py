@@ -33,8 +33,10 @@ class MacroError(XacroFails):
 
 
 class _MacroParameter(NamedTuple):
-    """A parameter: `default` is its text, `is_forwarded` whether the caller's property of this name
-    comes before it.
+    """A parameter of a macro, with its default.
+
+    `default` is its text, `is_forwarded` whether the caller's property of this name comes before
+    it.
     """
 
     name: str
@@ -104,8 +106,9 @@ def bind_values(
 
 
 def _only_lacking(name: str, absent: list[_MacroParameter]) -> str | None:
-    """Return the one parameter that a call lacks, if a name differs from it in one letter: z for
-    y.
+    """Return the one parameter that a call lacks, if a name differs from it in one letter.
+
+    For example, z is meant by y.
     """
     needed = [
         parameter.name

@@ -56,8 +56,9 @@ _MAX_DEFINITIONS = 12
 
 
 class _Written(NamedTuple):
-    """A text at an offset of a file, the scope in which it is evaluated, the attribute that it
-    is in, and its name.
+    """A text at an offset of a file, and the scope in which it is evaluated.
+
+    It also has the attribute that it is in, and its name.
     """
 
     source: Source
@@ -78,8 +79,9 @@ class _Written(NamedTuple):
 
 
 class _Use(NamedTuple):
-    """A use of a text: the scope in which it is evaluated, what it is and should be, the call of
-    the macro it is in.
+    """A use of a text: what it is and should be, and where it is evaluated.
+
+    This is the scope, and the call of the macro it is in.
     """
 
     scope: XacroScope
@@ -96,8 +98,9 @@ class _TextChange(NamedTuple):
 
 
 def _make_edits(changes: Iterable[_TextChange]) -> Edits | None:
-    """Return the edits that make changes, one for each attribute; None where two of them
-    overlap.
+    """Return the edits that make changes, one for each attribute.
+
+    Returns None where two of them overlap.
     """
     attributes: dict[tuple[str, int], list[_TextChange]] = {}
     for change in dict.fromkeys(changes):
@@ -154,8 +157,9 @@ def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written
 
 
 def _definition_text(definition: XacroDefinition) -> _Written | None:
-    """Return the text that a name is defined with: of a parameter's default the part of
-    `params`.
+    """Return the text that a name is defined with.
+
+    For a parameter's default it is a part of `params`.
     """
     whole = _find_text(definition.place, definition.attribute, definition.scope)
     if whole is not None and definition.attribute == "params" and whole.text != definition.text:
@@ -175,8 +179,9 @@ class _Rewriter:
         self._texts = texts
 
     def ways(self, place: ScopePlace, attribute: str, uses: Sequence[_Use]) -> list[Edits]:
-        """Return the ways to change an attribute (or, without a name, the text) for its uses,
-        the best first.
+        """Return the ways to change an attribute for its uses, the best first.
+
+        Without a name, they change the text.
         """
         text = _find_text(place, attribute, uses[0].scope)
         changed = [use for use in uses if use.old != use.new]
@@ -206,8 +211,9 @@ class _Rewriter:
         return [*dict.fromkeys(ways)]
 
     def _computed(self, parts: Iterable[tuple[_Use, _Written, str, str]]) -> list[Edits]:
-        """Return the edits of what parts of a text are computed from: of one definition for each
-        part.
+        """Return the edits of what parts of a text are computed from.
+
+        They are of one definition for each part.
         """
         origins = []
         for use, part, old, new in parts:
@@ -220,8 +226,9 @@ class _Rewriter:
     def _origins(
         self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
     ) -> Iterator[_TextChange]:
-        """Yield the changes of one definition with which a text has another value: numbers, then
-        expressions.
+        """Yield the changes of one definition with which a text has another value.
+
+        Numbers come first, then expressions.
         """
         defined = self._defined(text, scope, old, new)
         if defined is None:
@@ -258,8 +265,9 @@ class _Rewriter:
     def _solved(
         self, text: _Written, name: str, scope: XacroScope, old: str, new: str
     ) -> Iterator[tuple[str, str]]:
-        """Yield the number that a name stands for, and the one with which a linear expression
-        has another value.
+        """Yield the number that a name stands for, and the one with which a value is another.
+
+        The value is that of a linear expression.
         """
         inside = XacroScope(scope)
 
@@ -280,8 +288,9 @@ class _Rewriter:
             yield repr(at), format_number(solution)
 
     def _in_calls(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
-        """Return the edits that give a parameter, of which a text is the default, in the calls
-        of its macro.
+        """Return the edits that give a parameter in the calls of its macro.
+
+        A text is the default of this parameter.
         """
         name = text.text[2:-1].strip() if text.text.startswith("${") else ""
         definition = self._definition_of(name, changed[0].scope)
@@ -292,8 +301,9 @@ class _Rewriter:
         return [tuple(with_attribute(source, start, name, new) for source, start, new in each)]
 
     def _literal(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
-        """Return the edit that writes a value where it is used; none where uses differ, or a
-        YAML file gives it.
+        """Return the edit that writes a value where it is used.
+
+        Returns none where uses differ, or a YAML file gives it.
         """
         around = {_around(text, use) for use in changed}
         if len(around) == 1 and "" not in around:
@@ -318,8 +328,9 @@ class _Rewriter:
     def _definitions(
         self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
     ) -> list[_TextChange]:
-        """Return the changes of what defines the one name in a text, with which the text has
-        another value.
+        """Return the changes of the definition of the one name in a text.
+
+        With them the text has another value.
         """
         defined = self._defined(text, scope, old, new) if depth else None
         if defined is None:
@@ -336,8 +347,9 @@ class _Rewriter:
     def _defined(
         self, text: _Written, scope: XacroScope, old: str, new: str
     ) -> tuple[_Written, XacroScope, str, str] | None:
-        """Return the definition of the one name that gives a text, its scope, and what it is and
-        should be.
+        """Return the definition of the one name that gives a text, and its scope.
+
+        Also returns what it is and should be.
         """
         match = _ALONE.fullmatch(text.text)
         before, after = (match["before"], match["after"]) if match else ("", "")
@@ -410,16 +422,18 @@ class _Rewriter:
 
 
 def _may_change(text: _Written, *, keeps_sign: bool) -> bool:
-    """Return whether a definition is an argument in a call, or a number that keeps its sign, as
-    a length does.
+    """Return whether a definition is an argument in a call, or a number that keeps its sign.
+
+    A length is such a number.
     """
     is_argument = text.key is not None and text.key[2] not in _NO_CALL
     return is_argument or (keeps_sign and bool(_NUMBER.fullmatch(text.text)))
 
 
 def _parts(text: _Written, use: _Use) -> list[tuple[_Written, str, str]]:
-    """Return the parts of a text that should be others, each with what it is and should be:
-    words, or the whole.
+    """Return the parts of a text that should be others, each with what it is and should be.
+
+    The parts are words, or the whole text.
     """
     tokens = [text.part(*match.span()) for match in _TOKEN.finditer(text.text)]
     old, new = use.old.split(), use.new.split()
@@ -429,8 +443,9 @@ def _parts(text: _Written, use: _Use) -> list[tuple[_Written, str, str]]:
 
 
 def _around(text: _Written, use: _Use) -> str:
-    """Return a text with another one around its only expression, whose value stays:
-    ${side}_joint; empty if it goes.
+    """Return a text with another one around its only expression, whose value stays.
+
+    An example is ${side}_joint. It is empty if the text around it goes.
     """
     match = _ALONE.fullmatch(text.text)
     if match is None or not (match["before"] or match["after"]):
@@ -455,8 +470,9 @@ def _is_equal(one: str, other: str) -> bool:
 
 
 def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
-    """Return the edits that correct a text in quotes in the condition of an <xacro:if> or
-    <xacro:unless>: 'rigth'.
+    """Return the edits that correct a text in quotes in a condition: 'rigth'.
+
+    The condition is that of an <xacro:if> or <xacro:unless>.
     """
     edits: list[Edits] = []
     for tag in re.finditer(r"<xacro:(?:if|unless)\b", source.text):
@@ -496,16 +512,18 @@ class NumberDefinition(NamedTuple):
 
 
 class ExpandedEdits:
-    """Makes the edits of an expanded xacro file; elements are named by their indices in the
-    expanded document.
+    """Makes the edits of an expanded xacro file.
+
+    Elements are named by their indices in the expanded document.
     """
 
     def __init__(self, source: ExpandedSource) -> None:
         self._source = source
 
     def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[Edits]:
-        """Return the ways to give an attribute (or, without a name, the text) of elements of one
-        place other values.
+        """Return the ways to give an attribute of elements of one place other values.
+
+        Without a name, they are ways for the text.
         """
         place = self._source.nodes[next(iter(wanted))].place
         scope = place.scope or XacroScope()
@@ -527,9 +545,7 @@ class ExpandedEdits:
         return [NumberDefinition(written) for written in definitions]
 
     def siblings(self, tag: int) -> list[int]:
-        """Return the indices of the expanded elements that come from the same place of the
-        source.
-        """
+        """Return the indices of the expanded elements that come from the same source place."""
         place = self._source.nodes[tag].place
         return self._by_place[place.source.path, place.tag]
 
@@ -541,8 +557,9 @@ class ExpandedEdits:
         return indices
 
     def corrections(self, names: Sequence[str]) -> list[_XacroMistake]:
-        """Return edits that may correct undeclared and undefined names, calls of macros, and
-        conditions.
+        """Return edits that may correct names, calls of macros, and conditions.
+
+        The names are undeclared or undefined.
 
         `names` are those that the reference and the format have.
         """
@@ -590,8 +607,9 @@ class ExpandedEdits:
 def _corrections(
     document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]
 ) -> Iterator[_XacroMistake]:
-    """Yield the edits that may correct what xacro refuses in a document with the files that it
-    includes.
+    """Yield the edits that may correct what xacro refuses in a document.
+
+    The files that the document includes are part of it.
     """
     text = document.text
     if "xmlns:xacro" not in text and "xacro:" in text:

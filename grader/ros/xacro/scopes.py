@@ -1,5 +1,6 @@
-"""The names that xacro binds: properties, evaluated when they are first used, and macros, in
-nested scopes.
+"""The names that xacro binds: properties, and macros, in nested scopes.
+
+Properties are evaluated when they are first used.
 """
 
 from collections.abc import Callable, Mapping
@@ -20,8 +21,9 @@ BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 
 
 class ScopePlace(NamedTuple):
-    """A start tag in a source file; once expanded, with its macro calls, outermost first, and
-    the scope.
+    """A start tag in a source file.
+
+    Once expanded, it has its macro calls, outermost first, and the scope.
     """
 
     source: Source
@@ -50,8 +52,9 @@ Key = tuple[str, int, str, str]
 
 
 class XacroDefinition(NamedTuple):
-    """Where a name got its value: the text in an attribute, and the scope in which it is
-    evaluated.
+    """Where a name got its value.
+
+    This is the text in an attribute, and the scope in which it is evaluated.
     """
 
     name: str
@@ -71,8 +74,9 @@ Known = Mapping[str, tuple[ScopePlace, str] | None]
 
 
 class UnknownName(NamedTuple):
-    """A name that is not defined, and those that are; `meant` is the one that it surely stands for,
-    if there is one.
+    """A name that is not defined, and those that are.
+
+    `meant` is the one that it surely stands for, if there is one.
 
     `kind` is property where the name is in an expression, else what it names: a macro, block,
     parameter, attribute or file.
@@ -85,8 +89,9 @@ class UnknownName(NamedTuple):
 
 
 class XacroFails(EvaluationFails):
-    """Something that xacro refuses, perhaps for a name that it does not know, or values that a call
-    lacks.
+    """Something that xacro refuses.
+
+    The reason may be a name that it does not know, or values that a call lacks.
     """
 
     def __init__(
@@ -101,8 +106,9 @@ class Reported(EvaluationFails):
 
 
 class _Property:
-    """A value, or the text whose value is determined at the first use; `failure` is why it has
-    none.
+    """A value, or the text whose value is determined at the first use.
+
+    `failure` is why it has none.
     """
 
     __slots__ = ("definition", "failure", "is_lazy", "is_open", "value")
@@ -136,8 +142,9 @@ class XacroScope:
 
     @property
     def caller(self) -> "XacroScope | None":
-        """The scope that the scope parent means: around a macro, the namespace that it is defined
-        in does not count.
+        """The scope that the scope parent means.
+
+        Around a macro, the namespace that it is defined in does not count.
         """
         scope = self.parent
         while not self.is_namespace and scope is not None and scope.is_namespace:
@@ -167,8 +174,9 @@ class XacroScope:
         return scope
 
     def definitions(self) -> dict[str, tuple[ScopePlace, str] | None]:
-        """Return the names that are known here, each with the tag and attribute that define it
-        where there is one.
+        """Return the names that are known here, each with what defines it.
+
+        This is a tag and attribute, where there is one.
         """
         visible = self.parent.definitions() if self.parent is not None else {}
         for name, definition in (
@@ -242,8 +250,9 @@ def _is_compared(name: str) -> bool:
 
 
 def _literal(value: Value) -> Value:
-    """Return the number or boolean that a text is for xacro, else the text, without single quotes
-    around it.
+    """Return the number or boolean that a text is for xacro, else the text.
+
+    The text is without single quotes around it.
     """
     if not isinstance(value, str):
         return value

@@ -108,8 +108,9 @@ def _call_by_name(
 
 
 def _find_macro(name: str, scopes: Scopes) -> tuple[Macro | None, Scopes]:
-    """Return the macro of a name, perhaps in namespaces (arms.left), and the scopes that its body
-    is evaluated in.
+    """Return the macro of a name, and the scopes that its body is evaluated in.
+
+    The macro may be in namespaces (arms.left).
     """
     macro = scopes.macros.bound(name)
     if macro is None:
@@ -320,8 +321,9 @@ _OF_XACRO = frozenset(
 
 
 def _namespace(expander: Expander, name: str, scopes: Scopes, node: XacroNode) -> Scopes:
-    """Return the scopes of an included file with a namespace, which `name` stands for: it sees no
-    macros around.
+    """Return the scopes of an included file with a namespace, which `name` stands for.
+
+    It sees no macros around.
     """
 
     def find(wanted: str) -> Value:

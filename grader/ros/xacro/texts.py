@@ -56,8 +56,9 @@ OtherArguments = Literal["default", "unknown", "none"]
 
 
 class Texts:
-    """Evaluates texts. `arguments` are those of $(arg): given ones, then the file's defaults;
-    None if unknown.
+    """Evaluates texts.
+
+    `arguments` are those of $(arg): given ones, then the file's defaults; None if unknown.
     """
 
     def __init__(
@@ -68,8 +69,9 @@ class Texts:
         functions: dict[str, Value],
         is_own: Callable[[str], bool],
     ) -> None:
-        """`own` are functions that need the document, such as load_yaml; `is_own`: whether a
-        package is in the workspace.
+        """`own` are functions that need the document, such as load_yaml.
+
+        `is_own`: whether a package is in the workspace.
         """
         self.arguments = arguments
         self.other_arguments: OtherArguments = "default"
@@ -92,8 +94,9 @@ class Texts:
         self._similar: dict[tuple[str, ...], tuple[str, str | None]] = {}
 
     def evaluate(self, text: str, scope: XacroScope) -> Value:
-        """Return the value of a text: that of its expression, if it is a single one, else a
-        text.
+        """Return the value of a text.
+
+        It is that of its expression, if it is a single one, else a text.
         """
         if "$" not in text:
             return text
@@ -140,8 +143,9 @@ class Texts:
     def unknown(
         self, kind: str, name: str, scope: XacroScope, nearer: Iterable[str] = ()
     ) -> tuple[str, UnknownName]:
-        """Return that a name is undefined, and the known ones. Raises OutOfBudget: finding a
-        similar one takes long.
+        """Return that a name is undefined, and the known ones.
+
+        Raises OutOfBudget: finding a similar one takes long.
         """
         known: Known = {**dict.fromkeys(nearer), **scope.definitions()}
         self._budget.charge(len(known))
@@ -181,8 +185,9 @@ class Texts:
         place: ScopePlace,
         attribute: str,
     ) -> None:
-        """Bind a name to the value that the text of an attribute has in a scope, or to why it has
-        none.
+        """Bind a name to the value that the text of an attribute has in a scope.
+
+        Where the text has no value, the name is bound to the reason.
         """
         failure: EvaluationFails | Undetermined | None = None
         value: Value = ""
@@ -277,8 +282,9 @@ class Texts:
 
 
 def _for_xml(value: str) -> str:
-    """Return a text that is written into XML; raise EvaluationFails for characters that XML cannot
-    hold.
+    """Return a text that is written into XML.
+
+    Raises EvaluationFails for characters that XML cannot hold.
     """
     if not value.isprintable() and _NO_XML.search(value):
         raise EvaluationFails("the value has a character that XML cannot hold")

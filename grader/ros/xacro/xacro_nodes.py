@@ -1,5 +1,6 @@
-"""The elements of a xacro file before and after expansion, each with the place in the source that
-it came from.
+"""The elements of a xacro file before and after expansion.
+
+Each has the place in the source that it came from.
 """
 
 import re
@@ -36,8 +37,10 @@ _CDATA = re.compile(r"<!--.*?-->|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
 class XacroNode:
-    """An element. `unresolved` holds why attributes are left as written: they are refused, or
-    cannot be determined.
+    """An element of a xacro file.
+
+    `unresolved` holds why attributes are left as written: they are refused, or cannot be
+    determined.
     """
 
     __slots__ = ("attributes", "children", "open", "place", "tag", "unresolved")
@@ -73,8 +76,9 @@ def walk(node: XacroNode) -> Iterator[XacroNode]:
 def read_nodes(
     data: bytes, path: str, budget: Budget, *, is_repaired: bool = False, edits: Edits = ()
 ) -> XacroNode:
-    """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with
-    entities of its own.
+    """Return the root of an XML file.
+
+    Raises XMLSyntaxError, and Undetermined for a file with entities of its own.
 
     With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no
     xmlns:xacro. The text is read after the `edits`; places are those in the text before.
@@ -110,8 +114,9 @@ def _read(data: bytes, path: str, is_repaired: bool, edits: Edits) -> tuple[Xacr
 
 
 def _edited(source: Source, edits: Edits) -> tuple[str, Callable[[int], int]]:
-    """Return a text after edits, and what returns the offset before them of a character; one that
-    is moved has its own.
+    """Return a text after edits, and what returns the offset before them of a character.
+
+    A character that is moved has its own offset.
 
     Of edits that overlap, the first counts.
     """
@@ -145,8 +150,9 @@ def _edited(source: Source, edits: Edits) -> tuple[str, Callable[[int], int]]:
 def recovered_nodes(
     data: bytes, path: str, budget: Budget, edits: Edits = ()
 ) -> tuple[XacroNode | None, list[Problem]]:
-    """Return what can be read of a file with broken tags, None if no link can, and what was
-    assumed.
+    """Return what can be read of a file with broken tags, and what was assumed.
+
+    Returns None if no link can be read.
     """
     from grader.ros.xml.repair import repair  # late: few files are broken
 
@@ -182,8 +188,9 @@ def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
 
 
 def _decode(data: bytes, budget: Budget) -> str:
-    """Return the text of a file as UTF-8, which xacro assumes whatever the declaration says; charge
-    its tags.
+    """Return the text of a file as UTF-8, which xacro assumes whatever the declaration says.
+
+    Charges its tags.
     """
     prefixes = data.count(b"xmlns") * data.count(b":") // 8
     budget.charge(

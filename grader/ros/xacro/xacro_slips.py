@@ -1,5 +1,6 @@
-"""The slips of a xacro file that xacro expands all the same: tags that lack their prefix, which it
-leaves and ROS 2 ignores.
+"""The slips of a xacro file that xacro expands all the same.
+
+These are tags that lack their prefix, which it leaves and ROS 2 ignores.
 """
 
 from collections.abc import Iterable, Iterator, Mapping

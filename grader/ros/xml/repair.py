@@ -1,5 +1,4 @@
-"""The edits that repair a text which TinyXML2 refuses, and the robot as it is read after these
-edits.
+"""The edits that repair a text which TinyXML2 refuses, and the robot that is read after them.
 
 Every element but the broken ones is read as it stands. What the text stands for is assumed by the
 format of a URDF: a tag that does not fit closes those that are in its way.
@@ -75,8 +74,9 @@ class _TextEdit(NamedTuple):
 
 
 class _Repair(NamedTuple):
-    """The robot that is read of a text after the changes that repair it; no robot if no link can
-    be read.
+    """The robot that is read of a text after the changes that repair it.
+
+    There is no robot if no link can be read.
     """
 
     xml: bytes
@@ -111,8 +111,9 @@ def repair(text: str) -> _Repair:
 
 
 def unclosed_comments(text: str) -> list[tuple[int, int]]:
-    """Return the offsets of comments that end with -> by mistake: they run to the end of another
-    one or of the text.
+    """Return the offsets of comments that end with -> by mistake.
+
+    They run to the end of another one or of the text.
     """
     comments: list[tuple[int, int]] = []
     position = text.find("<!--")
@@ -128,8 +129,9 @@ def unclosed_comments(text: str) -> list[tuple[int, int]]:
 
 
 class _Repairer:
-    """One pass over a text, which notes what becomes of its tags, and which end tags are missing
-    where.
+    """One pass over a text, which notes what becomes of its tags.
+
+    It also notes which end tags are missing where.
     """
 
     def __init__(self, text: str) -> None:
@@ -203,8 +205,9 @@ class _Repairer:
             self._replace(start, end, match[0].rstrip("?> \t\r\n") + "?>")
 
     def _tag(self, start: int) -> tuple[Tag | None, int]:
-        """Return the tag at an offset, and the offset after it; a broken one with the attributes
-        that can be read.
+        """Return the tag at an offset, and the offset after it.
+
+        A broken tag has the attributes that can be read.
         """
         try:
             tag, end = read_tag(self._text, start, lambda *_: None)
@@ -234,8 +237,9 @@ class _Repairer:
         return tag, end
 
     def _broken(self, match: re.Match[str]) -> Tag:
-        """Return a broken tag as it is read: a value without a name is that of the attribute
-        that the tag needs.
+        """Return a broken tag as it is read.
+
+        A value without a name is that of the attribute that the tag needs.
         """
         name, rest = match["name"], match["rest"].rstrip()
         if match["close"]:
@@ -273,9 +277,7 @@ class _Repairer:
         return Tag(name, form, attributes, match.start())
 
     def _has_end(self, tag: Tag, end: int) -> bool:
-        """Return whether the content of an element and its own end tag follow, although its tag
-        ends with a slash.
-        """
+        """Return whether content and an own end tag follow a tag that ends with a slash."""
         if tag.name not in CHILDREN or not (tag.name == "robot" or self._is_before_child(tag, end)):
             return False
         other = re.compile(rf"<\s*(/?)\s*{tag.name}(?![\w:.-])").search(self._text, end)
@@ -372,16 +374,18 @@ class _Repairer:
             )
 
     def _noted(self) -> list[_TextEdit]:
-        """Return all changes in order: of two at one place, the end tags that are inserted come
-        first.
+        """Return all changes in order.
+
+        Of two at one place, the end tags that are inserted come first.
         """
         replaced = [_TextEdit(start, end, new) for start, (end, new) in self._replaced.items()]
         inserted = [_TextEdit(at, at, new) for at, new in self._inserted.items()]
         return sorted(replaced + inserted)
 
     def _robot_after(self, changes: list[_TextEdit], end: int) -> tuple[bytes, list[int]]:
-        """Return the robot that is read after changes of the text before an offset, and where
-        its tags are now.
+        """Return the robot that is read after changes of the text before an offset.
+
+        Also returns where its tags are now.
         """
         if self._robot is None:
             return b"", []
@@ -411,23 +415,26 @@ class _Repairer:
 
 
 def _is_never_filled(tag: str) -> bool:
-    """Return whether an element has attributes only: <box size="1 1 1"/> is closed where it
-    begins.
+    """Return whether an element has attributes only.
+
+    <box size="1 1 1"/> is closed where it begins.
     """
     return tag in TAGS and bool(TAGS[tag].attributes) and not TAGS[tag].children
 
 
 def _main_attribute(tag: str) -> str:
-    """Return the attribute that a value without a name is for: the first that the tag needs, else
-    has.
+    """Return the attribute that a value without a name is for.
+
+    This is the first that the tag needs, else has.
     """
     known = [*REQUIRED.get(tag, ()), *(TAGS[tag].attributes if tag in TAGS else ())]
     return known[0] if known else ""
 
 
 def _other_attribute(tag: str, given: set[str], value: str) -> str:
-    """Return the one attribute, which is not given, that a value is meant for whose name is given
-    twice.
+    """Return the one attribute that a value is meant for whose name is given twice.
+
+    This attribute is not given.
     """
     known = TAGS[tag].attributes if tag in TAGS else {}
     absent = [name for name in known if name not in given and _is_value_of(name, value)]
