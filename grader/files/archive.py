@@ -17,6 +17,7 @@ import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, ExitStack
+from dataclasses import dataclass, field
 from functools import partial
 from typing import IO, Any, Literal, NamedTuple
 
@@ -120,6 +121,50 @@ class ArchiveMember(NamedTuple):
     reason: str = ""
 
 
+@dataclass(slots=True)
+class _SortedMembers:
+    """The members of an archive by what becomes of them."""
+
+    kept: dict[str, ArchiveMember] = field(default_factory=dict)
+    ignored: list[IgnoredFile] = field(default_factory=list)
+    generated: set[str] = field(default_factory=set)
+    unseen: set[str] = field(default_factory=set)
+    settings: list[File] = field(default_factory=list)
+
+    def add(self, member: ArchiveMember) -> None:
+        """Add a member: it is kept, ignored, or only its path counts."""
+        path = _path_in_tree(member)
+        if isinstance(path, IgnoredFile):
+            self.ignored.append(path)
+        elif part := ignored_part(path):
+            self._add_ignored(member, path, part)
+        elif path:
+            self.kept[path] = member
+
+    def _add_ignored(self, member: ArchiveMember, path: str, part: str) -> None:
+        if is_setting(path) and member.kind == "file":
+            self.settings.append(_file_of(member, path))
+        if is_generated(path) and member.kind == "file":
+            self.generated.add(path)
+        self.unseen |= {part} - {path}
+
+    def remove_environments(self) -> None:
+        """Remove what is in virtual environments of Python."""
+        environments = {
+            path.rpartition("/")[0] for path in self.kept if path.endswith("/pyvenv.cfg")
+        }
+        if environments:
+            self.kept = {
+                path: member
+                for path, member in self.kept.items()
+                if environments.isdisjoint(parents(path))
+            }
+
+    def paths_of(self, kind: str) -> list[str]:
+        """Return the paths of the members of a kind that are kept."""
+        return [path for path, member in self.kept.items() if member.kind == kind]
+
+
 def tree_of(
     members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX_UNPACKED_SIZE
 ) -> Tree:
@@ -127,40 +172,23 @@ def tree_of(
 
     Raises InputError if they are too many or too large.
     """
-    kept: dict[str, ArchiveMember] = {}
-    ignored: list[IgnoredFile] = []
-    generated: set[str] = set()
-    unseen: set[str] = set()
-    settings: list[File] = []
+    entries = _SortedMembers()
     for member in _check_limits(members, name, min(limit, limits.MAX_UNPACKED_SIZE)):
-        path = _path_in_tree(member)
-        if isinstance(path, IgnoredFile):
-            ignored.append(path)
-        elif part := ignored_part(path):
-            if is_setting(path) and member.kind == "file":
-                settings.append(_file_of(member, path))
-            if is_generated(path) and member.kind == "file":
-                generated.add(path)
-            unseen |= {part} - {path}
-        elif path:
-            kept[path] = member
-    if environments := {path.rpartition("/")[0] for path in kept if path.endswith("/pyvenv.cfg")}:
-        kept = {
-            path: member for path, member in kept.items() if environments.isdisjoint(parents(path))
-        }
-    folders = [path for path, member in kept.items() if member.kind == "folder"]
-    files = [_file_of(member, path) for path, member in kept.items() if member.kind == "file"]
+        entries.add(member)
+    entries.remove_environments()
+    kept, ignored = entries.kept, entries.ignored
+    files = [_file_of(kept[path], path) for path in entries.paths_of("file")]
     ignored += [IgnoredFile(path, member.reason) for path, member in kept.items() if member.reason]
-    links = [path for path, member in kept.items() if member.kind == "link"]
+    links = entries.paths_of("link")
     ignored += [IgnoredFile(path, IS_LINK, is_closed=True) for path in links]
     return make_tree(
         name,
         files,
-        folders,
+        entries.paths_of("folder"),
         sorted(ignored),
-        sorted(generated),
-        [*unseen, *links],
-        settings=lambda: settings,
+        sorted(entries.generated),
+        [*entries.unseen, *links],
+        settings=lambda: entries.settings,
     )
 
 

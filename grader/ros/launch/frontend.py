@@ -460,17 +460,28 @@ def _check_names(entity: _Entity, parts: _Parts) -> None:
     """Compare the names in an entity with those that it may have. Raises EvaluationSignal."""
     inner = [*entity.nested, *(action.kind for action in entity.actions)]
     for name in [*inner, *entity.attributes]:
-        is_evaluated = name not in parts or parts[name].is_evaluated
-        # value-sep makes a list of the attribute value in XML; YAML has lists itself.
-        is_separator = name.endswith("-sep") and name.removesuffix("-sep") in parts
-        if not is_evaluated or (is_separator and (name not in parts or entity.is_yaml)):
+        if not _is_evaluated(name, entity, parts):
             raise Undetermined(f"{name} of <{entity.kind}> is not evaluated", entity.at)
-    elements = {name for name, part in parts.items() if part.holds == "elements"}
     if "children" not in parts:
+        elements = {name for name, part in parts.items() if part.holds == "elements"}
         for name in inner:
             if name not in elements:
                 hint = did_you_mean(name, elements)
                 raise EvaluationFails(f"<{entity.kind}> contains no <{name}>{hint}", entity.at)
+    _check_attributes(entity, parts)
+
+
+def _is_evaluated(name: str, entity: _Entity, parts: _Parts) -> bool:
+    """Return whether an attribute or element of this name is evaluated in an entity."""
+    # value-sep makes a list of the attribute value in XML; YAML has lists itself.
+    is_separator = name.endswith("-sep") and name.removesuffix("-sep") in parts
+    if is_separator and (name not in parts or entity.is_yaml):
+        return False
+    return name not in parts or parts[name].is_evaluated
+
+
+def _check_attributes(entity: _Entity, parts: _Parts) -> None:
+    """Raise EvaluationFails for an attribute that an entity may not have."""
     for name in entity.attributes:
         if name not in parts or parts[name].holds != "value":
             hint = _RENAMED.get(name) or did_you_mean(name, parts)

@@ -364,29 +364,15 @@ class MoveItConfigurations:
         ]
         pipelines, with_all = wanted, given.get("load_all", True)
         if wanted is None:
-            pipelines = [
-                *configured,
-                *(
-                    pipeline
-                    for pipeline in _DEFAULT_PIPELINES
-                    if pipeline not in configured and with_all
-                ),
-            ]
-        if not isinstance(pipelines, list | tuple) or (
-            names is None and wanted is None and not with_all
-        ):
+            others = _DEFAULT_PIPELINES if with_all else ()
+            pipelines = [*dict.fromkeys([*configured, *others])]
+        is_unknown = names is None and wanted is None and not with_all
+        if not isinstance(pipelines, list | tuple) or is_unknown:
             raise Undetermined("the pipelines of MoveIt are not evaluated", at)
-        if not pipelines:
-            raise EvaluationFails("MoveIt finds no *_planning.yaml", at)
-        default = default or ("ompl" if "ompl" in pipelines else pipelines[0])
-        if default not in pipelines:
-            raise EvaluationFails(
-                f"the default pipeline {default!r} is none of {', '.join(map(str, pipelines))}", at
-            )
+        unordered = None
         if wanted is None:
             unordered = UnknownText("the order in which files are found is not known", at)
-        else:
-            unordered = None
+        default = _default_pipeline(pipelines, default, at)
         tables = {
             pipeline: self._pipeline(configuration, pipeline, at, is_there=pipeline in configured)
             for pipeline in map(str, pipelines)
@@ -548,6 +534,17 @@ def _spread(table: Value) -> dict[str, Value]:
     if isinstance(table, dict):
         return dict(table)
     return {"": table}
+
+
+def _default_pipeline(pipelines: Sequence[Value], wanted: Value, at: Position) -> Value:
+    """Return the pipeline that MoveIt uses by default: the wanted one, OMPL, or the first."""
+    if not pipelines:
+        raise EvaluationFails("MoveIt finds no *_planning.yaml", at)
+    default = wanted or ("ompl" if "ompl" in pipelines else pipelines[0])
+    if default not in pipelines:
+        names = ", ".join(map(str, pipelines))
+        raise EvaluationFails(f"the default pipeline {default!r} is none of {names}", at)
+    return default
 
 
 def _as_dict(parts: Mapping[str, Value]) -> dict[str, Value]:

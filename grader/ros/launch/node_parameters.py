@@ -701,34 +701,40 @@ def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
     words = spawner.arguments
     if words is None or None in words or spawner.namespace is None:
         return None
-    known = [
-        word
-        for word in (words[: words.index("--ros-args")] if "--ros-args" in words else words)
-        if word
-    ]
+    names, given = _read_spawner_words([word for word in words if word])
+    files = [path for option in _PARAM_FILES for path in given.get(option, ())]
+    parameters = tuple(GivenParameters(spawner.location, path) for path in files)
+    rules = remap_rules(" ".join(given.get("--controller-ros-args", ())).split())
+    started = spawner._replace(
+        namespace=_namespace_of_manager(given, spawner.namespace),
+        parameters=parameters,
+        arguments=(),
+        remaps=tuple((name, to) for name, _, to in rules),
+    )
+    return tuple(started._replace(node_name=name) for name in names)
+
+
+def _read_spawner_words(words: Sequence[str]) -> tuple[list[str], dict[str, list[str]]]:
+    """Return the names of controllers in a spawner's command line, and its options."""
     names: list[str] = []
     given: dict[str, list[str]] = {}
     options = program_row("controller_manager", "spawner").valued_options
-    rest = iter(known)
+    if "--ros-args" in words:
+        words = words[: words.index("--ros-args")]
+    rest = iter(words)
     for word in rest:
         option, is_joined, value = word.partition("=")
         if option in options:
             given.setdefault(option, []).append(value if is_joined else next(rest, ""))
         elif not word.startswith("-"):
             names.append(word)
-    files = [path for option in _PARAM_FILES for path in given.get(option, ())]
-    manager = [*given.get("-c", ()), *given.get("--controller-manager", ())][-1:] or [
-        "controller_manager"
-    ]
-    if manager[0].startswith("/"):
-        full = manager[0]
-    else:
-        full = f"/{spawner.namespace.strip('/')}/{manager[0]}"
-    namespace = full.replace("//", "/").rpartition("/")[0] or "/"
-    parameters = tuple(GivenParameters(spawner.location, path) for path in files)
-    rules = remap_rules(" ".join(given.get("--controller-ros-args", ())).split())
-    remaps = tuple((name, to) for name, _, to in rules)
-    started = spawner._replace(
-        namespace=namespace, parameters=parameters, arguments=(), remaps=remaps
-    )
-    return tuple(started._replace(node_name=name) for name in names)
+    return names, given
+
+
+def _namespace_of_manager(given: Mapping[str, Sequence[str]], namespace: str) -> str:
+    """Return the namespace of the controller manager that the options of a spawner name."""
+    managers = [*given.get("-c", ()), *given.get("--controller-manager", ())]
+    manager = managers[-1] if managers else "controller_manager"
+    if not manager.startswith("/"):
+        manager = f"/{namespace.strip('/')}/{manager}"
+    return manager.replace("//", "/").rpartition("/")[0] or "/"

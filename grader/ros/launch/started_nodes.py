@@ -359,24 +359,46 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
     if tables:
         _refer_description(findings, tables[-1]["robot_description"], call, context)
         return
-    unknown = next((parameter for parameter in parameters if isinstance(parameter, Unknown)), None)
-    is_clear = all(map(_is_flat, parameters))
-    words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
-    end = words.index("--ros-args") if "--ros-args" in words else len(words)
-    files = [word for word in words[:end] if not word.startswith("-")]
-    if unknown is not None:
-        findings.refer("urdf", unknown, call)
-    elif files and files[0] != PART_UNKNOWN:
-        findings.refer("urdf", files[0], call)
-    elif words or not is_clear or "ros_arguments" in call.kwargs or findings.sets_parameters:
-        findings.refer("urdf", Unknown("its parameters are known only at run time", call.at), call)
+    given = _description_besides(parameters, findings, call, context)
+    if given is not None:
+        findings.refer("urdf", given, call)
+        return
+    message = "robot_state_publisher is started without robot_description"
+    if any(isinstance(parameter, set) for parameter in parameters):
+        message += ": { , } is a set, and a table has a colon: {'robot_description': ...}"
     else:
-        message = "robot_state_publisher is started without robot_description"
-        if any(isinstance(parameter, set) for parameter in parameters):
-            message += ": { , } is a set, and a table has a colon: {'robot_description': ...}"
-        else:
-            message += ": it has no robot to publish"
-        findings.refer("urdf", None, call, wrong=message)
+        message += ": it has no robot to publish"
+    findings.refer("urdf", None, call, wrong=message)
+
+
+def _description_besides(
+    parameters: Sequence[Value], findings: Findings, call: Call, context: Context
+) -> str | Unknown | None:
+    """Return where robot_state_publisher gets the robot from, if no table has it.
+
+    Returns Unknown where that is not known, None if it gets none.
+    """
+    words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
+    for parameter in parameters:
+        if isinstance(parameter, Unknown):
+            return parameter
+    file = _first_file(words)
+    if file is not None and file != PART_UNKNOWN:
+        return file
+    is_clear = all(map(_is_flat, parameters))
+    if words or not is_clear or "ros_arguments" in call.kwargs or findings.sets_parameters:
+        return Unknown("its parameters are known only at run time", call.at)
+    return None
+
+
+def _first_file(words: Sequence[str]) -> str | None:
+    """Return the first word of a command line before --ros-args that is no option."""
+    for word in words:
+        if word == "--ros-args":
+            return None
+        if not word.startswith("-"):
+            return word
+    return None
 
 
 def _is_flat(parameter: Value) -> bool:

@@ -470,19 +470,24 @@ def check_xacro_words(words: Sequence[str], at: Position) -> None:
 def printed_file(words: list[str]) -> Contents | None:
     """Return the contents of the one file that xacro or cat prints; None for any other command."""
     program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
-    files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
-    is_known = len(files) == 1 and files[0] and PART_UNKNOWN not in files[0]
-    if program not in ("xacro", "cat") or "-o" in words or not is_known:
+    file = _only_file(words[1:])
+    if file is None or "-o" in words:
         return None
+    if program == "cat" and words[1:] == [file]:
+        return Contents(file, "cat")
     if program != "xacro":
-        if words[1:] == files:
-            return Contents(files[0], "cat")
         return None
-    given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
-    return Contents(
-        files[0],
-        "xacro",
-        tuple(
-            (name, None if PART_UNKNOWN in given_text else given_text) for name, given_text in given
-        ),
-    )
+    arguments: list[tuple[str, str | None]] = []
+    for word in words[1:]:
+        name, is_given, text = word.partition(":=")
+        if is_given:
+            arguments.append((name, None if PART_UNKNOWN in text else text))
+    return Contents(file, "xacro", tuple(arguments))
+
+
+def _only_file(words: list[str]) -> str | None:
+    """Return the one file among words; None if there are others, or a part is unknown."""
+    files = [word for word in words if not word.startswith("-") and ":=" not in word]
+    if len(files) != 1 or not files[0] or PART_UNKNOWN in files[0]:
+        return None
+    return files[0]

@@ -113,28 +113,27 @@ def entry_fault(package: Package, name: str) -> _EntryFault | None:
         return None
     [entry] = named
     path = module_path(package, entry.module)
-    if path is None:
-        if _lacks_module(package, entry.module):
-            return _missing_module(package, entry)
-        return _misspelt_package(package, entry)
+    if path is not None:
+        return _missing_function(package, entry, path)
+    if _lacks_module(package, entry.module):
+        return _missing_module(package, entry)
+    return _misspelt_package(package, entry)
+
+
+def _missing_function(package: Package, entry: _EntryPoint, path: str) -> _EntryFault | None:
+    """Return that a module lacks the function of an entry point; None if it may have it."""
     code, names = _names_of_module(package, path)
     if not entry.function or names is None or entry.function in names:
         return None
-    if code:
-        parts = [
-            node for node in code.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)
-        ]
-    else:
-        parts = []
-    functions = [node.name for node in parts if isinstance(node, ast.FunctionDef)]
+    known: list[str] = []
+    functions: list[str] = []
+    for node in code.tree.body if code else ():
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            known.append(node.name)
+        if isinstance(node, ast.FunctionDef):
+            functions.append(node.name)
     only = functions[0] if len(functions) == 1 else ""
-    return _fault(
-        entry,
-        f"{path} has no {entry.function!r}",
-        entry.function,
-        [node.name for node in parts],
-        only,
-    )
+    return _fault(entry, f"{path} has no {entry.function!r}", entry.function, known, only)
 
 
 @lru_cache(maxsize=4)
@@ -182,20 +181,23 @@ def _lacks_module(package: Package, module: str) -> bool:
     top, stem = module.partition(".")[0], module.replace(".", "/")
     tree = package.tree
     paths = dict.fromkeys((*tree.files, *tree.folders, *tree.unseen))
-    homes = [
-        path
-        for path in paths
-        if path.rpartition("/")[2] == top and not path.startswith("resource/")
-    ]
+    homes = []
+    for path in paths:
+        if path.rpartition("/")[2] == top and not path.startswith("resource/"):
+            homes.append(path)
     if not homes:  # no other package of ROS 2 installs a Python package of this name
         single = (f"{top}.py", f"{top}.so")
         is_single = any(path.rpartition("/")[2].startswith(single) for path in paths)
         return top == package.name and not is_single
-    if homes != [top] or any(
-        path == stem or path.startswith((f"{stem}.", f"{stem}/")) for path in paths
-    ):
+    module_or_folder = (f"{stem}.", f"{stem}/")
+    if homes != [top] or any(f"{path}/".startswith(module_or_folder) for path in paths):
         return False
-    for path in tree.files:
+    return _are_names_certain(package, stem)
+
+
+def _are_names_certain(package: Package, stem: str) -> bool:
+    """Return whether it is known what the packages above a module bind."""
+    for path in package.tree.files:
         if path.endswith("/__init__.py") and stem.startswith(path.removesuffix("__init__.py")):
             code = read_module(package, path)
             if code is None or _certain_names(code) is None:

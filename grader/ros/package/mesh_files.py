@@ -116,26 +116,42 @@ def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
     match = _SCHEME.fullmatch(filename)
     scheme, slashes, rest = match.groups() if match is not None else ("", "", filename)
     fault = _BACKSLASH if "\\" in filename else ""
-    shared = _path_from_xacro(rest) if is_expanded and scheme in ("", "file") else None
+    shared = _file_from_xacro(scheme, rest, fault) if is_expanded else None
     if shared is not None:
-        written = f"{scheme}{'://' if scheme else ''}$(find {shared[0]})/{shared[1]}"
-        return MeshFile(
-            written, shared[1], shared[0], fault if scheme else "needs file:// before $(find ...)"
-        )
+        return shared
     if scheme == "package" and slashes:
         package, _, path = rest.partition("/")
         return MeshFile(filename, path, package, fault)
-    doubt = ""
-    if not scheme:
-        is_absolute = _ABSOLUTE.match(filename) is not None
-        fault = f"is at an absolute path, which {_ONE_MACHINE}" if is_absolute else fault
-    elif scheme == "file":
-        fault = f"is at a file:// path, which {_ONE_MACHINE}"
-    elif scheme.lower() in ("package", "file") or not slashes:
-        fault = f"begins with {scheme}:{slashes or ''}; use package://"
-    else:
-        fault, doubt = "", f"it is at a {scheme}:// path, which not every program finds"
+    if not scheme and _ABSOLUTE.match(filename) is None:
+        return MeshFile(filename, rest, "", fault)
+    fault, doubt = _fault_of_scheme(scheme, slashes or "")
     return MeshFile(filename, rest, "", fault, doubt)
+
+
+def _file_from_xacro(scheme: str, rest: str, fault: str) -> MeshFile | None:
+    """Return the file for which xacro wrote a path; None for another path."""
+    shared = _path_from_xacro(rest) if scheme in ("", "file") else None
+    if shared is None:
+        return None
+    package, path = shared
+    written = f"$(find {package})/{path}"
+    if scheme:
+        return MeshFile(f"{scheme}://{written}", path, package, fault)
+    return MeshFile(written, path, package, "needs file:// before $(find ...)")
+
+
+def _fault_of_scheme(scheme: str, slashes: str) -> tuple[str, str]:
+    """Return what is wrong with a file name that names no package, and what may be wrong.
+
+    Without a scheme it is an absolute path.
+    """
+    if not scheme:
+        return f"is at an absolute path, which {_ONE_MACHINE}", ""
+    if scheme == "file":
+        return f"is at a file:// path, which {_ONE_MACHINE}", ""
+    if scheme.lower() in ("package", "file") or not slashes:
+        return f"begins with {scheme}:{slashes}; use package://", ""
+    return "", f"it is at a {scheme}:// path, which not every program finds"
 
 
 def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterator[Problem]:

@@ -280,22 +280,9 @@ class Surroundings(NamedTuple):
 
         Without any package, returns the most similar path.
         """
-        for owner in self._named(package):
-            if self.assumes_defaults and inside in owner.tree.files:
-                return owner.path(inside)
-            similar = any(f"/{path}".endswith(f"/{inside}") for path in owner.tree.files)
-            source, setup = owner.installed.get(f"share/{package}/{inside}"), owner.installation
-            if (
-                source is None
-                and similar
-                and setup is not None
-                and setup.is_cmake
-                and setup.unknown
-            ):
-                raise Undetermined(
-                    f"cannot determine statically whether CMakeLists.txt installs {inside}"
-                )
-            return owner.path(source) if source is not None else None
+        owners = [*self._named(package)]
+        if owners:
+            return self._installed_by(owners[0], package, inside)
         if self.packages:
             return None
         steps = inside.split("/")
@@ -304,6 +291,20 @@ class Surroundings(NamedTuple):
             matches = [path for path in self.tree.files if f"/{path}".endswith(end)]
             if len(matches) == 1:
                 return matches[0]
+        return None
+
+    def _installed_by(self, owner: Package, package: str, inside: str) -> str | None:
+        """Return the file that a build of a package installs at a path in the share folder."""
+        if self.assumes_defaults and inside in owner.tree.files:
+            return owner.path(inside)
+        source, setup = owner.installed.get(f"share/{package}/{inside}"), owner.installation
+        if source is not None:
+            return owner.path(source)
+        is_similar = any(f"/{path}".endswith(f"/{inside}") for path in owner.tree.files)
+        if is_similar and setup is not None and setup.is_cmake and setup.unknown:
+            raise Undetermined(
+                f"cannot determine statically whether CMakeLists.txt installs {inside}"
+            )
         return None
 
 
@@ -340,22 +341,10 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
         reading = read_urdf(data, path, releases)
         if not any(problem.kind in (DOCTYPE, NOT_WELL_FORMED) for problem in reading.problems):
             return Read(path, data, reading)
-    name = path.rpartition("/")[2].lower()
     launched = surroundings.robot_references(path)
-    programs = {reference.by for reference in launched}
-    # Nothing loads a file of another name as a URDF; standard input is one.
-    says_xacro = ".xacro" in name or (".urdf" not in name and name != "-")
-    is_xacro = programs == {"xacro"} if programs else says_xacro
-    if not programs and surroundings.assumes_defaults:
-        is_xacro = is_xacro or surroundings.runs_xacro_beside(path)
-    if is_xacro:
-        return Read(
-            path,
-            data,
-            _expanded(data, path, surroundings, launched),
-            is_expanded=True,
-            has_xacro=True,
-        )
+    if _is_run_by_xacro(path, surroundings, launched):
+        expanded = _expanded(data, path, surroundings, launched)
+        return Read(path, data, expanded, is_expanded=True, has_xacro=True)
     reading = read_urdf(data, path, releases)
     if reading.raw_xacro is None:
         return Read(path, data, reading, has_xacro=True)
@@ -365,10 +354,23 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
     if reading.verdict == "clean":
         if _loaded_model(reading) == _loaded_model(expanded):
             return Read(path, data, reading, has_xacro=True)
-        reading = reading._replace(
-            verdict="degraded"
-        )  # ROS 2 ignores the tags of xacro, and what they stand for
+        # ROS 2 ignores the tags of xacro, and what they stand for.
+        reading = reading._replace(verdict="degraded")
     return Read(path, data, expanded, is_expanded=True, has_xacro=True, as_it_stands=reading)
+
+
+def _is_run_by_xacro(
+    path: str, surroundings: Surroundings, launched: "Iterable[NamedFile]"
+) -> bool:
+    """Return whether ROS 2 gets a file from xacro: launch files say so, else its name."""
+    programs = {reference.by for reference in launched}
+    if programs:
+        return programs == {"xacro"}
+    name = path.rpartition("/")[2].lower()
+    # Nothing loads a file of another name as a URDF; standard input is one.
+    if ".xacro" in name or (".urdf" not in name and name != "-"):
+        return True
+    return surroundings.assumes_defaults and surroundings.runs_xacro_beside(path)
 
 
 def _loaded_model(reading: Reading) -> tuple[object, ...]:

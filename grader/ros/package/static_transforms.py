@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from grader.base.source import LazyLocation, Source
 from grader.base.transforms import Transform, Vector, rotation_about
-from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
 from grader.ros.urdf.link_tree import parent_joints
 from grader.ros.urdf.model import Joint, Link, Origin, Robot, UnresolvedPart
@@ -72,11 +72,7 @@ def with_transforms(
         for frame in frames:
             if frame is not None and frame.child not in roots:
                 robot = _add_frame(robot, frame)
-        reason = launch.unread
-        if not reason and launch.unknown:
-            reason = launch.unknown[0].message
-        if not reason and None in frames:
-            reason = "the name of a frame is not evaluated"
+        reason = _why_frames_unknown(launch, frames)
         if reason:
             robot = replace(
                 robot,
@@ -88,6 +84,17 @@ def with_transforms(
             incomplete=robot.incomplete or "robot_state_publisher gives the frames other names",
         )
     return robot
+
+
+def _why_frames_unknown(launch: Launch, frames: Sequence[_StaticFrame | None]) -> str:
+    """Return why a launch file may publish other frames than these; empty if it does not."""
+    if launch.unread:
+        return launch.unread
+    if launch.unknown:
+        return launch.unknown[0].message
+    if None in frames:
+        return "the name of a frame is not evaluated"
+    return ""
 
 
 def _publishes_frame(node: StartedNode) -> bool:

@@ -89,6 +89,13 @@ def steps_of(path: str, *, is_xml: bool) -> list[PathStep]:
     return steps
 
 
+def _key_lengths(entry: TreeEntry, steps: Sequence[PathStep]) -> Iterator[int]:
+    """Yield how many steps may be one key of an entry: in YAML, names with dots may be."""
+    for count in range(1, 2 if entry.is_xml else len(steps) + 1):
+        if not any(step.conditions for step in steps[: count - 1]):
+            yield count
+
+
 class Search:
     """Finds entries by paths, with a limit on the entries that are looked at.
 
@@ -118,19 +125,20 @@ class Search:
         return True
 
     def _find(self, entry: TreeEntry, steps: Sequence[PathStep]) -> Iterator[TreeEntry]:
-        children = entry.children if steps else []
-        self._budget.charge(1 + len(children))
         if not steps:
+            self._budget.charge(1)
             yield entry
-        elif entry.is_list and steps[0].name:
-            for row in (child for child in children if not child.is_list):
-                yield from self._find(row, steps)
-        for count in range(1, 2 if entry.is_xml else len(steps) + 1):
-            if steps and not any(step.conditions for step in steps[: count - 1]):
-                name = ".".join(step.name for step in steps[:count])
-                yield from self._find_below(
-                    [child for child in children if child.name == name], steps[count - 1 :]
-                )
+            return
+        children = entry.children
+        self._budget.charge(1 + len(children))
+        if entry.is_list and steps[0].name:
+            for child in children:
+                if not child.is_list:
+                    yield from self._find(child, steps)
+        for count in _key_lengths(entry, steps):
+            name = ".".join(step.name for step in steps[:count])
+            named = [child for child in children if child.name == name]
+            yield from self._find_below(named, steps[count - 1 :])
 
     def _find_below(
         self, named: Sequence[TreeEntry], steps: Sequence[PathStep]

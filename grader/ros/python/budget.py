@@ -20,6 +20,18 @@ class OutOfBudget(py.EvaluationSignal):
     """The budget of a workspace is spent: nothing more of it can be expanded or evaluated."""
 
 
+def _is_of_size_one(part: py.Value, kind: str) -> bool:
+    """Return whether a part counts as one, whatever it is, where values of a kind may be."""
+    if isinstance(part, py.PLAIN):
+        return True
+    # A plain function itself refuses the latter.
+    return (
+        (kind == "text" and py.is_object(part))
+        or (kind == "holds" and isinstance(part, (*py.OPAQUE, set)))
+        or isinstance(part, py.Items | py.Namespace | py.PlainFunction)
+    )
+
+
 class Budget:
     """How many parts may still be produced or looked at, whatever comes of it.
 
@@ -142,32 +154,23 @@ class Budget:
         Raises Undetermined for one that is too large, or not known.
         """
         if isinstance(part, str):
-            if len(part) > py.MAX_TEXT:
-                too_large("text")
-            if (
-                self.stand_ins
-                and kind == "plain"
-                and any(stand_in in part for stand_in in self.stand_ins)
-            ):
-                raise py.Undetermined(_FOLDER)
-            return len(part) // CHARACTERS
+            return self._size_of_text(part, kind)
         if isinstance(part, int):
             if part.bit_length() > py.MAX_BITS:
                 too_large("number")
             return part.bit_length() // _BITS
         if isinstance(part, PurePosixPath):
-            return self._size_alone(str(part), kind)
-        if (
-            isinstance(part, py.PLAIN)
-            or (kind == "text" and py.is_object(part))
-            or (kind == "holds" and isinstance(part, (*py.OPAQUE, set)))
-        ):
-            return 0
-        if isinstance(
-            part, py.Items | py.Namespace | py.PlainFunction
-        ):  # a plain function itself refuses these
+            return self._size_of_text(str(part), kind)
+        if _is_of_size_one(part, kind):
             return 0
         return refuse(part, f"values of the type {type(part).__name__} are not supported")
+
+    def _size_of_text(self, text: str, kind: str) -> int:
+        if len(text) > py.MAX_TEXT:
+            too_large("text")
+        if kind == "plain" and any(stand_in in text for stand_in in self.stand_ins):
+            raise py.Undetermined(_FOLDER)
+        return len(text) // CHARACTERS
 
 
 def whole_budget(sizes: Iterable[int]) -> Budget:

@@ -7,7 +7,7 @@ import ast
 import builtins
 import sys
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 from grader.ros.python.budget import Budget, OutOfBudget
@@ -104,16 +104,7 @@ class Constants(Interpreter):
         unknown = Unknown("it is not bound once", START)
         names = [name for name in counts if name.partition(".")[0] not in self._shared]
         scope.names |= dict.fromkeys(names, unknown)
-        last_star = 0  # the line of the last star import, which may bind what is assigned above it
-        for node in nodes:
-            if isinstance(node, ast.ImportFrom) and _replaces_names(node):
-                last_star = max(last_star, node.lineno)
-            if isinstance(node, ast.Import | ast.ImportFrom):
-                imported = self._imported_names(node)
-                self.imported.update(value.name for value in imported.values())
-                scope.names |= {
-                    name: value for name, value in imported.items() if counts[name] == 1
-                }
+        last_star = self._bind_imports(nodes, counts, scope)
         if self._is_open:
             return scope
         for name, expression in values.items():
@@ -122,6 +113,25 @@ class Constants(Interpreter):
                 # A list or a dictionary may be changed.
                 scope.names[name] = unknown if isinstance(value, list | dict) else value
         return scope
+
+    def _bind_imports(
+        self, nodes: Sequence[ast.AST], counts: Mapping[str, int], scope: Scope
+    ) -> int:
+        """Bind the names that are imported once; return the line of the last star import, or 0.
+
+        A star import may bind what is assigned above it.
+        """
+        last_star = 0
+        for node in nodes:
+            if isinstance(node, ast.ImportFrom) and _replaces_names(node):
+                last_star = max(last_star, node.lineno)
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                imported = self._imported_names(node)
+                self.imported.update(value.name for value in imported.values())
+                for name, value in imported.items():
+                    if counts[name] == 1:
+                        scope.names[name] = value
+        return last_star
 
     def _imported_names(self, node: ast.Import | ast.ImportFrom) -> dict[str, QualifiedName]:
         """Return what an import binds."""

@@ -349,26 +349,17 @@ class Evaluation(Expressions):
         positional = [parameter.arg for parameter in (*parameters.posonlyargs, *parameters.args)]
         names = {*positional, *(parameter.arg for parameter in parameters.kwonlyargs)}
         given = dict(zip(positional, made.args, strict=False))
-        others = {
-            name: value for name, value in made.kwargs.items() if name not in names or name in given
-        }
-        missing = sorted(names - given.keys() - made.kwargs.keys() - function.defaults.keys())
-        if (
-            missing
-            or (len(made.args) > len(positional) and not parameters.vararg)
-            or (others and not parameters.kwarg)
-        ):
-            if missing:
-                what = f"the argument {missing[0]!r} is missing"
-            else:
-                what = "there is one argument too many"
-            self.error(f"{what} in this call", made.at)
-        bound = {
-            **dict.fromkeys(names, py.Unknown("an argument is missing", made.at)),
-            **function.defaults,
-            **given,
-        }
-        bound |= {name: value for name, value in made.kwargs.items() if name in names}
+        named = {name: value for name, value in made.kwargs.items() if name in names}
+        others = dict(made.kwargs)
+        for name in named.keys() - given.keys():
+            del others[name]
+        missing = sorted(names - given.keys() - named.keys() - function.defaults.keys())
+        if missing:
+            self.error(f"the argument {missing[0]!r} is missing in this call", made.at)
+        elif _are_too_many(made, parameters, others):
+            self.error("there is one argument too many in this call", made.at)
+        absent = dict.fromkeys(names, py.Unknown("an argument is missing", made.at))
+        bound: dict[str, py.Value] = {**absent, **function.defaults, **given, **named}
         if parameters.vararg:
             bound[parameters.vararg.arg] = tuple(made.args[len(positional) :])
         if parameters.kwarg:
@@ -403,3 +394,11 @@ def record(evaluation: Evaluation, made: py.Call) -> py.Call:
         if made.owner is not None:
             made.owner.method_calls.append(made)
     return made
+
+
+def _are_too_many(made: py.Call, parameters: ast.arguments, others: Mapping[str, py.Value]) -> bool:
+    """Return whether a call gives arguments that no parameter takes; `others` have a name."""
+    positional = [*parameters.posonlyargs, *parameters.args]
+    if len(made.args) > len(positional) and not parameters.vararg:
+        return True
+    return bool(others) and not parameters.kwarg

@@ -239,25 +239,27 @@ def _import_error(module: str, name: str) -> str | Uncertain | None:
         return f"there is no module {top!r} in Python 3.12"
     if name != "*" and (module in _INSPECTED or module == "setuptools"):
         return _missing_name(module, name)
-    is_there = (
+    if (
         top in _INSTALLED_WITH_ROS
         or full in ("setuptools", "distutils", *_INSPECTED)
         or (module, name) == ("distutils.core", "setup")
         or (top in sys.stdlib_module_names and full == top and not module)
-    )
-    if top != "psutil":
-        guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
-    else:
-        guess = None
-    if (
-        is_there
-        or not guess
-        or top.startswith(guess)
-        or top in sys.stdlib_module_names
-        or top == "setuptools"
     ):
-        return None if is_there else Uncertain.IMPORT
+        return None
+    guess = _misspelt_module(top)
+    if guess is None:
+        return Uncertain.IMPORT
     return f"there is no module {top!r}; did you mean {guess!r}?"
+
+
+def _misspelt_module(top: str) -> str | None:
+    """Return the common module that a name surely means; None for a name that may be right."""
+    if top in sys.stdlib_module_names or top in ("psutil", "setuptools"):
+        return None
+    guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
+    if not guess or top.startswith(guess):
+        return None
+    return guess
 
 
 def _missing_name(module: str, name: str) -> str | Uncertain | None:

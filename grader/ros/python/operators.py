@@ -256,6 +256,14 @@ def compare(op: ast.cmpop, left: py.Value, right: py.Value, budget: Budget) -> b
     are_plain = all(isinstance(value, py.PLAIN) or py.is_object(value) for value in (left, right))
     if are_plain and any(map(py.is_object, (left, right))) and isinstance(op, _OF_IDENTITY):
         return (left is right) == isinstance(op, ast.Eq | ast.Is)
+    _check_comparison(op, left, right)
+    if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
+        budget.charge(budget.measure(left) + budget.measure(right), _search_cost(right, left))
+    return bool(call_plain(_COMPARISONS[type(op)], left, right))
+
+
+def _check_comparison(op: ast.cmpop, left: py.Value, right: py.Value) -> None:
+    """Raise Undetermined for a comparison that is not supported."""
     if isinstance(op, ast.Is | ast.IsNot) and not any(
         value is None or isinstance(value, bool) for value in (left, right)
     ):
@@ -265,9 +273,6 @@ def compare(op: ast.cmpop, left: py.Value, right: py.Value, budget: Budget) -> b
             isinstance(value, py.Items) and isinstance(op, ast.Eq | ast.NotEq)
         ):
             refuse(value, "this comparison is not supported")
-    if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
-        budget.charge(budget.measure(left) + budget.measure(right), _search_cost(right, left))
-    return bool(call_plain(_COMPARISONS[type(op)], left, right))
 
 
 def subscript(owner: py.Value, key: py.Value, budget: Budget) -> py.Value:

@@ -109,6 +109,13 @@ def plan_drive(
         return None
     if standing.rest.has_fallen:
         return Drive(standing, "on level ground, it tips over")
+    return _plan_course(standing, forward, rollers)
+
+
+def _plan_course(
+    standing: StandingRobot, forward: Vector, rollers: Sequence[float] | None
+) -> Drive:
+    """Return how a robot stands that has not fallen, and where its wheels drive it."""
     text = _describe_rest(standing)
     try:
         driven = Drivetrain(standing, rollers)

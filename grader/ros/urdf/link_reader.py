@@ -5,6 +5,8 @@ The material that each visual gets is here too.
 Its colour is that of `parseMaterial` in `link.cpp` and of `assignMaterial` in `model.cpp`.
 """
 
+from collections.abc import Sequence
+
 from grader.base.source import LazyLocation
 from grader.base.text import quoted
 from grader.ros.urdf import urdf_problems
@@ -178,21 +180,35 @@ def read_link(element: Element, problems: Problems, materials: Materials) -> Lin
     parts: dict[str, list[Element]] = {"inertial": [], "visual": [], "collision": []}
     for child in element:
         parts.get(child.tag, []).append(child)
-    inertial = _read_inertial(parts["inertial"][0], problems, name) if parts["inertial"] else None
-    dropping = (
-        inertial is None
-        and parts["inertial"] != []
-        and not problems.is_unresolved(parts["inertial"][0])
-    )
-    shapes: list[Visual | Collision] = []
-    for child in parts["visual"] + parts["collision"]:
-        shape = _read_shape(child, problems, name, None if dropping else materials)
-        dropping = dropping or (shape is None and not problems.is_unresolved(child))
-        if shape is not None and not dropping:
-            shapes.append(shape)
+    inertial, is_bad = None, False
+    if parts["inertial"]:
+        first = parts["inertial"][0]
+        inertial = _read_inertial(first, problems, name)
+        is_bad = inertial is None and not problems.is_unresolved(first)
+    elements = parts["visual"] + parts["collision"]
+    shapes = _read_shapes(elements, problems, name, materials, is_dropping=is_bad)
     visuals = tuple(shape for shape in shapes if isinstance(shape, Visual))
     collisions = tuple(shape for shape in shapes if isinstance(shape, Collision))
     return Link(name, visuals, collisions, inertial, location, problems.parts(element))
+
+
+def _read_shapes(
+    elements: Sequence[Element],
+    problems: Problems,
+    link: str,
+    materials: Materials,
+    *,
+    is_dropping: bool,
+) -> list[Visual | Collision]:
+    """Read the shapes of a link; after a bad one, or with `is_dropping`, none is kept."""
+    shapes: list[Visual | Collision] = []
+    for element in elements:
+        shape = _read_shape(element, problems, link, None if is_dropping else materials)
+        if shape is None:
+            is_dropping = is_dropping or not problems.is_unresolved(element)
+        elif not is_dropping:
+            shapes.append(shape)
+    return shapes
 
 
 def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial | None:

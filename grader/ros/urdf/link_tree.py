@@ -200,6 +200,20 @@ def _check_roots(
 
     Those that another problem explains are not reported.
     """
+    explained = _explained_roots(robot, links, problems)
+    is_child_open = any("child" in joint.unresolved for joint in robot.joints)
+    if is_child_open or sum(name not in explained for name in roots) < 2:
+        return
+    # Of very many roots the first is as good: searching the tree below each takes long.
+    candidates = roots if len(roots) <= _MAX_ROOTS else roots[:1]
+    main = max(candidates, key=lambda name: len(_reachable([name], edges)))
+    others = [name for name in roots if name != main and name not in explained]
+    message = _describe_roots(main, others)
+    problems.add(urdf_problems.TWO_ROOTS, message, links[others[0]], "name")
+
+
+def _explained_roots(robot: Robot, links: dict[str, Element], problems: Problems) -> set[str]:
+    """Return the links whose missing parent joint another problem explains."""
     explained: set[str] = set()
     for joint in robot.joints:
         if not robot.has_link(joint.parent):
@@ -208,21 +222,18 @@ def _check_roots(
             explained.add(problems.closest(joint.child, links) or "")
     # Any joint may have a link of an open name as its child.
     explained |= {link.name for link in robot.links if "@name" in link.unresolved}
-    is_child_open = any("child" in joint.unresolved for joint in robot.joints)
-    if is_child_open or sum(name not in explained for name in roots) < 2:
-        return
-    # Of very many roots the first is as good: searching the tree below each takes long.
-    candidates = roots if len(roots) <= _MAX_ROOTS else roots[:1]
-    main = max(candidates, key=lambda name: len(_reachable([name], edges)))
-    others = [name for name in roots if name != main and name not in explained]
+    return explained
+
+
+def _describe_roots(main: str, others: list[str]) -> str:
+    """Return the message on links that no joint connects to the main root."""
     named = enumerated([*map(quoted, others)], _MAX_ROOTS)
     verb, them = ("is", "it") if len(others) == 1 else ("are", "them")
     all_roots = ", ".join(map(quoted, [main, *others][:_MAX_ROOTS]))
-    message = (
+    return (
         f"{named} {verb} not connected to the robot: no joint has {them} as its child "
         f"(the roots are {all_roots}); ROS 2 rejects the file"
     )
-    problems.add(urdf_problems.TWO_ROOTS, message, links[others[0]], "name")
 
 
 def _check_paths(

@@ -5,7 +5,7 @@ It tells what the robot is if they are undone.
 
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import NamedTuple
 
@@ -62,7 +62,7 @@ class Word(NamedTuple):
         return self.element, self.attribute
 
 
-class _AsMeant(NamedTuple):
+class AsMeant(NamedTuple):
     """What ROS 2 would read if some words were others; the problems say which."""
 
     robot: Robot
@@ -72,7 +72,7 @@ class _AsMeant(NamedTuple):
 
 def read_as_meant(
     root: Element, robot: Robot, read: Callable[[], tuple[Robot, Problems]]
-) -> _AsMeant | None:
+) -> AsMeant | None:
     """Return what a rejected file means.
 
     Returns None if a word can stand for several, or ROS 2 would still reject the file.
@@ -104,7 +104,7 @@ def read_as_meant(
                 for word in words:
                     problems.undone = {**problems.undone, word.place: word.fixes}
                     problems.listed.append(problems.assumed(*word.place, word.sentence, word.fixes))
-                return _AsMeant(robot, problems.listed, words)
+                return AsMeant(robot, problems.listed, words)
         return None
     finally:
         for element, tag, attributes in reversed(before):
@@ -186,13 +186,17 @@ def _misspelt_references(root: Element, robot: Robot) -> Iterator[Word]:
     if sum(uses[name] for name in misspelt) > _MAX_ROUNDS * _MAX_WORDS:
         misspelt = set()
     for joint in root.iterchildren("joint"):
-        if joint.get("type") not in JOINT_TYPES:
-            kind = near(joint.get("type") or "", JOINT_TYPES)
-        else:
-            kind = None
+        yield from _misspelt_type(joint)
+        yield from _misspelt_ends(joint, misspelt, links, children)
+
+
+def _misspelt_type(joint: Element) -> Iterator[Word]:
+    """Yield the type of a joint if it is near one that there is."""
+    written = joint.get("type")
+    if written not in JOINT_TYPES:
+        kind = near(written or "", JOINT_TYPES)
         if kind is not None:
             yield _word_with_value(joint, "type", kind, "the joint type")
-        yield from _misspelt_ends(joint, misspelt, links, children)
 
 
 def _misspelt_definitions(
@@ -319,18 +323,28 @@ def _pasted_children(root: Element, robot: Robot) -> Iterator[Word]:
     named = {*counts, *(joint.parent for joint in robot.joints)}
     lonely = [link.name for link in robot.links if link.name not in named]
     doubled = [child for child, count in counts.items() if count == 2]
-    if len(lonely) != 1 or len(doubled) != 1:
-        return
-    ends = []  # where the two joints name their child
-    named_after = []  # those of joints that are named after the lonely link
+    if len(lonely) == len(doubled) == 1:
+        end = _end_for_link(root, doubled[0], lonely[0])
+        if end is not None:
+            yield _word_with_value(end, "link", lonely[0], "the child")
+
+
+def _end_for_link(root: Element, doubled: str, lonely: str) -> Element | None:
+    """Return the end of a joint that names a child twice, and should name the lonely link.
+
+    It is that of the joint that is named after the lonely link, else the later one.
+    """
+    ends = []
+    named_after = []
     for joint in root.iterchildren("joint"):
         end = joint.find("child")
-        if end is not None and end.get("link") == doubled[0]:
+        if end is not None and end.get("link") == doubled:
             ends.append(end)
-            if lonely[0] in (joint.get("name") or ""):
+            if lonely in (joint.get("name") or ""):
                 named_after.append(end)
-    for end in (named_after if len(named_after) == 1 else ends)[-1:]:
-        yield _word_with_value(end, "link", lonely[0], "the child")
+    if len(named_after) == 1:
+        return named_after[0]
+    return ends[-1] if ends else None
 
 
 def _repeated_names(root: Element) -> Iterator[Word]:
@@ -341,14 +355,18 @@ def _repeated_names(root: Element) -> Iterator[Word]:
     ends = [end for end in root.iterfind("joint/*") if end.tag in ("parent", "child")]
     used_links = dict.fromkeys(end.get("link") for end in ends)
     used_joints = dict.fromkeys(mimic.get("joint") for mimic in root.iterfind("joint/mimic"))
-    for tag, used in (("link", used_links), ("joint", used_joints)):
-        named = [(element.get("name"), element) for element in root.iterchildren(tag)]
-        counts = Counter(name for name, _ in named)
-        repeated = [name for name, count in counts.items() if name is not None and count > 1]
-        missing = [name for name in used if name and name not in counts]
-        if len(repeated) == len(missing) == 1 and counts[repeated[0]] == 2:
-            later = [element for name, element in named if name == repeated[0]][-1]
-            yield _word_with_value(later, "name", missing[0], f"the second {tag}")
+    yield from _repeated_names_of(root, "link", used_links)
+    yield from _repeated_names_of(root, "joint", used_joints)
+
+
+def _repeated_names_of(root: Element, tag: str, used: Iterable[str | None]) -> Iterator[Word]:
+    named = [(element.get("name"), element) for element in root.iterchildren(tag)]
+    counts = Counter(name for name, _ in named)
+    repeated = [name for name, count in counts.items() if name is not None and count > 1]
+    missing = [name for name in used if name and name not in counts]
+    if len(repeated) == len(missing) == 1 and counts[repeated[0]] == 2:
+        later = [element for name, element in named if name == repeated[0]][-1]
+        yield _word_with_value(later, "name", missing[0], f"the second {tag}")
 
 
 def _misspelt_format(root: Element) -> Iterator[Word]:

@@ -92,32 +92,42 @@ def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]
 
     If no rim matters, the least overlap of intersecting shapes is along one of these.
     """
-    c = T_a_b.translation
     edges_a = straight_edges(a)
     edges_b = [T_a_b.rotate(edge) for edge in straight_edges(b)]
     yield from edges_a
     yield from edges_b
-    yield unit(c) or (0.0, 0.0, 1.0)
-    if isinstance(a, Cylinder):
-        x, y, _ = T_a_b.rotate(_vector_from_nearest(b, T_a_b.unrotate(c)))
-        yield unit((x, y, 0.0)) or (1.0, 0.0, 0.0)
-    if isinstance(b, Cylinder):
-        x, y, _ = T_a_b.unrotate(_vector_from_nearest(a, c))
-        yield T_a_b.rotate(unit((x, y, 0.0)) or (1.0, 0.0, 0.0))
-    if isinstance(b, Sphere):
-        yield unit(_outside(a, c)) or (1.0, 0.0, 0.0)
-    if isinstance(a, Sphere):
-        yield T_a_b.rotate(unit(_outside(b, T_a_b.unrotate(c))) or (1.0, 0.0, 0.0))
-    if isinstance(b, Capsule):
-        yield unit(_outside(a, _nearest_of_axis(b, T_a_b, a))) or (1.0, 0.0, 0.0)
-    if isinstance(a, Capsule):
-        point = _nearest_of_axis(a, T_a_b.inverse(), b)
-        yield T_a_b.rotate(unit(_outside(b, point)) or (1.0, 0.0, 0.0))
+    yield unit(T_a_b.translation) or (0.0, 0.0, 1.0)
+    yield from _directions_of_round(a, b, T_a_b)
     for p, q in product(edges_a, edges_b):
         normal = cross(p, q)
         length = hypot(*normal)
         if length > _ROUNDING:
             yield (normal[0] / length, normal[1] / length, normal[2] / length)
+
+
+def _directions_of_round(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]:
+    """Yield the unit directions from round shapes to the nearest points of the other shape."""
+    c = T_a_b.translation
+    if isinstance(a, Cylinder):
+        x, y, _ = T_a_b.rotate(_vector_from_nearest(b, T_a_b.unrotate(c)))
+        yield _unit_or_x((x, y, 0.0))
+    if isinstance(b, Cylinder):
+        x, y, _ = T_a_b.unrotate(_vector_from_nearest(a, c))
+        yield T_a_b.rotate(_unit_or_x((x, y, 0.0)))
+    if isinstance(b, Sphere):
+        yield _unit_or_x(_outside(a, c))
+    if isinstance(a, Sphere):
+        yield T_a_b.rotate(_unit_or_x(_outside(b, T_a_b.unrotate(c))))
+    if isinstance(b, Capsule):
+        yield _unit_or_x(_outside(a, _nearest_of_axis(b, T_a_b, a)))
+    if isinstance(a, Capsule):
+        point = _nearest_of_axis(a, T_a_b.inverse(), b)
+        yield T_a_b.rotate(_unit_or_x(_outside(b, point)))
+
+
+def _unit_or_x(vector: Vector) -> Vector:
+    """Return the unit vector of a direction; that of x for length zero."""
+    return unit(vector) or (1.0, 0.0, 0.0)
 
 
 def _vector_from_nearest(shape: Shape, point: Vector) -> Vector:

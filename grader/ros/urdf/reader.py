@@ -5,7 +5,7 @@ Names that look misspelt are reported too.
 
 import os
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal, NamedTuple
@@ -48,7 +48,7 @@ from grader.ros.xml.urdf_format import (
 from grader.ros.xml.xml_problems import NOT_WELL_FORMED, RECOVERED
 
 if TYPE_CHECKING:
-    from grader.ros.urdf.meant import Word
+    from grader.ros.urdf.meant import AsMeant, Word
 
 
 Verdict = Literal["clean", "degraded", "rejected"]
@@ -193,48 +193,65 @@ def _read_content(document: XmlDocument, root: Element, newest: UrdfVersion) -> 
     read = partial(_read_robot, document, root, newest)
     robot, problems = read()
     effects = {problem.kind.effect for problem in listed} | problems.effects
-    robot_problems, incomplete = (
-        problems.listed,
-        _why_incomplete(document, robot) if effects.intersection(_FATAL) else "",
-    )
+    robot_problems = problems.listed
+    incomplete = _why_incomplete(document, robot) if effects.intersection(_FATAL) else ""
     is_meant = document.is_meant and "rejects" not in problems.effects
     undone: tuple[Word, ...] = ()
-    if (
-        document.is_meant
-        and not is_meant
-        and not incomplete
-        and len(causes(robot_problems)) <= _MAX_CAUSES
-    ):
-        from grader.ros.urdf.meant import read_as_meant  # late: few files are rejected
-
-        meant = read_as_meant(root, robot, read)
+    if document.is_meant and not is_meant and not incomplete:
+        meant = _read_as_meant(root, robot, problems, read)
         if meant is not None:
             is_meant, robot, undone = True, meant.robot, tuple(meant.words)
-            problems.undone = {word.place: word.fixes for word in undone}
-            independent = _without_other_guesses(read, causes(robot_problems), meant.problems)
-            robot_problems = [*independent, *meant.problems]
+            robot_problems = meant.problems
     if document.root is None:
-        broken = {problem.location.line for problem in listed}
-        robot_problems = [
-            problem
-            for problem in robot_problems
-            if not problem.kind.is_consequence and problem.location.line not in broken
-        ]
+        robot_problems = _problems_of_unbroken_lines(robot_problems, listed)
     listed += robot_problems
     if problems.unlisted:
         message = f"{problems.unlisted} more problems of this file are not listed"
-        listed.append(
-            Problem(urdf_problems.UNLISTED, message, document.source.at(len(document.source.text)))
-        )
+        end = document.source.at(len(document.source.text))
+        listed.append(Problem(urdf_problems.UNLISTED, message, end))
     verdict = _verdict(effects)
-    if verdict != "rejected" and not document.is_expanded:
-        listed += _problems_for_python(document, robot)
     if verdict == "rejected":
-        robot = replace(
-            robot, rejected=not is_meant or "undetermined" in effects, incomplete=incomplete
-        )
+        is_open = not is_meant or "undetermined" in effects
+        robot = replace(robot, rejected=is_open, incomplete=incomplete)
+    elif not document.is_expanded:
+        listed += _problems_for_python(document, robot)
     places = (document.source, document.root, document.unresolved, document.recovered)
     return Reading(verdict, robot, in_order(listed), *places, is_meant, undone)
+
+
+def _read_as_meant(
+    root: Element,
+    robot: Robot,
+    problems: Problems,
+    read: Callable[..., tuple[Robot, Problems]],
+) -> "AsMeant | None":
+    """Return what a rejected file means, with all its problems.
+
+    Returns None if a word can stand for several, or too much is wrong.
+    """
+    rejecting = causes(problems.listed)
+    if len(rejecting) > _MAX_CAUSES:
+        return None
+    from grader.ros.urdf.meant import read_as_meant  # late: few files are rejected
+
+    meant = read_as_meant(root, robot, read)
+    if meant is None:
+        return None
+    problems.undone = {word.place: word.fixes for word in meant.words}
+    independent = _without_other_guesses(read, rejecting, meant.problems)
+    return meant._replace(problems=[*independent, *meant.problems])
+
+
+def _problems_of_unbroken_lines(
+    problems: Iterable[Problem], reported: Iterable[Problem]
+) -> list[Problem]:
+    """Return problems of a robot in lines that have no problem yet, but no consequences."""
+    broken = {problem.location.line for problem in reported}
+    return [
+        problem
+        for problem in problems
+        if not problem.kind.is_consequence and problem.location.line not in broken
+    ]
 
 
 def _problems_for_python(document: XmlDocument, robot: Robot) -> Iterator[Problem]:

@@ -187,28 +187,39 @@ class _Rewriter:
         changed = [use for use in uses if use.old != use.new]
         if text is None or not changed:
             return []
-        parts = []
+        parts: list[tuple[_Use, _Written, str, str]] = []
         if "$" in text.text:
             parts = [(use, *part) for use in changed for part in _parts(text, use)]
+        of_definitions = self._changes_of_definitions(parts)
+        if of_definitions is None:
+            return []
+        ways = [*self._literal(text, changed), *self._in_calls(text, changed)]
+        computed = self._computed(parts)
+        # Where it is used, it would change for other calls of a macro, too.
+        ways = [*computed, *ways] if len(changed) < len(uses) else [*ways, *computed]
+        return [*dict.fromkeys([*of_definitions, *ways])]
+
+    def _changes_of_definitions(
+        self, parts: Sequence[tuple[_Use, _Written, str, str]]
+    ) -> list[Edits] | None:
+        """Return the edits of the definitions of parts of a text; None where they are loaded.
+
+        Returns none where no part is defined, or uses want different values of one definition.
+        """
         changes: dict[tuple[Source, int, str], _TextChange] = {}
         has_definition, is_one = False, True
         for use, part, old, new in parts:
             definitions = self._definitions(part, use.scope, old, new)
             if not definitions and self._is_loaded(part):
-                return []
+                return None
             has_definition |= bool(definitions)
             for change in definitions or [_TextChange(part, new)]:
                 written = change.written
                 where = written.source, written.start, written.text
-                # Two uses may want different values of one definition.
                 is_one &= changes.setdefault(where, change).new == change.new
-        ways = [*self._literal(text, changed), *self._in_calls(text, changed)]
-        computed = self._computed(parts)
-        # Where it is used, it would change for other calls of a macro, too.
-        ways = [*computed, *ways] if len(changed) < len(uses) else [*ways, *computed]
         if has_definition and is_one:
-            ways = _edits_alone(changes.values()) + ways
-        return [*dict.fromkeys(ways)]
+            return _edits_alone(changes.values())
+        return []
 
     def _computed(self, parts: Iterable[tuple[_Use, _Written, str, str]]) -> list[Edits]:
         """Return the edits of what parts of a text are computed from.
@@ -611,30 +622,44 @@ def _corrections(
 
     The files that the document includes are part of it.
     """
+    yield from _declare_prefix(document)
+    nodes = [node for file in files.values() for node in islice(walk(file), 1, _MAX_NODES)]
+    yield from _add_prefixes(nodes)
+    named = 0
+    for error, place, attribute in refusals:
+        if isinstance(error, XacroFails) and (error.unknown is not None or error.lacking):
+            yield from _correct_names(error, place, attribute, nodes)
+            named += 1
+        if named == _MAX_NAMES:
+            return
+
+
+def _declare_prefix(document: Source) -> Iterator[_XacroMistake]:
+    """Yield the edit that declares the prefix xacro, if a document uses it and does not."""
     text = document.text
     if "xmlns:xacro" not in text and "xacro:" in text:
         _, start = document.element(0)
         end = markup.name_end(text, start)
         edit = document.edit(start, end, text[start:end] + _NAMESPACE)
         yield _XacroMistake((edit,), "the prefix xacro, which is not declared")
-    nodes = [node for file in files.values() for node in islice(walk(file), 1, _MAX_NODES)]
+
+
+def _add_prefixes(nodes: Sequence[XacroNode]) -> Iterator[_XacroMistake]:
+    """Yield the edits that write xacro: before tags of xacro and calls of macros."""
     macros = {node.attributes.get("name", "") for node in nodes if node.tag == "xacro:macro"}
     for node in nodes:
         if node.tag in _PREFIXED or node.tag in macros:
             edits = tag_edits(*node.place.written, node.tag, f"xacro:{node.tag}")
             yield _XacroMistake(edits, f"<{node.tag}> without xacro:")
-    named = [
-        refusal
-        for refusal in refusals
-        if isinstance(refusal[0], XacroFails)
-        and (refusal[0].unknown is not None or refusal[0].lacking)
-    ]
-    for error, place, attribute in named[:_MAX_NAMES]:
-        assert isinstance(error, XacroFails)
-        if error.unknown is not None:
-            for edits in respellings(place, attribute, error.unknown):
-                yield _XacroMistake(edits, "a name that xacro does not know")
-        for edits, values in (
-            values_of_other_calls(place, nodes, error.lacking) if error.lacking else ()
-        ):
+
+
+def _correct_names(
+    error: XacroFails, place: ScopePlace, attribute: str | None, nodes: Sequence[XacroNode]
+) -> Iterator[_XacroMistake]:
+    """Yield the edits for a name that is not known, and for values that a call lacks."""
+    if error.unknown is not None:
+        for edits in respellings(place, attribute, error.unknown):
+            yield _XacroMistake(edits, "a name that xacro does not know")
+    if error.lacking:
+        for edits, values in values_of_other_calls(place, nodes, error.lacking):
             yield _XacroMistake(edits, f"this call gives no value for {' and '.join(values)}")

@@ -175,37 +175,39 @@ def _property(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes)
     symbols, texts, given = scopes.symbols, expander.texts, node.attributes
     name = _property_name(texts.text(_needed(node, "name"), symbols))
     is_removed = _flag(node, "remove", "false", expander, scopes)
+    _check_ways(expander, node, name, is_removed=is_removed)
+    if is_removed and texts.is_bound(name, symbols):
+        texts.check_name(name, node.place)
+        symbols.remove(name)
+        return
+    attribute = "default" if "default" in given else "value"
+    if attribute == "default" and texts.is_bound(name, symbols):
+        return
+    text = given.get(attribute)
+    is_lazy = _flag(node, "lazy_eval", "true", expander, scopes)
+    is_lazy = is_lazy and given.get("scope") not in ("global", "parent")
+    if text is None:
+        name = f"**{name}"
+    target = _target(given.get("scope"), name, symbols)
+    texts.check_name(name, node.place)
+    if text is None:
+        target.bind(name, node, is_lazy=True, definition=None)
+    elif is_lazy:
+        definition = XacroDefinition(name, text, node.place, attribute, target)
+        target.bind(name, text, is_lazy=True, definition=definition)
+    else:
+        texts.bind(target, name, text, symbols, node.place, attribute)
+
+
+def _check_ways(expander: Expander, node: XacroNode, name: str, *, is_removed: bool) -> None:
+    """Fail for a property that is defined in several ways, and warn of a scope without effect."""
+    given = node.attributes
     if "default" in given and "scope" in given:
         message = "xacro warns that a property with default has the scope local only"
         expander.warn(xacro_problems.XACRO_ATTRIBUTE, message, node.place, "scope")
     ways = [key for key in ("value", "default") if key in given]
     if len(ways) > 1 or (ways and is_removed):
         raise TagFails(f"the property {name} has more than one of value, default and remove")
-    if is_removed and texts.is_bound(name, symbols):
-        texts.check_name(name, node.place)
-        symbols.remove(name)
-        return
-    if "default" in given and texts.is_bound(name, symbols):
-        return
-    attribute = "default" if "default" in given else "value"
-    text = given.get(attribute)
-    value: Value = text
-    if text is None:
-        name, value = f"**{name}", node
-    is_lazy = _flag(node, "lazy_eval", "true", expander, scopes) and given.get("scope") not in (
-        "global",
-        "parent",
-    )
-    target = _target(given.get("scope"), name, symbols)
-    texts.check_name(name, node.place)
-    if is_lazy or text is None:
-        if text is not None:
-            definition = XacroDefinition(name, text, node.place, attribute, target)
-        else:
-            definition = None
-        target.bind(name, value, is_lazy=True, definition=definition)
-    else:
-        texts.bind(target, name, text, symbols, node.place, attribute)
 
 
 def _property_name(name: str) -> str:

@@ -55,6 +55,23 @@ INSTALLED = "/install"
 OtherArguments = Literal["default", "unknown", "none"]
 
 
+def _check_substitution(text: str, command: str, args: list[str]) -> None:
+    """Raise for $(...) that is neither $(find PACKAGE) nor $(arg NAME).
+
+    Raises Undetermined for what xacro accepts, else EvaluationFails.
+    """
+    if text.startswith("eval "):
+        raise Undetermined("$(eval ...) is not supported: use ${...}")
+    if command in ("env", "optenv") and args:
+        raise Undetermined(f"the environment variable {args[0]} is known only at run time")
+    if text == "cwd":
+        raise Undetermined("the folder in which xacro runs is known only at run time")
+    if "$" in text or "(" in text:
+        raise EvaluationFails(f"$({text}): no $ and no ( can be inside of $(...)")
+    if command not in ("find", "arg") or len(args) != 1:
+        raise EvaluationFails(f"$({text}): expected $(find PACKAGE) or $(arg NAME)")
+
+
 class Texts:
     """Evaluates texts.
 
@@ -233,21 +250,9 @@ class Texts:
         command, *args = [word for word in text.split(" ") if word] or [""]
         if not text:
             return "$()"
-        if text.startswith("eval "):
-            raise Undetermined("$(eval ...) is not supported: use ${...}")
-        if (command in ("env", "optenv") and args) or text == "cwd":
-            if args:
-                what = f"the environment variable {args[0]}"
-            else:
-                what = "the folder in which xacro runs"
-            raise Undetermined(f"{what} is known only at run time")
-        if "$" in text or "(" in text:
-            raise EvaluationFails(f"$({text}): no $ and no ( can be inside of $(...)")
-        if command not in ("find", "arg") or len(args) != 1:
-            raise EvaluationFails(f"$({text}): expected $(find PACKAGE) or $(arg NAME)")
-        result: str = self._charge(
-            self.share(args[0]) if command == "find" else self.argument(args[0])
-        )
+        _check_substitution(text, command, args)
+        given = self.share(args[0]) if command == "find" else self.argument(args[0])
+        result: str = self._charge(given)
         if "$(" in result:
             return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), result)
         return result

@@ -245,23 +245,7 @@ class _Repairer:
         if match["close"]:
             self._replace(*match.span(), f"</{name}>")
             return Tag(name, "close", {}, match.start())
-        attributes: dict[str, str] = {}
-        given = [
-            (key, decode("".join(values)))
-            for key, *values in _ATTRIBUTE.findall(rest.removesuffix("/"))
-        ]
-        for key, text in given:
-            known = attributes.setdefault(key, text)
-            other = _other_attribute(name, {one for one, _ in given}, text) if known != text else ""
-            if other:
-                attributes[other] = text
-        value = _NAMELESS.match(rest)
-        if (
-            value is not None
-            and (key := _main_attribute(name)) not in attributes
-            and _is_value_of(key, value[1])
-        ):
-            attributes = {key: decode(value[1]), **attributes}
+        attributes = _readable_attributes(name, rest)
         is_value_lost = "=" in rest and not attributes
         self._is_lossy |= is_value_lost
         if attributes:
@@ -420,6 +404,27 @@ def _is_never_filled(tag: str) -> bool:
     <box size="1 1 1"/> is closed where it begins.
     """
     return tag in TAGS and bool(TAGS[tag].attributes) and not TAGS[tag].children
+
+
+def _readable_attributes(tag: str, text: str) -> dict[str, str]:
+    """Return the attributes in the text of a broken tag, as they are meant."""
+    attributes: dict[str, str] = {}
+    given = [
+        (key, decode("".join(values)))
+        for key, *values in _ATTRIBUTE.findall(text.removesuffix("/"))
+    ]
+    keys = {key for key, _ in given}
+    for key, value in given:
+        if attributes.setdefault(key, value) != value:
+            other = _other_attribute(tag, keys, value)
+            if other:
+                attributes[other] = value
+    nameless = _NAMELESS.match(text)
+    if nameless is not None:
+        main = _main_attribute(tag)
+        if main not in attributes and _is_value_of(main, nameless[1]):
+            return {main: decode(nameless[1]), **attributes}
+    return attributes
 
 
 def _main_attribute(tag: str) -> str:
