@@ -122,13 +122,7 @@ def _changes(lines: Sequence[str], index: int) -> Iterator[str]:
     line = lines[index]
     if len(line) > _MAX_LENGTH or not line.strip():
         return
-    content = line.lstrip()
-    indentation = line[: len(line) - len(content)]
-    if "\t" in indentation:
-        others = [*reversed(lines[:index]), *lines[index + 1 :]]
-        texts = [other for other in others if other.strip() and not other.startswith("\t")]
-        for other in texts[:2]:
-            yield other[: len(other) - len(other.lstrip())] + content
+    yield from _without_tabs(lines, index)
     spaced = _NO_BLANK.sub(r"\1: ", line, count=1)
     if spaced != line:
         yield spaced
@@ -140,3 +134,14 @@ def _changes(lines: Sequence[str], index: int) -> Iterator[str]:
     for quote in "'\"":
         if code.count(quote) % 2:
             yield f"{code.rstrip()}{quote}{rest}"
+
+
+def _without_tabs(lines: Sequence[str], index: int) -> Iterator[str]:
+    """Yield a line with tabs at its start with the indentation of others instead."""
+    line = lines[index]
+    content = line.lstrip()
+    if "\t" in line[: len(line) - len(content)]:
+        others = [*reversed(lines[:index]), *lines[index + 1 :]]
+        texts = [other for other in others if other.strip() and not other.startswith("\t")]
+        for other in texts[:2]:
+            yield other[: len(other) - len(other.lstrip())] + content

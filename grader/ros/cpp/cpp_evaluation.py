@@ -276,21 +276,28 @@ class CppEvaluation:
         writes: list[_Write] = []
         if value is not None:
             writes.append(_Write("declared", name, self._value_once(name, declaration, value)))
-        if local.effects is None:
-            local.effects = [(name, not_known("it depends on itself"))]
-            effects = [
-                (other, self._effect_of(other, declaration))
-                for other in local.uses
-                if other is not name
-            ]
-            local.effects = [(use, effect) for use, effect in effects if effect != []]
-        self._budget.charge(1 + len(local.effects))
-        for use, effect in local.effects:
+        effects = self._effects_on(local, name, declaration)
+        self._budget.charge(1 + len(effects))
+        for use, effect in effects:
             if use.start < node.start:
                 if isinstance(effect, Unknown):
                     return effect
                 writes += effect
         return _last(writes)
+
+    def _effects_on(
+        self, local: "_LocalVariable", name: CppNode, declaration: CppNode
+    ) -> "list[tuple[CppNode, list[_Write] | Unknown]]":
+        """Return what changes a local variable, and where; it is computed once."""
+        if local.effects is None:
+            local.effects = [(name, not_known("it depends on itself"))]
+            effects: list[tuple[CppNode, list[_Write] | Unknown]] = []
+            for use in local.uses:
+                effect = self._effect_of(use, declaration) if use is not name else []
+                if effect != []:
+                    effects.append((use, effect))
+            local.effects = effects
+        return local.effects
 
     def _value_once(self, name: CppNode, declaration: CppNode, value: CppNode | None) -> CppValue:
         """Return the value that a variable is declared with, which is evaluated once."""

@@ -335,17 +335,15 @@ def _visit_description(
 def _declare_argument(
     visitor: ActionVisitor, call: Call, context: Context, when: bool | None
 ) -> None:
-    name, choices, default = (
-        call.kwargs.get(keyword) for keyword in ("name", "choices", "default_value")
-    )
+    name, default = call.kwargs.get("name"), call.kwargs.get("default_value")
     if not isinstance(name, str):
         raise Undetermined("the name of this launch argument is not evaluated", call.at)
     visitor.findings.declared.append(name)
     if when is False:
         return
-    is_given = name in context.given or (
-        name in context.arguments and call.kwargs.get("condition") is not None
-    )
+    is_given = name in context.given
+    if name in context.arguments and call.kwargs.get("condition") is not None:
+        is_given = True
     if default is None and not is_given:
         context.arguments[name] = Unknown(f"the launch argument {name!r} has no default", call.at)
         raise MissingValue(
@@ -356,13 +354,19 @@ def _declare_argument(
     value = context.arguments[name]
     if isinstance(value, str):
         visitor.findings.values.append((name, value))
-    if choices is not None and when:
-        if not isinstance(value, str) or not isinstance(choices, list | tuple):
-            raise Undetermined(f"whether {name!r} is one of its choices is not evaluated", call.at)
-        if value not in choices:
-            raise EvaluationFails(
-                f"the value {value!r} of {name!r} is not one of its choices", call.at
-            )
+    if when:
+        _check_choice(name, value, call)
+
+
+def _check_choice(name: str, value: Value, call: Call) -> None:
+    """Raise for the value of an argument that is not one of its choices, or may be none."""
+    choices = call.kwargs.get("choices")
+    if choices is None:
+        return
+    if not isinstance(value, str) or not isinstance(choices, list | tuple):
+        raise Undetermined(f"whether {name!r} is one of its choices is not evaluated", call.at)
+    if value not in choices:
+        raise EvaluationFails(f"the value {value!r} of {name!r} is not one of its choices", call.at)
 
 
 def _assign_argument(

@@ -208,17 +208,7 @@ def check(cls: LaunchClass, call: Call) -> Unknown | None:
 
 def _name_arguments(cls: LaunchClass, call: Call) -> None:
     """Give the arguments of a constructor their names. Raises EvaluationFails as Python does."""
-    positional = [name for name, row in cls.parameters.items() if row.is_positional]
-    if len(call.args) > len(positional):
-        if cls.short in _TAKES_A_LIST:
-            hint = "put [ ] around them"
-        else:
-            names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
-            hint = f"write {names[:100]}"
-        raise EvaluationFails(
-            f"{cls.short} takes {len(positional)} argument without a name: {hint}", call.at
-        )
-    given = dict(zip(positional, call.args, strict=False))
+    given = _given_by_place(cls, call)
     twice = given.keys() & call.kwargs.keys()
     if twice:
         raise EvaluationFails(f"{cls.short} is given {min(twice)!r} twice", call.at)
@@ -234,6 +224,21 @@ def _name_arguments(cls: LaunchClass, call: Call) -> None:
     for name, row in cls.parameters.items():
         if row.is_required and name not in given:
             raise EvaluationFails(f"{cls.short} needs the argument {name}=...", call.at)
+
+
+def _given_by_place(cls: LaunchClass, call: Call) -> dict[str, Value]:
+    """Return the arguments of a call without a name, by their names. Raises EvaluationFails."""
+    positional = [name for name, row in cls.parameters.items() if row.is_positional]
+    if len(call.args) > len(positional):
+        if cls.short in _TAKES_A_LIST:
+            hint = "put [ ] around them"
+        else:
+            names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
+            hint = f"write {names[:100]}"
+        raise EvaluationFails(
+            f"{cls.short} takes {len(positional)} argument without a name: {hint}", call.at
+        )
+    return dict(zip(positional, call.args, strict=False))
 
 
 class _Fault(NamedTuple):

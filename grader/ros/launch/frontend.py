@@ -9,7 +9,7 @@ import re
 import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, NoReturn
 
 from grader.base.names import closest, did_you_mean
 from grader.base.source import Location, Source
@@ -839,11 +839,7 @@ class _ValueParser:
                 "$(command ...) needs quotes around its command: $(command 'xacro ...')", self.at
             )
         if name not in _SUBSTITUTIONS:
-            if name in front_end("substitution"):
-                raise Undetermined(f"the substitution $({name} ...) is not evaluated", self.at)
-            similar = closest(name, _SUBSTITUTIONS)
-            hint = f"; did you mean $({similar} ...)?" if similar else ""
-            raise EvaluationFails(f"there is no substitution $({name} ...){hint}", self.at)
+            self.fail_unknown(name)
         required, optional, rest = _SUBSTITUTIONS[name]
         if rest:
             return self.call_with_rest(name, values)
@@ -853,9 +849,17 @@ class _ValueParser:
             raise EvaluationFails(f"$({name} ...) takes {count}", self.at)
         kwargs: dict[str, Value] = {}
         for argument, value in zip(names, values, strict=False):
-            texts = [part for part in value if isinstance(part, str)]
-            kwargs[argument] = "".join(texts) if len(texts) == len(value) else value
+            is_text = all(isinstance(part, str) for part in value)
+            kwargs[argument] = "".join(map(str, value)) if is_text else value
         return Call(front_end("substitution")[name], [], kwargs, self.at)
+
+    def fail_unknown(self, name: str) -> NoReturn:
+        """Raise for a substitution that is not evaluated, or that does not exist."""
+        if name in front_end("substitution"):
+            raise Undetermined(f"the substitution $({name} ...) is not evaluated", self.at)
+        similar = closest(name, _SUBSTITUTIONS)
+        hint = f"; did you mean $({similar} ...)?" if similar else ""
+        raise EvaluationFails(f"there is no substitution $({name} ...){hint}", self.at)
 
     def call_with_rest(self, name: str, values: list[list[Value]]) -> Call:
         """Return a substitution that takes any number of values. Raises EvaluationFails."""

@@ -222,31 +222,42 @@ def _read_python(
     file = _PythonLaunchFile(context)
     entry = file.run(code, installed).get(_ENTRY)
     visitor = ActionVisitor(findings, include, file.call)
-    interpreter = file.interpreter
     if isinstance(entry, Function):
-        description = file.call(entry, entry.at, (), context)
-        error = _description_error(description)
-        if error:
-            findings.add_fault(error, entry.at)
-        elif not isinstance(description, Unknown) or interpreter.doubt is None:
-            visitor.launch(description, context, entry.at)
-    elif interpreter.doubt is None and not interpreter.errors:
-        message = f"the file does not define the function {_ENTRY}, which ros2 launch calls"
-        if entry is None:
-            findings.add_fault(message, START)
-        else:
-            findings.add_undecided(
-                f"{_ENTRY}, which the file does not define itself, is not evaluated", START
-            )
+        _call_entry(file, entry, visitor, context)
+    else:
+        _add_missing_entry(file, findings, is_bound=entry is not None)
     _add_python(findings, file)
     if code.conflict is not None:
         findings.add_fault(*code.conflict)
-    nodes = [
-        call for call in interpreter.calls if call.name == _NODE and call not in visitor.visited
-    ]
-    return _make_launch(
-        code.source, findings, tuple(_forgotten_node(node, findings) for node in nodes)
-    )
+    nodes = []
+    for call in file.interpreter.calls:
+        if call.name == _NODE and call not in visitor.visited:
+            nodes.append(_forgotten_node(call, findings))
+    return _make_launch(code.source, findings, tuple(nodes))
+
+
+def _call_entry(
+    file: "_PythonLaunchFile", entry: Function, visitor: ActionVisitor, context: Context
+) -> None:
+    """Execute the description that the function of a launch file returns."""
+    description = file.call(entry, entry.at, (), context)
+    error = _description_error(description)
+    if error:
+        visitor.findings.add_fault(error, entry.at)
+    elif not isinstance(description, Unknown) or file.interpreter.doubt is None:
+        visitor.launch(description, context, entry.at)
+
+
+def _add_missing_entry(file: "_PythonLaunchFile", findings: Findings, *, is_bound: bool) -> None:
+    """Add that a file does not define the function that ros2 launch calls."""
+    if file.interpreter.doubt is not None or file.interpreter.errors:
+        return
+    if is_bound:
+        message = f"{_ENTRY}, which the file does not define itself, is not evaluated"
+        findings.add_undecided(message, START)
+    else:
+        message = f"the file does not define the function {_ENTRY}, which ros2 launch calls"
+        findings.add_fault(message, START)
 
 
 def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:

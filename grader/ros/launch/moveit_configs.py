@@ -353,25 +353,21 @@ class MoveItConfigurations:
     def _pipelines(
         self, configuration: _Configuration, at: Position, given: Mapping[str, Value]
     ) -> dict[str, Value]:
-        names = self._names(configuration)
+        names, ending = self._names(configuration), "_planning.yaml"
         wanted, default = (
             known(given.get(argument)) for argument in ("pipelines", "default_planning_pipeline")
         )
-        configured = [
-            name.removesuffix("_planning.yaml")
-            for name in names or ()
-            if name.endswith("_planning.yaml")
-        ]
-        pipelines, with_all = wanted, given.get("load_all", True)
+        configured = [name.removesuffix(ending) for name in names or () if name.endswith(ending)]
+        pipelines, unordered = wanted, None
         if wanted is None:
+            with_all = given.get("load_all", True)
+            if names is None and not with_all:
+                raise Undetermined("the pipelines of MoveIt are not evaluated", at)
             others = _DEFAULT_PIPELINES if with_all else ()
             pipelines = [*dict.fromkeys([*configured, *others])]
-        is_unknown = names is None and wanted is None and not with_all
-        if not isinstance(pipelines, list | tuple) or is_unknown:
-            raise Undetermined("the pipelines of MoveIt are not evaluated", at)
-        unordered = None
-        if wanted is None:
             unordered = UnknownText("the order in which files are found is not known", at)
+        if not isinstance(pipelines, list | tuple):
+            raise Undetermined("the pipelines of MoveIt are not evaluated", at)
         default = _default_pipeline(pipelines, default, at)
         tables = {
             pipeline: self._pipeline(configuration, pipeline, at, is_there=pipeline in configured)

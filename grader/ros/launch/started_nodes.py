@@ -103,24 +103,39 @@ def start_node(
         for name in ("package", "executable")
     )
     if not isinstance(package, str) or not isinstance(executable, str):
-        unknown = next(
-            (part.reason for part in (package, executable) if isinstance(part, Unknown)), ""
-        )
-        findings.add_unknown(
-            f"the program of a node is not evaluated: {unknown}".removesuffix(": "), call.at
-        )
+        _add_unknown_program((package, executable), findings, call)
         return
     prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
     node = StartedNode(package, executable, when, findings.locate(call.at), prefix)
     started = _add_names(node, call, context, findings, parameters)
     findings.nodes.append(started)
-    for controller in (controllers_of(started) if executable == "spawner" else ()) or ():
+    if executable == "spawner":
+        _refer_controllers(started, findings, call)
+    if when is False:
+        return
+    if executable == STATE_PUBLISHER:
+        _find_description(findings, call, context)
+    elif executable == _RVIZ:
+        _find_configuration(findings, call, context)
+
+
+def _add_unknown_program(
+    program: Iterable[str | Contents | Unknown], findings: Findings, call: Call
+) -> None:
+    """Add why the program of a node is not known."""
+    message = "the program of a node is not evaluated"
+    for part in program:
+        if isinstance(part, Unknown):
+            message += f": {part.reason}"
+            break
+    findings.add_unknown(message.removesuffix(": "), call.at)
+
+
+def _refer_controllers(spawner: StartedNode, findings: Findings, call: Call) -> None:
+    """Add the files of parameters that the controllers of a spawner are given."""
+    for controller in controllers_of(spawner) or ():
         for given in controller.parameters or ():
             findings.refer("parameters", given.path, call)
-    if when is not False and executable == STATE_PUBLISHER:
-        _find_description(findings, call, context)
-    elif when is not False and executable == _RVIZ:
-        _find_configuration(findings, call, context)
 
 
 def _add_names(
@@ -179,10 +194,7 @@ def _add_remaps(
     try:
         below = call.kwargs.get("namespace") or ""
         namespace: str | None = namespace_below(below, context, call.at)
-        for rule in items_in(call.kwargs.get("remappings") or ()) or ():
-            remaps.append(
-                tuple(known_text(name, context, call.at) for name in items_in(rule) or ())
-            )
+        remaps += _evaluate_remaps(call, context)
     except EvaluationSignal:
         return node._replace(namespace=None, remaps=None)
     for name, _, value in reversed(rules):
@@ -192,6 +204,15 @@ def _add_remaps(
     if len(known) < len(remaps) or any(PART_UNKNOWN in word for word in words):
         return node._replace(namespace=namespace, remaps=None)
     return node._replace(namespace=namespace, remaps=known)
+
+
+def _evaluate_remaps(call: Call, context: Context) -> list[tuple[str, ...]]:
+    """Return the remappings that a Node action has. Raises EvaluationSignal."""
+    remaps = []
+    for rule in items_in(call.kwargs.get("remappings") or ()) or ():
+        names = items_in(rule) or ()
+        remaps.append(tuple(known_text(name, context, call.at) for name in names))
+    return remaps
 
 
 def _given_name(rules: Iterable[tuple[str, str, str]], call: Call, context: Context) -> str | None:

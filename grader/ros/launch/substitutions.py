@@ -447,24 +447,27 @@ def check_xacro_words(words: Sequence[str], at: Position) -> None:
     program = posixpath.basename(words[0]).removesuffix(".py") if words else ""
     if program != "xacro" or any(word.startswith("-") for word in words):
         return
-    for word in words[1:]:
-        name, _, value = word.partition(":=")
-        path = re.match(r".*/.*\.(?:xacro|urdf)", name) if ":=" in word else None
-        if path is not None:
-            before, after = posixpath.basename(path[0]), f"{name[path.end() :]}:="
-            raise EvaluationFails(f"a space is missing between {before} and {after}", at)
-        if ":=" in value:
-            raise EvaluationFails(f"a space is missing between the arguments in {word[:60]!r}", at)
+    _check_spaces(words[1:], at)
     if any(PART_UNKNOWN in word for word in words):
         return
     files = [word for word in words[1:] if ":=" not in word]
     if not files:
         raise EvaluationFails("xacro is given no file", at)
     if len(files) > 1:
-        raise EvaluationFails(
-            f"xacro takes one file, and is given {enumerated([*map(posixpath.basename, files)])}",
-            at,
-        )
+        named = enumerated([*map(posixpath.basename, files)])
+        raise EvaluationFails(f"xacro takes one file, and is given {named}", at)
+
+
+def _check_spaces(words: Sequence[str], at: Position) -> None:
+    """Raise EvaluationFails for a word that is several, because a space is missing."""
+    for word in words:
+        name, is_given, value = word.partition(":=")
+        path = re.match(r".*/.*\.(?:xacro|urdf)", name) if is_given else None
+        if path is not None:
+            before, after = posixpath.basename(path[0]), f"{name[path.end() :]}:="
+            raise EvaluationFails(f"a space is missing between {before} and {after}", at)
+        if ":=" in value:
+            raise EvaluationFails(f"a space is missing between the arguments in {word[:60]!r}", at)
 
 
 def printed_file(words: list[str]) -> Contents | None:

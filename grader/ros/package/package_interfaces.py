@@ -1,7 +1,7 @@
 """The messages, services and actions that a package of a workspace generates code for."""
 
 import posixpath
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import NamedTuple
 
@@ -45,21 +45,36 @@ def read_interfaces(package: Package) -> PackageInterfaces:
     calls = setup.interfaces
     paths = [*chain.from_iterable(call.files[:_MAX_FILES] for call in calls)]
     types, are_all_read = _read_types(package, paths)
-    is_certain = setup.doubt is None and all(call.is_certain for call in calls)
-    listed = set(paths)
-    unlisted = {_name_of(path): package.path(path) for path in files if path not in listed}
-    other_types = {name: path for name, path in unlisted.items() if name not in types}
+    dependencies = frozenset(chain.from_iterable(call.dependencies for call in calls))
     return PackageInterfaces(
         types,
-        other_types,
-        frozenset(chain.from_iterable(call.dependencies for call in calls)),
+        _name_others(package, files, paths, types),
+        dependencies,
         setup.location(calls[0].at) if calls else None,
         needs_group=any(call.needs_group and call.is_certain for call in calls),
-        is_complete=are_all_read
-        and is_certain
-        and len(files) <= _MAX_FILES
-        and not _has_modules(package),
+        is_complete=are_all_read and _are_files_certain(package, files),
     )
+
+
+def _name_others(
+    package: Package, files: Iterable[str], listed: Iterable[str], types: Collection[str]
+) -> dict[str, str]:
+    """Return the files that no call lists, by the names of interfaces that are not read."""
+    known = set(listed)
+    others = {}
+    for path in files:
+        name = _name_of(path)
+        if path not in known and name not in types:
+            others[name] = package.path(path)
+    return others
+
+
+def _are_files_certain(package: Package, files: Collection[str]) -> bool:
+    """Return whether all interfaces of a package are certainly made of these files."""
+    setup = package.installation
+    if setup is None or setup.doubt is not None or len(files) > _MAX_FILES:
+        return False
+    return all(call.is_certain for call in setup.interfaces) and not _has_modules(package)
 
 
 def _read_types(package: Package, paths: Iterable[str]) -> tuple[dict[str, _OwnInterface], bool]:

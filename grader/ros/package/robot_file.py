@@ -219,17 +219,17 @@ class Surroundings(NamedTuple):
         if self.graded.robot_references(name):
             return [self.graded]
         owner = next((package for package in self.packages if package.holds(path)), self.graded)
-        others = [
-            candidate
-            for candidate in self.packages
-            if candidate is owner or candidate.name != owner.name
-        ]
+        return self._packages_that_read(name, owner) or [self.graded]
+
+    def _packages_that_read(self, name: str, owner: Package) -> list[Package]:
+        """Return the packages whose launch files read a file of this name of its package."""
         launched = []
-        for package in others:
-            references = package.robot_references(name)
-            if any(owner.source_of(reference.path or "") for reference in references):
-                launched.append(package)
-        return launched or [self.graded]
+        for package in self.packages:
+            if package is owner or package.name != owner.name:
+                references = package.robot_references(name)
+                if any(owner.source_of(reference.path or "") for reference in references):
+                    launched.append(package)
+        return launched
 
     @property
     def paths(self) -> Collection[str]:

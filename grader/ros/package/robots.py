@@ -4,7 +4,7 @@ Nothing is parsed.
 """
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from grader.base.errors import InputError
@@ -121,26 +121,29 @@ def find_robots(
     """
     robots: list[RobotFile] = []
     by_content = read = 0
-    files: Iterable[File] = tree.files.values()
-    if len(tree.files) > _MAX_READ:
-        files = sorted(files, key=lambda file: not _LIKELY.search(file.name.lower()))
-    for file in files:
+    for file in _list_candidates(tree):
         is_urdf = file.suffix == ".urdf" or file.name == urdf_name
         is_read = read < _MAX_READ and by_content < _MAX_ROBOTS
-        if ".srdf" in file.name:  # MoveIt's description of groups, which is a <robot> as well
-            continue
         if not is_urdf and (not is_read or file.suffix in _BINARY or not 0 < file.size <= max_size):
             continue
         read += 1
         start = _robot_start(file) if is_read else None
-        if start is not None or is_urdf:
+        if start:
             by_content += not is_urdf
-            robots.append(
-                RobotFile(
-                    file.path, file.size, is_urdf, *(_name_and_includes(start) if start else ())
-                )
-            )
+            name_and_includes = _name_and_includes(start)
+            robots.append(RobotFile(file.path, file.size, is_urdf, *name_and_includes))
+        elif is_urdf:
+            robots.append(RobotFile(file.path, file.size, is_urdf))
     return tuple(sorted(robots))
+
+
+def _list_candidates(tree: Tree) -> list[File]:
+    """Return the files that may be a URDF, the likely ones first if there are very many."""
+    # An SRDF is MoveIt's description of groups, which is a <robot> as well.
+    files = [file for file in tree.files.values() if ".srdf" not in file.name]
+    if len(tree.files) > _MAX_READ:
+        files.sort(key=lambda file: not _LIKELY.search(file.name.lower()))
+    return files
 
 
 def is_robot(read: Callable[[int], bytes]) -> bool:

@@ -3,7 +3,7 @@
 It is started as the launch files of a package start it.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from math import atan2, hypot, isfinite
 from typing import NamedTuple
@@ -65,25 +65,35 @@ def with_transforms(
     roots = {link.known.name for link in robot.links} - parent_joints(robot).keys()
     for path in paths:
         name = package.launch_file(path)
-        launch = package.launch(name) if name is not None else None
-        if launch is None or launch.syntax is not None or launch.faults:
-            continue  # nothing is published
-        frames = [_read_frame(node, source_of) for node in launch.nodes if _publishes_frame(node)]
-        for frame in frames:
-            if frame is not None and frame.child not in roots:
-                robot = _add_frame(robot, frame)
-        reason = _why_frames_unknown(launch, frames)
-        if reason:
-            robot = replace(
-                robot,
-                incomplete=f"cannot determine statically which frames {name} publishes: {reason}",
-            )
+        if name is not None:
+            robot = _with_frames(robot, package.launch(name), name, roots, source_of)
     if any(started.frames_of("") != ("",) for started in package.launches):
         robot = replace(
             robot,
             incomplete=robot.incomplete or "robot_state_publisher gives the frames other names",
         )
     return robot
+
+
+def _with_frames(
+    robot: Robot,
+    launch: Launch,
+    name: str,
+    roots: Collection[str],
+    source_of: Callable[[str], Source | None],
+) -> Robot:
+    """Return a robot with the frames that one launch file publishes."""
+    if launch.syntax is not None or launch.faults:
+        return robot  # nothing is published
+    frames = [_read_frame(node, source_of) for node in launch.nodes if _publishes_frame(node)]
+    for frame in frames:
+        if frame is not None and frame.child not in roots:
+            robot = _add_frame(robot, frame)
+    reason = _why_frames_unknown(launch, frames)
+    if not reason:
+        return robot
+    incomplete = f"cannot determine statically which frames {name} publishes: {reason}"
+    return replace(robot, incomplete=incomplete)
 
 
 def _why_frames_unknown(launch: Launch, frames: Sequence[_StaticFrame | None]) -> str:
@@ -222,23 +232,30 @@ def _make_origin(options: Mapping[str, str], location: LazyLocation) -> Origin |
 
     Returns None where the publisher ends with an error, or tf2 ignores the transform.
     """
-    known = {*_PLACE, *_RPY, *_QUATERNION, *_FRAMES}
-    try:
-        values = {name: float(text) for name, text in options.items() if name not in _FRAMES}
-    except ValueError:
-        return None
-    turned = [name for name in (*_RPY, *_QUATERNION) if name in values]
-    is_mixed = not set(turned).issubset(_RPY) and not set(turned).issubset(_QUATERNION)
-    if not options.keys() <= known or is_mixed or not all(map(isfinite, values.values())):
+    values = _read_values(options)
+    if values is None:
         return None
     x, y, z = (values.get(name, 0.0) for name in _PLACE)
     roll, pitch, yaw = (values.get(name, 0.0) for name in _RPY)
-    if not set(turned) & {*_QUATERNION}:
+    if values.keys().isdisjoint(_QUATERNION):
         return Origin((x, y, z), (roll, pitch, yaw), location)
     rpy = _convert_quaternion(*(values.get(name, float(name == "--qw")) for name in _QUATERNION))
     if rpy is not None:
         return Origin((x, y, z), rpy, location)
     return None
+
+
+def _read_values(options: Mapping[str, str]) -> dict[str, float] | None:
+    """Return the numbers of options; None where the publisher ends with an error."""
+    try:
+        values = {name: float(text) for name, text in options.items() if name not in _FRAMES}
+    except ValueError:
+        return None
+    known = {*_PLACE, *_RPY, *_QUATERNION}
+    is_mixed = values.keys() & {*_RPY} and values.keys() & {*_QUATERNION}
+    if not values.keys() <= known or is_mixed or not all(map(isfinite, values.values())):
+        return None
+    return values
 
 
 def _convert_quaternion(x: float, y: float, z: float, w: float) -> Vector | None:

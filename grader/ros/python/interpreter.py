@@ -361,31 +361,15 @@ class Interpreter(Evaluation):
     def _attribute(self, node: ast.Attribute, scope: py.Scope) -> py.Value:
         owner, name = self.evaluate(node.value, scope), node.attr
         match owner:
-            case py.QualifiedName(
-                name="?glob"
-            ):  # used without an import: an attribute shows that the module is meant
+            # Used without an import: an attribute shows that the module is meant.
+            case py.QualifiedName(name="?glob"):
                 return py.QualifiedName(f"glob.{name}")
             case py.QualifiedName(name="glob.glob") if name in ("glob", "iglob"):
                 message = f"glob is a function here, so glob.{name} is not defined: write glob(...)"
                 self.error(message, position_of(node))
                 return owner
-            case py.QualifiedName(name=module):
-                full = f"{module}.{name}"
-                error = attribute_error(module, name) if full not in self.functions else None
-                if error is not None:
-                    meant = closest(
-                        full,
-                        (
-                            function
-                            for function in self.functions
-                            if function.rpartition(".")[0] == module
-                        ),
-                    )
-                    if meant is None:
-                        raise py.EvaluationFails(error)
-                    self.error(error, position_of(node))
-                    full = meant
-                return CONSTANTS.get(full, py.QualifiedName(full, is_defined=owner.is_defined))
+            case py.QualifiedName():
+                return self._attribute_of_module(owner, node)
             case PurePosixPath() if name in _PARTS:
                 value = getattr(owner, name)
                 return self.budget.checked(list(value) if name == "parents" else value, "path")
@@ -394,6 +378,21 @@ class Interpreter(Evaluation):
         if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
             raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
         return py.BoundMethod(owner, name, node)
+
+    def _attribute_of_module(self, owner: py.QualifiedName, node: ast.Attribute) -> py.Value:
+        """Return what a name in a module stands for; a misspelt one is an error."""
+        module, full = owner.name, f"{owner.name}.{node.attr}"
+        error = attribute_error(module, node.attr) if full not in self.functions else None
+        if error is not None:
+            known = [
+                function for function in self.functions if function.rpartition(".")[0] == module
+            ]
+            meant = closest(full, known)
+            if meant is None:
+                raise py.EvaluationFails(error)
+            self.error(error, position_of(node))
+            full = meant
+        return CONSTANTS.get(full, py.QualifiedName(full, is_defined=owner.is_defined))
 
     def item(self, owner: py.Value, key: py.Value, node: ast.expr) -> py.Value:
         """Return the value of owner[key]; of something outside of the file, by the table."""

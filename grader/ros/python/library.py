@@ -234,22 +234,27 @@ def import_error(
 
 @lru_cache(maxsize=256)
 def _import_error(module: str, name: str) -> str | Uncertain | None:
-    top, full = (module or name).split(".")[0], module or name
+    top = (module or name).split(".")[0]
     if top in _REMOVED:
         return f"there is no module {top!r} in Python 3.12"
     if name != "*" and (module in _INSPECTED or module == "setuptools"):
         return _missing_name(module, name)
-    if (
-        top in _INSTALLED_WITH_ROS
-        or full in ("setuptools", "distutils", *_INSPECTED)
-        or (module, name) == ("distutils.core", "setup")
-        or (top in sys.stdlib_module_names and full == top and not module)
-    ):
+    if _is_there(top, module, name):
         return None
     guess = _misspelt_module(top)
     if guess is None:
         return Uncertain.IMPORT
     return f"there is no module {top!r}; did you mean {guess!r}?"
+
+
+def _is_there(top: str, module: str, name: str) -> bool:
+    """Return whether an import certainly finds its module; `top` is the first name of it."""
+    full = module or name
+    if top in _INSTALLED_WITH_ROS or full in ("setuptools", "distutils", *_INSPECTED):
+        return True
+    if (module, name) == ("distutils.core", "setup"):
+        return True
+    return top in sys.stdlib_module_names and full == top and not module
 
 
 def _misspelt_module(top: str) -> str | None:

@@ -292,10 +292,18 @@ def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
         return root
     most = max(place.depth for place in places.values())
     if match[1] is None:
-        inner = {parents[link].parent for link in places if link != root}
-        tips = {link for link, place in places.items() if place.depth == most and link not in inner}
-        return _only_link(robot, tips, name)
-    return _only_link(robot, _links_moved_by(places, parents, int(match[1]), most, name), name)
+        selected = _find_tips(places, parents, most)
+    else:
+        selected = _links_moved_by(places, parents, int(match[1]), most, name)
+    return _only_link(robot, selected, name)
+
+
+def _find_tips(
+    places: Mapping[str, _LinkPlace], parents: Mapping[str, Joint], most: int
+) -> set[str]:
+    """Return the last links of the chains of a tree with the most moving joints."""
+    inner = {parents[link].parent for link, place in places.items() if link != place.root}
+    return {link for link, place in places.items() if place.depth == most and link not in inner}
 
 
 def _links_moved_by(

@@ -178,16 +178,22 @@ def _misspelt_references(root: Element, robot: Robot) -> Iterator[Word]:
     if len(unknown) > _MAX_WORDS:
         return
     defined = _misspelt_definitions(robot, links, uses, unknown)
-    for element in root.iterchildren("link"):
-        if (meant := defined.get(element.get("name") or "")) is not None:
-            yield _word_with_value(element, "name", meant, "the link")
-    children = {joint.child for joint in robot.joints}
-    misspelt = {name for name in unknown if name not in defined.values()}
+    yield from _misspelt_links(root, defined)
+    misspelt = set(unknown).difference(defined.values())
     if sum(uses[name] for name in misspelt) > _MAX_ROUNDS * _MAX_WORDS:
         misspelt = set()
+    children = {joint.child for joint in robot.joints}
     for joint in root.iterchildren("joint"):
         yield from _misspelt_type(joint)
         yield from _misspelt_ends(joint, misspelt, links, children)
+
+
+def _misspelt_links(root: Element, defined: Mapping[str, str]) -> Iterator[Word]:
+    """Yield the links whose definitions have the wrong word."""
+    for element in root.iterchildren("link"):
+        meant = defined.get(element.get("name") or "")
+        if meant is not None:
+            yield _word_with_value(element, "name", meant, "the link")
 
 
 def _misspelt_type(joint: Element) -> Iterator[Word]:

@@ -12,7 +12,17 @@ from math import atan2, cos, degrees, hypot, inf, isfinite, pi, radians, sin
 from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.transforms import X_AXIS, Z_AXIS, Vector, cross, degrees_between, dot, minus, unit
+from grader.base.transforms import (
+    X_AXIS,
+    Z_AXIS,
+    Transform,
+    Vector,
+    cross,
+    degrees_between,
+    dot,
+    minus,
+    unit,
+)
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Capsule, Collision, Cylinder, Mesh, Visual
 from grader.ros.urdf.shapes import PlacedShape, UnknownShape, bounding_radius
@@ -123,21 +133,33 @@ def body_of(robot: Configuration, base: str) -> _RestingBody:
         if not solids and link.inertial is None:
             continue
         T_base_link = robot.pose(link.name, relative_to=base)
-        for element in solids:
-            if isinstance(element.geometry, Mesh):
-                raise UnknownShape(element.geometry)
-            pose = element.origin.placed_in(T_base_link)
-            shapes.append(_LinkShape(link.name, PlacedShape(element.geometry, pose)))
+        shapes += _place_shapes(link.name, solids, T_base_link)
         if link.inertial is not None and link.inertial.mass > 0.0:
             masses.append((link.inertial.mass, T_base_link.apply(link.inertial.origin.xyz)))
     if len(shapes) > MAX_SHAPES:
         raise NotDecided(f"the robot has more than {MAX_SHAPES} shapes", "a robot has many shapes")
-    is_weighed = bool(masses)
-    if not is_weighed:
-        for _, (geometry, pose) in shapes:
-            assert not isinstance(geometry, Mesh)
-            masses.append((geometry.volume, pose.translation))
-    return _RestingBody(tuple(shapes), _mean(masses), is_weighed)
+    mean = _mean(masses or _volumes(shapes))
+    return _RestingBody(tuple(shapes), mean, bool(masses))
+
+
+def _place_shapes(
+    link: str, elements: Iterable[Visual | Collision], T_base_link: Transform
+) -> Iterator[_LinkShape]:
+    """Yield the shapes of a link in the frame of the base. Raises UnknownShape for a mesh."""
+    for element in elements:
+        if isinstance(element.geometry, Mesh):
+            raise UnknownShape(element.geometry)
+        pose = element.origin.placed_in(T_base_link)
+        yield _LinkShape(link, PlacedShape(element.geometry, pose))
+
+
+def _volumes(shapes: Iterable[_LinkShape]) -> list[tuple[float, Vector]]:
+    """Return the volume and the centre of each shape."""
+    volumes = []
+    for _, (geometry, pose) in shapes:
+        assert not isinstance(geometry, Mesh)
+        volumes.append((geometry.volume, pose.translation))
+    return volumes
 
 
 def solid_shapes(elements: Iterable[Visual | Collision]) -> list[Visual | Collision]:

@@ -1,7 +1,7 @@
 """The slips of a URDF that ROS 2 loads all the same: it ignores a word, or drops the element."""
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from grader.base import markup
 from grader.base.element_edits import tag_edits
@@ -140,7 +140,7 @@ class RobotSlips:
 
         It is where the name is used, or where nothing uses it as it is defined.
         """
-        definitions = {}
+        definitions: dict[str, Element] = {}
         uses: dict[str, list[Element]] = {}
         for element in self._root.iter("material"):
             name = element.get("name") or ""
@@ -150,23 +150,29 @@ class RobotSlips:
                 uses.setdefault(name, []).append(element)
         slips: dict[Element, Slip] = {}
         for name, elements in uses.items():
-            if not name or name in definitions:
-                continue
-            meant = near(name, definitions)
+            meant = near(name, definitions) if name and name not in definitions else None
             if meant is None:
                 continue
-            is_definition = meant not in uses and len(elements) > 1
-            misspelt = [definitions[meant]] if is_definition else elements
-            written, right = (meant, name) if is_definition else (name, meant)
-            for element in misspelt:
-                source, start = self._place(element)
-                attribute = markup.attribute(source.text, start, "name")
-                if attribute is not None and source.text[slice(*attribute.value)] == written:
-                    text = source.text[attribute.start : attribute.end].replace(written, right)
-                    edit = source.edit(attribute.start, attribute.end, text)
-                    reaction = f"there is no material {quoted(name)}"
-                    assumption = f"the material {quoted(written)} is read as {quoted(right)}"
-                    slips[element] = self._slip(element, (edit,), reaction, assumption, "name")
+            if meant not in uses and len(elements) > 1:
+                slips |= self._slips_of_material([definitions[meant]], name, meant, name)
+            else:
+                slips |= self._slips_of_material(elements, name, name, meant)
+        return slips
+
+    def _slips_of_material(
+        self, elements: Sequence[Element], unknown: str, written: str, meant: str
+    ) -> dict[Element, Slip]:
+        """Return the slips of elements whose name is written as another one."""
+        slips = {}
+        for element in elements:
+            source, start = self._place(element)
+            attribute = markup.attribute(source.text, start, "name")
+            if attribute is not None and source.text[slice(*attribute.value)] == written:
+                text = source.text[attribute.start : attribute.end].replace(written, meant)
+                edit = source.edit(attribute.start, attribute.end, text)
+                reaction = f"there is no material {quoted(unknown)}"
+                assumption = f"the material {quoted(written)} is read as {quoted(meant)}"
+                slips[element] = self._slip(element, (edit,), reaction, assumption, "name")
         return slips
 
 

@@ -280,14 +280,9 @@ class Corrections:
             while waiting and len(edits) < _MAX_NODES:
                 node, known = waiting.pop()
                 if node.tag == "xacro:macro":
-                    known |= {
-                        re.split(r":?=", word)[0]
-                        for word in node.attributes.get("params", "").split()
-                    }
-                for name, text in node.attributes.items():
-                    new = _marked(text, known) if "{" in text or "$" in text else text
-                    if new != text and name != "params":
-                        edits += _with_value(node.place, name, new)
+                    words = node.attributes.get("params", "").split()
+                    known |= {re.split(r":?=", word)[0] for word in words}
+                edits += _mark_names(node, known)
                 waiting += [(child, known) for child in node.elements]
         return tuple(edits)
 
@@ -295,6 +290,16 @@ class Corrections:
 def _defined_name(node: XacroNode) -> str:
     """Return the name that a property or macro defines, without a prefix, which macros may have."""
     return node.attributes.get("name", "").removeprefix("xacro:")
+
+
+def _mark_names(node: XacroNode, known: Iterable[str]) -> list[Edit]:
+    """Return the edits of attributes in which known names are meant to be evaluated."""
+    edits: list[Edit] = []
+    for name, text in node.attributes.items():
+        new = _marked(text, known) if "{" in text or "$" in text else text
+        if new != text and name != "params":
+            edits += _with_value(node.place, name, new)
+    return edits
 
 
 def _marked(text: str, known: Iterable[str]) -> str:

@@ -20,7 +20,7 @@ from grader.base.source import Edit, Edits, Location, Source
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.values import EvaluationFails, Undetermined
 from grader.ros.xacro import xacro_problems
-from grader.ros.xacro.corrections import Corrections, Refusal, sentence_of
+from grader.ros.xacro.corrections import Corrections, Refusal, XacroCorrection, sentence_of
 from grader.ros.xacro.expander import STOPS, Expander, UndeterminedUse
 from grader.ros.xacro.tags import CALL, HANDLERS
 from grader.ros.xacro.texts import OtherArguments, Texts
@@ -241,12 +241,9 @@ def expand(
         fixes = Fixes(lambda: [fix])
         assumed[fix.assumption] = Problem(RECOVERED, fix.assumption, at, fixes=fixes)
         meant, expander = read(_by_path(corrected))
-    while expander is not None and expander.corrections and len(assumed) < _MAX_ASSUMED:
-        of_elements = [
-            correction for correction in expander.corrections if correction.is_of_element
-        ]  # first: they may define names
-        new = of_elements or expander.corrections
-        if all(corrected.keys() >= set(correction.fix.edits) for correction in new):
+    while expander is not None and len(assumed) < _MAX_ASSUMED:
+        new = _new_corrections(expander, corrected)
+        if not new:
             break
         for correction in new:
             corrected |= dict.fromkeys(correction.fix.edits)
@@ -257,6 +254,16 @@ def expand(
         return expansion
     expander.refused[:0] = refused  # for hints
     return expansion._replace(meant=meant, assumed=tuple(assumed.values()))
+
+
+def _new_corrections(expander: Expander, corrected: Mapping[Edit, None]) -> list[XacroCorrection]:
+    """Return the corrections to make next; none if all of them are made."""
+    # Those of elements come first: they may define names.
+    new = [correction for correction in expander.corrections if correction.is_of_element]
+    new = new or expander.corrections
+    if all(corrected.keys() >= set(correction.fix.edits) for correction in new):
+        return []
+    return new
 
 
 def _by_path(edits: Iterable[Edit]) -> dict[str, Edits]:

@@ -4,8 +4,9 @@ They are as they are written.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 
 from grader.base.source import Location
 from grader.ros.python.budget import Budget
@@ -60,27 +61,30 @@ def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
     Raises OutOfBudget.
     """
     inventory, roots = Inventory(), [*documents]
-    namespaces = {
-        node.attributes.get("ns")
-        for root in roots
-        for node in walk(root)
-        if node.tag == "xacro:include"
-    }
+    namespaces: set[str | None] = set()
+    for node in chain.from_iterable(map(walk, roots)):
+        if node.tag == "xacro:include":
+            namespaces.add(node.attributes.get("ns"))
     waiting = [(root, frozenset[str]()) for root in reversed(roots)]
     while waiting:
         node, hidden = waiting.pop()
         tag_name = _note_tag(node, inventory)
-        texts = [
-            *node.attributes.values(),
-            *(child for child in node.children if isinstance(child, str)),
-        ]
-        dotted = {name.partition(".") for text in texts for name in _names_in(text)}
-        names = {other if first in namespaces else first for first, _, other in dotted}
-        inventory.used.update(names - hidden - {tag_name})
+        inventory.used.update(_names_used(node, namespaces) - hidden - {tag_name})
         if node.tag == "xacro:macro":
             hidden |= _parameters(node, inventory, budget)
         waiting += [(child, hidden) for child in reversed(node.elements)]
     return inventory
+
+
+def _names_used(node: XacroNode, namespaces: Collection[str | None]) -> set[str]:
+    """Return the names in the attributes and texts of an element, without namespaces."""
+    names = set()
+    texts = [child for child in node.children if isinstance(child, str)]
+    for text in (*node.attributes.values(), *texts):
+        for name in _names_in(text):
+            first, _, other = name.partition(".")
+            names.add(other if first in namespaces else first)
+    return names
 
 
 def _note_tag(node: XacroNode, inventory: Inventory) -> str:
