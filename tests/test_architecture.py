@@ -163,8 +163,8 @@ WEIGHTS = {
     "ros.launch": 44_500,  # the words of Lyrical, and which release has each; functions that do one thing
     "ros.mesh": 4_300,
     "ros.nodes": 42_100,
-    "ros.package": 25_400,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing
-    "ros.python": 27_700,
+    "ros.package": 25_800,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing
+    "ros.python": 28_000,  # functions that do one thing
     "ros.urdf": 48_700,  # the versions of URDF that Lyrical reads, and the fixes of words, which were in lab.hints
     "ros.workspace": 99_100,  # a function for each rule, none of high complexity; nodes of the graph; fixes of names
     "ros.xacro": 28_200,  # functions that do one thing

@@ -493,23 +493,24 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
         )
         findings.refer("rviz", None, call, wrong=message)
     elif path is None or PART_UNKNOWN in path:
-        pieces = arguments if isinstance(arguments, list | tuple) else []
-        texts = (_text_if_known(piece, context, call.at) for piece in pieces)
-        unnamed = Unknown("which file rviz2 opens is not evaluated", call.at)
-        findings.refer(
-            "rviz", next((text for text in texts if isinstance(text, Unknown)), unnamed), call
-        )
+        findings.refer("rviz", _unknown_configuration(arguments, call, context), call)
     elif path != path.lstrip():
-        findings.refer(
-            "rviz",
-            None,
-            call,
-            wrong="'-d' and the path have to be two items of arguments: ['-d', path]",
-        )
+        message = "'-d' and the path have to be two items of arguments: ['-d', path]"
+        findings.refer("rviz", None, call, wrong=message)
     elif path:
         findings.refer("rviz", path, call)
     else:
         findings.refer("rviz", None, call, wrong="rviz2 is given -d without the path of a file")
+
+
+def _unknown_configuration(arguments: Value, call: Call, context: Context) -> Unknown:
+    """Return why it is not known which file RViz opens: the first reason in its arguments."""
+    if isinstance(arguments, list | tuple):
+        for piece in arguments:
+            text = _text_if_known(piece, context, call.at)
+            if isinstance(text, Unknown):
+                return text
+    return Unknown("which file rviz2 opens is not evaluated", call.at)
 
 
 def _display_config(words: list[str]) -> str | None:

@@ -410,19 +410,8 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
 
     Raises EvaluationSignal.
     """
-    command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[
-        :MAX_TEXT
-    ]
-    if glued := re.match(r"(xacro|cat)(?=/)", command):
-        raise EvaluationFails(
-            f"a space is missing between {glued[1]} and the path: write '{glued[1]} '", at
-        )
-    try:
-        words = shlex.split(command)
-    except ValueError:
-        raise EvaluationFails("the quotes in this command are not closed", at) from None
-    if not words:
-        raise EvaluationFails("this command is empty", at)
+    command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()
+    words = _split_command(command[:MAX_TEXT], at)
     if words[:3] == ["ros2", "run", "xacro"]:
         words = words[3:]
     check_xacro_words(words, at)
@@ -437,6 +426,21 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
     return replace(
         contents, stops_at_stderr=True, is_deprecated=not {"-i", "--inorder"}.isdisjoint(words)
     )
+
+
+def _split_command(command: str, at: Position) -> list[str]:
+    """Return the words of a command line, of which there is one. Raises EvaluationFails."""
+    if glued := re.match(r"(xacro|cat)(?=/)", command):
+        raise EvaluationFails(
+            f"a space is missing between {glued[1]} and the path: write '{glued[1]} '", at
+        )
+    try:
+        words = shlex.split(command)
+    except ValueError:
+        raise EvaluationFails("the quotes in this command are not closed", at) from None
+    if not words:
+        raise EvaluationFails("this command is empty", at)
+    return words
 
 
 def check_xacro_words(words: Sequence[str], at: Position) -> None:

@@ -308,9 +308,15 @@ def _place_not_there(owner: Package, target: str, lookup: Lookup, file: "NamedFi
     is_include = file.purpose == "include"
     if not alike and not is_include:
         return FilePlace(file, "missing", message)
-    similar = closest(posixpath.basename(target), alike)
-    if similar is None and len(alike) == 1 and not is_include:
-        similar = alike[0]
+    similar = _similar_file(target, alike, is_include=is_include)
     if similar is not None:
         message += f"; there is {similar!r}"
     return FilePlace(file, "wrong", message, cause="name")
+
+
+def _similar_file(target: str, alike: list[str], *, is_include: bool) -> str | None:
+    """Return the file that is meant: of a similar name, else the only one of its kind."""
+    similar = closest(posixpath.basename(target), alike)
+    if similar is None and len(alike) == 1 and not is_include:
+        return alike[0]
+    return similar

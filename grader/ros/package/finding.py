@@ -265,17 +265,20 @@ def launched_paths(
     launched: set[str] = set()
     for package in (*packages, *launch_folders(tree, packages, loose)):
         for reference in {named.path or "" for named in package.robot_references()}:
-            owner_name = reference.removeprefix(f"{SHARE}/").partition("/")[0]
-            owner = package
-            if owner_name not in package.names:
-                owner = package.find(owner_name) or package
-            source = owner.source_of(reference)
-            if source:
-                launched.add(owner.path(source))
-                continue
-            # Where the build is not understood, the name of the file has to do.
-            file_name = reference.rpartition("/")[2]
-            for robot in robots:
-                if robot.name == file_name and owner.holds(robot.path):
-                    launched.add(robot.path)
+            launched |= _paths_of_reference(reference, package, robots)
     return launched
+
+
+def _paths_of_reference(reference: str, package: Package, robots: Sequence[RobotFile]) -> set[str]:
+    """Return the paths of the robots that a launch file of a package may mean."""
+    owner_name = reference.removeprefix(f"{SHARE}/").partition("/")[0]
+    owner = package
+    if owner_name not in package.names:
+        owner = package.find(owner_name) or package
+    source = owner.source_of(reference)
+    if source:
+        return {owner.path(source)}
+    # Where the build is not understood, the name of the file has to do.
+    file_name = reference.rpartition("/")[2]
+    alike = [robot.path for robot in robots if robot.name == file_name]
+    return {path for path in alike if owner.holds(path)}

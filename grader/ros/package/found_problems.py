@@ -103,13 +103,19 @@ def _naming_problems(package: Package, setup: Installation) -> Iterator[Problem]
 
     Also yields what is wrong with the entries that register the package.
     """
-    start, targets = setup.location(setup.called_at), setup.installed()
+    start = setup.location(setup.called_at)
     declared = package.manifest.name if package.manifest is not None else None
     is_known = not (setup.unknown or setup.stops)
     if declared is not None and setup.name is not None and setup.name != declared:
         message = f"package.xml names the package {declared!r}, setup.py names it {setup.name!r}"
         yield Problem(kinds.OTHER_NAME, message, start)
         is_known = False  # the entries are missing under one of the two names in any case
+    yield from _entry_problems(package, setup, is_known=is_known)
+
+
+def _entry_problems(package: Package, setup: Installation, *, is_known: bool) -> Iterator[Problem]:
+    """Yield which entries that register the package are missing in setup.py."""
+    start, targets = setup.location(setup.called_at), setup.installed()
     if is_known and RESOURCE_INDEX + package.name not in targets:
         message = (
             f"data_files has no entry for the resource index: resource/{package.name} is not "

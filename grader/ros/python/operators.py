@@ -181,34 +181,40 @@ def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -
         kind = "plain"
     else:
         kind = _kind(op, left, right)
-        for value in (left, right):
-            if not isinstance(
-                value, (*py.PLAIN, py.Items)
-            ):  # an iterator has no operators, as Python says itself
-                refuse(value, "this operation is not supported")
-        size = budget.measure(left, kind) + budget.measure(right, kind)
-        made = 0
-        match op, left, right:
-            case ast.Mod(), str(), _:
-                operation, made = _percent_format, size * left.count("%")
-            case (ast.Mult(), str() as text, int() as times) | (
-                ast.Mult(),
-                int() as times,
-                str() as text,
-            ):
-                made = len(text) * times // CHARACTERS
-            case (ast.Mult(), list() | tuple(), int() as times) | (
-                ast.Mult(),
-                int() as times,
-                list() | tuple(),
-            ):
-                made = size * times
+        if isinstance(op, ast.Mod) and isinstance(left, str):
+            operation = _percent_format
+        made = _size_made(op, left, right, kind, budget)
         if made > py.MAX_PARTS:
             too_large("value")
         budget.charge(max(made, 0))
     if operation is None:
         raise py.Undetermined("this operation is not supported")
     return budget.checked(_run(operation, left, right), kind)
+
+
+def _size_made(op: ast.operator, left: py.Value, right: py.Value, kind: str, budget: Budget) -> int:
+    """Return the size of what an operator makes beyond its operands, which are charged."""
+    for value in (left, right):
+        # An iterator has no operators, as Python says itself.
+        if not isinstance(value, (*py.PLAIN, py.Items)):
+            refuse(value, "this operation is not supported")
+    size = budget.measure(left, kind) + budget.measure(right, kind)
+    match op, left, right:
+        case ast.Mod(), str(), _:
+            return size * left.count("%")
+        case (ast.Mult(), str() as text, int() as times) | (
+            ast.Mult(),
+            int() as times,
+            str() as text,
+        ):
+            return len(text) * times // CHARACTERS
+        case (ast.Mult(), list() | tuple(), int() as times) | (
+            ast.Mult(),
+            int() as times,
+            list() | tuple(),
+        ):
+            return size * times
+    return 0
 
 
 def _refuse_object(op: ast.operator, left: py.Value, right: py.Value) -> None:

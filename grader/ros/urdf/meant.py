@@ -366,13 +366,13 @@ def _repeated_names(root: Element) -> Iterator[Word]:
 
 
 def _repeated_names_of(root: Element, tag: str, used: Iterable[str | None]) -> Iterator[Word]:
-    named = [(element.get("name"), element) for element in root.iterchildren(tag)]
-    counts = Counter(name for name, _ in named)
-    repeated = [name for name, count in counts.items() if name is not None and count > 1]
-    missing = [name for name in used if name and name not in counts]
-    if len(repeated) == len(missing) == 1 and counts[repeated[0]] == 2:
-        later = [element for name, element in named if name == repeated[0]][-1]
-        yield _word_with_value(later, "name", missing[0], f"the second {tag}")
+    by_name: dict[str | None, list[Element]] = {}
+    for element in root.iterchildren(tag):
+        by_name.setdefault(element.get("name"), []).append(element)
+    repeated = [named for name, named in by_name.items() if name is not None and len(named) > 1]
+    missing = [name for name in used if name and name not in by_name]
+    if len(repeated) == len(missing) == 1 and len(repeated[0]) == 2:
+        yield _word_with_value(repeated[0][-1], "name", missing[0], f"the second {tag}")
 
 
 def _misspelt_format(root: Element) -> Iterator[Word]:

@@ -64,18 +64,24 @@ class RobotSlips:
             if element in materials:
                 yield materials[element]
             inside: list[tuple[Element, str]] = []
-            present = {str(child.tag) for child in element}
-            for child in element:
-                written = str(child.tag)
-                meant = None
-                if child not in self._undone and child not in self._unresolved:
-                    meant = meant_tag(written, tag, present)
-                if meant is not None:
-                    present.add(meant)
-                    yield from self._tag_slip(child, written, meant, tag)
-                if meant is not None or written in CHILDREN.get(tag, ()):
-                    inside.append((child, meant or written))
+            yield from self._child_slips(element, tag, inside)
             waiting += reversed(inside)
+
+    def _child_slips(
+        self, element: Element, tag: str, inside: list[tuple[Element, str]]
+    ) -> Iterator[Slip]:
+        """Yield the slips of children's tags; `inside` gets the children that ROS 2 should read."""
+        present = {str(child.tag) for child in element}
+        for child in element:
+            written = str(child.tag)
+            meant = None
+            if child not in self._undone and child not in self._unresolved:
+                meant = meant_tag(written, tag, present)
+            if meant is not None:
+                present.add(meant)
+                yield from self._tag_slip(child, written, meant, tag)
+            if meant is not None or written in CHILDREN.get(tag, ()):
+                inside.append((child, meant or written))
 
     def _place(self, element: Element) -> tuple[Source, int]:
         """Return the text that an element was written in, and the offset of its start tag."""

@@ -74,13 +74,7 @@ def meant_value(text: str, attribute: str) -> str | None:
     count = len(PARTS.get(attribute, ()))
     if not count or len(text) > _MAX_LENGTH or _is_read(text, count):
         return None
-    bracketed = _BRACKETS.fullmatch(text)
-    inner = (bracketed[1] if bracketed is not None else text).strip()
-    words = [
-        word.translate(_LETTERS) if _DIGIT_AND_LETTER.fullmatch(word) else word
-        for word in re.split(r"([\s,;]+)", inner)
-    ]
-    plain = "".join(words)
+    plain = _without_letters(text)
     decimal = _DECIMAL_COMMA.sub(".", plain)
     ways = {plain, _SEPARATORS.sub(" ", plain).strip(), _SEPARATORS.sub(" ", decimal).strip()}
     readable_ways = {way for way in ways if _is_read(way, count)}
@@ -88,6 +82,17 @@ def meant_value(text: str, attribute: str) -> str | None:
         return readable_ways.pop()
     readable = readable_numbers(text, count) if not readable_ways else None
     return " ".join(readable) if readable is not None and len(readable) == count else None
+
+
+def _without_letters(text: str) -> str:
+    """Return a value without brackets, and with digits for the letters that look like them."""
+    bracketed = _BRACKETS.fullmatch(text)
+    inner = (bracketed[1] if bracketed is not None else text).strip()
+    words = re.split(r"([\s,;]+)", inner)
+    for index, word in enumerate(words):
+        if _DIGIT_AND_LETTER.fullmatch(word):
+            words[index] = word.translate(_LETTERS)
+    return "".join(words)
 
 
 def _is_read(text: str, count: int) -> bool:

@@ -274,10 +274,7 @@ class _Repairer:
     def _start(self, tag: Tag) -> None:
         if self._robot is None:
             self._robot = tag.offset
-        if tag.name in _TOP:
-            parents = {"robot"}
-        else:
-            parents = {name for name, tags in CHILDREN.items() if tag.name in tags}
+        parents = _parents_of(tag.name)
         around = [opened.name for opened in self._open]
         if (
             around
@@ -285,9 +282,8 @@ class _Repairer:
             and parents.intersection(around)
             and _TAGS.issuperset(around)
         ):
-            self._leave(
-                max(index for index, name in enumerate(around) if name in parents) + 1, tag.offset
-            )
+            last = max(index for index, name in enumerate(around) if name in parents)
+            self._leave(last + 1, tag.offset)
         if tag.form == "open":
             self._open.append(tag)
 
@@ -425,6 +421,13 @@ def _readable_attributes(tag: str, text: str) -> dict[str, str]:
         if main not in attributes and _is_value_of(main, nameless[1]):
             return {main: decode(nameless[1]), **attributes}
     return attributes
+
+
+def _parents_of(tag: str) -> set[str]:
+    """Return the tags of the elements in which an element of this tag may be."""
+    if tag in _TOP:
+        return {"robot"}
+    return {name for name, tags in CHILDREN.items() if tag in tags}
 
 
 def _main_attribute(tag: str) -> str:

@@ -438,6 +438,11 @@ class _Scanner:
                 if difference.kind is not xml_problems.NOT_WELL_FORMED
             ]
             return Scan(b"", [], first_tag, errors, is_refused=True)
+        self._note_other_roots()
+        return Scan("".join(self._xml).encode(), self._offsets, first_tag, self._differences)
+
+    def _note_other_roots(self) -> None:
+        """Note the first tag at the top level besides the <robot> that ROS 2 reads."""
         robot = next((tag for tag in self._top_level if tag.name == "robot"), None)
         other = next((tag for tag in self._top_level if tag is not robot), None)
         if robot and other:
@@ -446,7 +451,6 @@ class _Scanner:
                 f"<{short(other.name)}> beside it"
             )
             self._add(xml_problems.SEVERAL_ROOTS, message, other.offset)
-        return Scan("".join(self._xml).encode(), self._offsets, first_tag, self._differences)
 
     def _start(self) -> int | None:
         text = self._text
