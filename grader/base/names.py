@@ -1,7 +1,7 @@
 """The known name that is closest to a mistyped one: to suggest it, or to read it in its place."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from itertools import islice, product
 
@@ -78,25 +78,41 @@ def closest(
         likeness: The smallest ratio of difflib.
         is_clear: Whether no other known name may be nearly as similar.
     """
-    from difflib import SequenceMatcher, get_close_matches  # late: few files have a misspelt name
+    from difflib import get_close_matches  # late: few files have a misspelt name
 
     if len(name) > MAX_LENGTH:
         return None
-    lower, words = name.lower(), sorted(_words(name))
-    candidates = _candidates(name, known)
-    if len(words) > 1:
-        for candidate, other in candidates.items():
-            if sorted(_words(candidate)) == words:
-                return other
+    lower, candidates = name.lower(), _candidates(name, known)
+    reordered = _with_same_words(name, candidates)
+    if reordered is not None:
+        return reordered
     matches = get_close_matches(lower, candidates, n=2, cutoff=likeness)
-    if is_clear and len(matches) > 1:
-        first, second = (SequenceMatcher(None, lower, match).ratio() for match in matches)
-        if first - second <= _MARGIN:
-            return None
+    if is_clear and _are_equally_similar(lower, matches):
+        return None
     if not matches:  # difflib rates swapped letters in short names too low, such as xzy for xyz
         letters = sorted(lower)
         matches = [candidate for candidate in candidates if sorted(candidate) == letters]
     return candidates[matches[0]] if matches else None
+
+
+def _with_same_words(name: str, candidates: Mapping[str, str]) -> str | None:
+    """Return the known name that has the several words of another one in another order."""
+    words = sorted(_words(name))
+    if len(words) > 1:
+        for candidate, other in candidates.items():
+            if sorted(_words(candidate)) == words:
+                return other
+    return None
+
+
+def _are_equally_similar(name: str, matches: Sequence[str]) -> bool:
+    """Return whether two names are nearly as similar to another one."""
+    from difflib import SequenceMatcher  # late: as above
+
+    if len(matches) < 2:
+        return False
+    first, second = (SequenceMatcher(None, name, match).ratio() for match in matches)
+    return first - second <= _MARGIN
 
 
 def _candidates(name: str, known: Iterable[str]) -> dict[str, str]:

@@ -255,25 +255,29 @@ class Surroundings(NamedTuple):
     def read(self, path: str) -> bytes:
         """Return the bytes of a file. Raises InputError, NotDecided."""
         file = self.tree.files.get(path)
-        ignored = next((other for other in self.tree.ignored if other.path == path), None)
-        if file is None and ignored is not None:
-            raise NotDecided(str(ignored))
-        if file is None and not self.tree.files:
-            raise NotDecided(
-                f"the included file {path} is not read with a single file: give the folder "
-                "with both"
-            )
-        if file is None and self.is_single and not self.packages:
-            raise NotDecided(
-                f"there is no file {path} in the folder of this single file: give the "
-                "folder with both"
-            )
         if file is None:
-            raise InputError(f"there is no file {path} in the submission")
+            raise self._error_of_missing(path)
         try:
             return file.read(URDF_LIMIT)
         except InputError as error:
             raise NotDecided(str(error)) from None
+
+    def _error_of_missing(self, path: str) -> Exception:
+        """Return why a file is not there: NotDecided if it may only not be submitted."""
+        ignored = next((other for other in self.tree.ignored if other.path == path), None)
+        if ignored is not None:
+            return NotDecided(str(ignored))
+        if not self.tree.files:
+            return NotDecided(
+                f"the included file {path} is not read with a single file: give the folder "
+                "with both"
+            )
+        if self.is_single and not self.packages:
+            return NotDecided(
+                f"there is no file {path} in the folder of this single file: give the "
+                "folder with both"
+            )
+        return InputError(f"there is no file {path} in the submission")
 
     def installed(self, package: str, inside: str) -> str | None:
         """Return the file at a path in a package once it is built.

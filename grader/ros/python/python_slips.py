@@ -5,7 +5,7 @@ A comma, a colon, a bracket or a quote is missing, or a keyword is misspelt.
 
 import ast
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
 from keyword import kwlist
 from typing import NamedTuple
@@ -93,15 +93,7 @@ def _meant(fault: SyntaxFault, lines: list[str], path: str) -> _Change | None:
     for message, way in _WAYS:
         if message.search(fault.message) is None:
             continue
-        read: dict[str, _Change] = {}  # by what the file is then
-        for change in islice(way(fault, lines), _MAX_TRIED):
-            after = [*lines]
-            after[change.line] = change.text
-            parsed = _parsed(after, path)
-            if isinstance(parsed, Code):
-                read.setdefault(ast.dump(parsed.tree), change)
-            elif parsed.location.line > fault.location.line and parsed.message != fault.message:
-                read.setdefault("", change)
+        read = _readable_changes(fault, lines, path, islice(way(fault, lines), _MAX_TRIED))
         complete = [change for tree, change in read.items() if tree]
         if len(complete) == 1:
             return complete[0]
@@ -110,6 +102,25 @@ def _meant(fault: SyntaxFault, lines: list[str], path: str) -> _Change | None:
         if read:
             return read[""]
     return None
+
+
+def _readable_changes(
+    fault: SyntaxFault, lines: list[str], path: str, changes: Iterable[_Change]
+) -> dict[str, _Change]:
+    """Return the changes after which Python reads the file, by what it is then.
+
+    The key of one after which Python only reads on is empty.
+    """
+    read: dict[str, _Change] = {}
+    for change in changes:
+        after = [*lines]
+        after[change.line] = change.text
+        parsed = _parsed(after, path)
+        if isinstance(parsed, Code):
+            read.setdefault(ast.dump(parsed.tree), change)
+        elif parsed.location.line > fault.location.line and parsed.message != fault.message:
+            read.setdefault("", change)
+    return read
 
 
 def _code_and_rest(line: str) -> tuple[str, str]:

@@ -258,20 +258,26 @@ def check_references(robot: Robot, problems: Problems) -> None:
     for joint in robot.joints:
         if not is_link_open:
             _check_ends(robot, joint, links, problems)
-        mimic = joint.mimic
-        if mimic is not None and not is_joint_open and not robot.has_joint(mimic.joint):
-            message = (
-                f"joint {quoted(joint.name)} mimics {quoted(mimic.joint)}, which does not "
-                f"exist{problems.did_you_mean(mimic.joint, joints)}"
-            )
-            at = _child_element(joint, "mimic", problems)
-            problems.add(urdf_problems.MIMIC_TARGET, message, at, "joint")
+        if not is_joint_open:
+            _check_mimic(robot, joint, joints, problems)
     if not is_joint_open:
         _check_controlled_joints(robot, joints, problems)
     for loop in _mimic_loops(robot):
         steps = " -> ".join(map(quoted, (*loop[:_MAX_STEPS], loop[0])))
         message = f"joint {quoted(loop[0])} mimics itself: {steps}"
         at = _child_element(robot.joint(loop[0]), "mimic", problems)
+        problems.add(urdf_problems.MIMIC_TARGET, message, at, "joint")
+
+
+def _check_mimic(robot: Robot, joint: Joint, joints: list[str], problems: Problems) -> None:
+    """Report that a joint mimics one that does not exist."""
+    mimic = joint.mimic
+    if mimic is not None and not robot.has_joint(mimic.joint):
+        message = (
+            f"joint {quoted(joint.name)} mimics {quoted(mimic.joint)}, which does not "
+            f"exist{problems.did_you_mean(mimic.joint, joints)}"
+        )
+        at = _child_element(joint, "mimic", problems)
         problems.add(urdf_problems.MIMIC_TARGET, message, at, "joint")
 
 

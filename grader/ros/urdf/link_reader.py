@@ -114,26 +114,34 @@ class Materials:
         colour = inside.get("color")
         filename = inside["texture"].get("filename") if "texture" in inside else None
         channels, reported = None, False
-        if colour is not None and (text := colour.get("rgba")) is not None:
-            try:
-                channels = rgba(text)
-                if channels is None:
-                    message = (
-                        f"rgba={quote_value(text)} needs exactly four numbers; ROS 2 silently "
-                        "shows black"
-                    )
-                    self._problems.add(urdf_problems.COLOUR_COUNT, message, colour, "rgba")
-                    channels = _BLACK
-            except NumberError as error:
-                reported = True
-                message = f"cannot read rgba={quote_value(text)}: {error}; {consequence}"
-                self._problems.add(urdf_problems.BAD_COLOUR, message, colour, "rgba")
-                self._problems.check_printed(f"{name} {text}", colour, "rgba")
+        if colour is not None and colour.get("rgba") is not None:
+            channels = self._read_colour(colour, name, consequence)
+            reported = channels is None
         unresolved = self._problems.parts(element)
         if channels is None and filename is None and not unresolved:
             return None, reported
         location = self._problems.location(element if colour is None else colour)
         return Material(name, channels or _BLACK, filename or "", location, unresolved), reported
+
+    def _read_colour(
+        self, colour: Element, name: str, consequence: str
+    ) -> tuple[float, float, float, float] | None:
+        """Return the channels of a colour; None, with a problem, for one that cannot be read."""
+        text = colour.get("rgba") or ""
+        try:
+            channels = rgba(text)
+        except NumberError as error:
+            message = f"cannot read rgba={quote_value(text)}: {error}; {consequence}"
+            self._problems.add(urdf_problems.BAD_COLOUR, message, colour, "rgba")
+            self._problems.check_printed(f"{name} {text}", colour, "rgba")
+            return None
+        if channels is None:
+            message = (
+                f"rgba={quote_value(text)} needs exactly four numbers; ROS 2 silently shows black"
+            )
+            self._problems.add(urdf_problems.COLOUR_COUNT, message, colour, "rgba")
+            return _BLACK
+        return channels
 
     def _find_elsewhere(self, name: str) -> Material | None:
         """Return a material that may be defined in a part of the robot that xacro leaves open."""

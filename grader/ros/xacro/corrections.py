@@ -142,15 +142,7 @@ class Corrections:
             )
             fix = Fix(moved[0], sentence)
             return XacroCorrection(fix, moved[1], is_of_element=True, problem=problem)
-        definitions = []
-        included: Edits = ()
-        for node in self.nodes():
-            edits = tag_edits(*node.place.written, node.tag, f"xacro:{node.tag}")
-            if node.tag == unknown.kind and node.attributes.get("name") == unknown.name:
-                definitions.append(edits)
-            elif node.tag == "include" and "filename" in node.attributes:
-                included += edits
-        prefixed = definitions or ([included] if included else [])
+        prefixed = self._prefixed(unknown)
         if len(prefixed) == 1:
             return _correction(prefixed[0], location, is_of_element=True)
         edits = self._quoted(place, attribute, unknown)
@@ -160,6 +152,20 @@ class Corrections:
         if unknown.meant:
             return self._respelt(place, attribute, unknown, is_of_element=of_element)
         return None
+
+    def _prefixed(self, unknown: UnknownName) -> list[Edits]:
+        """Return the edits that write xacro: before what defines a name, else before includes."""
+        definitions = []
+        included: Edits = ()
+        for node in self.nodes():
+            edits = tag_edits(*node.place.written, node.tag, f"xacro:{node.tag}")
+            if node.tag == unknown.kind and node.attributes.get("name") == unknown.name:
+                definitions.append(edits)
+            elif node.tag == "include" and "filename" in node.attributes:
+                included += edits
+        if included and not definitions:
+            return [included]
+        return definitions
 
     def _respelt(
         self, place: ScopePlace, attribute: str | None, unknown: UnknownName, *, is_of_element: bool
@@ -404,14 +410,12 @@ def values_of_other_calls(
     The values are from other calls of the macro, also negated.
     """
     own_call = next((node for node in nodes if node.place[:2] == place[:2]), None)
+    if own_call is None:
+        return
     for other in nodes:
         given = other.attributes
-        if (
-            own_call is not None
-            and other is not own_call
-            and other.tag == own_call.tag
-            and set(lacking) <= given.keys()
-        ):
+        is_of_macro = other is not own_call and other.tag == own_call.tag
+        if is_of_macro and set(lacking) <= given.keys():
             copied = {name: given[name] for name in lacking}
             mirrored = ({**copied, name: new} for name in lacking for new in _mirrored(given[name]))
             for values in (copied, *islice(mirrored, _MAX_MIRRORED)):
