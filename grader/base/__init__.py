@@ -1,3 +1,4 @@
-"""What all other packages use: places in a file, names, printable text, errors, problems,
-rigid motions.
+"""What all other packages use: places, names, printable text, errors, problems, rigid motions.
+
+The places are those in a file.
 """

@@ -1,5 +1,6 @@
-"""Edits of the elements in a text, with numbers as a person writes them, and the text after
-edits.
+"""Edits of the elements in a text, and the text after edits.
+
+Numbers are written as a person writes them.
 """
 
 import re
@@ -21,15 +22,15 @@ def element_text(source: Source, start: int) -> str:
 
 def with_attribute(source: Source, start: int, attribute: str, value: str) -> Edit:
     """Return the edit that sets an attribute of the start tag at an offset, or adds it."""
-    found = markup.attribute(source.text, start, attribute)
-    if found is None:
+    existing = markup.attribute(source.text, start, attribute)
+    if existing is None:
         end = markup.name_end(source.text, start)
         return source.edit(start, end, f'{source.text[start:end]} {attribute}="{value}"')
     head, tail = (
-        source.text[found.start : found.value_start],
-        source.text[found.value_end : found.end],
+        source.text[existing.start : existing.value_start],
+        source.text[existing.value_end : existing.end],
     )
-    return source.edit(found.start, found.end, f"{head}{value}{tail}")
+    return source.edit(existing.start, existing.end, f"{head}{value}{tail}")
 
 
 def with_child(source: Source, start: int, xml: str) -> Edit:
@@ -47,8 +48,9 @@ def with_child(source: Source, start: int, xml: str) -> Edit:
 
 
 def without_element(source: Source, start: int) -> Edit:
-    """Return the edit that removes the element at an offset, with its line where nothing else is
-    on it.
+    """Return the edit that removes the element at an offset.
+
+    Its line goes too where nothing else is on it.
     """
     end = markup.element_end(source.text, start)
     indent = markup.indentation(source.text, start)
@@ -71,8 +73,9 @@ def with_element(source: Source, start: int, xml: str) -> Edit:
 
 
 def merged(old: str, new: str) -> str:
-    """Return a new list of numbers with those that stay, and the space between all, as the old
-    text writes them.
+    """Return a new list of numbers, written as the old text writes them.
+
+    Numbers that stay, and the space between all of them, are as in the old text.
     """
     before, after = _PIECE.findall(old), new.split()
     if len(before) != len(after):
@@ -85,9 +88,7 @@ def merged(old: str, new: str) -> str:
 
 
 def _merge_one(old: str, new: str) -> str:
-    """Return the new number, written as the old one where it is the same or only its sign
-    changes.
-    """
+    """Return the new number, in the old notation if it is the same or only its sign changes."""
     try:
         before, after = float(old), float(new)
     except ValueError:
@@ -102,8 +103,9 @@ def _merge_one(old: str, new: str) -> str:
 
 
 def edited(text: str, path: str, edits: Iterable[Edit]) -> str | None:
-    """Return the text of a file after edits; None if they overlap, or if the text is not what they
-    replace.
+    """Return the text of a file after edits.
+
+    Returns None if they overlap, or if the text is not what they replace.
     """
     source = Source(path, text)
     pieces: list[str] = []
@@ -140,8 +142,9 @@ def format_number(value: float) -> str:
 
 
 def tag_edits(source: Source, start: int, old: str, new: str) -> Edits:
-    """Return the edits of the start tag of the element at an offset, and of its end tag if it has
-    one; none if its tag is another one.
+    """Return the edits of the start tag of the element at an offset, and of its end tag if any.
+
+    Returns none if its tag is another one.
     """
     if source.text[start : markup.name_end(source.text, start)] != f"<{old}":
         return ()

@@ -49,8 +49,9 @@ class NotThereError(InputError):
 
 
 class FileError(InputError):
-    """A file that cannot be read; the message is its path and the reason: `a.zip` and `is
-    encrypted`.
+    """A file that cannot be read.
+
+    The message is its path and the reason: `a.zip` and `is encrypted`.
     """
 
     def __init__(self, path: str, reason: str) -> None:
@@ -63,15 +64,14 @@ class FileError(InputError):
 
 
 class MachineError(GraderError):
-    """A fault of the machine while a submission is read, as of its disk: it says nothing about the
-    submission.
+    """A fault of the machine while a submission is read, as of its disk.
+
+    It says nothing about the submission.
     """
 
     @classmethod
     def check(cls, error: BaseException | None, shown: str) -> None:
-        """Raise MachineError for the error of a file, or of an archive, if the file is not the
-        cause.
-        """
+        """Raise MachineError for the error of a file or archive if the file is not the cause."""
         while error is not None:
             if isinstance(error, OSError) and error.errno not in _OF_FILES:
                 raise cls(f"cannot read {shown}: {error.strerror} ({_ADVICE})") from None
@@ -93,14 +93,16 @@ class RubricError(GraderError):
 
 
 class OutOfTime(BaseException):
-    """The processor time of a command is used up. Like Ctrl-C it passes the handlers of faults in
-    files and checks.
+    """The processor time of a command is used up.
+
+    Like Ctrl-C it passes the handlers of faults in files and checks.
     """
 
 
 class NotDecided(LookupError):
-    """Something that cannot be determined statically, and needs manual grading. The message says
-    why.
+    """Something that cannot be determined statically, and needs manual grading.
+
+    The message says why.
 
     `cause` is the reason without what differs between students, such as the names of their files;
     default: the message.
@@ -112,8 +114,9 @@ class NotDecided(LookupError):
 
 
 class MissingElement(LookupError):
-    """Something that a check needs does not exist: a link, a shape, a chain of joints, a defined
-    pose.
+    """Something that a check needs does not exist.
+
+    For example a link, a shape, a chain of joints, a defined pose.
 
     `kind` and `name` are equal for checks that fail for the same reason; the kinds `URDF` and
     `package` are those of work that a submission lacks, where evidence may take its place. `known`

@@ -91,15 +91,16 @@ def end_offset(source: Source, start: int) -> int:
     if not 0 <= start < len(text):
         return start
     for pattern in _language_of(source, start):
-        found = re.compile(pattern, re.MULTILINE).match(text, start)
-        if found is not None:
-            return start + len(found[0].rstrip())
+        match = re.compile(pattern, re.MULTILINE).match(text, start)
+        if match is not None:
+            return start + len(match[0].rstrip())
     return start + int(not text[start].isspace())
 
 
 def ended(where: Location, source_of: Callable[[str], Source | None]) -> Location:
-    """Return a location with its end, and those of the macro calls that led to it; without the file
-    it ends where it begins.
+    """Return a location with its end, and those of the macro calls that led to it.
+
+    Without the file it ends where it begins.
     """
     source = source_of(where.path)
     line, column = (where.line, where.column) if source is None else end_of(source, where)
@@ -136,8 +137,8 @@ def _is_in_flow(text: str, start: int) -> bool:
     first = max(0, start - _MAX_BEFORE)
     before = text[first:start]
     key = 0
-    for found in re.finditer(r"^[^\s#\[\]{}'\",-]", before, re.MULTILINE):
-        key = found.start()
+    for match in re.finditer(r"^[^\s#\[\]{}'\",-]", before, re.MULTILINE):
+        key = match.start()
     depth = 0
     for token in re.finditer(_YAML_TOKEN, before[key:]):
         if token[0] in "[{":

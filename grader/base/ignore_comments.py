@@ -29,8 +29,9 @@ COMMENT_CATALOGUE = (_USELESS,)
 
 
 class IgnoreComment(NamedTuple):
-    """A comment that ignores problems in some lines, by their codes, the beginnings of these, or
-    their rules.
+    """A comment that ignores problems in some lines.
+
+    It names them by their codes, the beginnings of these, or their rules.
     """
 
     location: Location

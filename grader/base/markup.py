@@ -1,5 +1,4 @@
-"""The extent of tags, attributes and elements in the text of a markup file, for edits that change
-nothing else.
+"""The extent of tags, attributes and elements in a markup file, for edits of nothing else.
 
 The text need not be well-formed XML: what a lenient parser reads can be edited, too.
 """
@@ -16,8 +15,9 @@ _STEP = "   "  # of indentation, where the file shows none
 
 
 class Attribute(NamedTuple):
-    """An attribute of a start tag, such as xyz="0 0 1": the offsets of its name, its value and its
-    end.
+    """The offsets of the name, the value and the end of an attribute, such as xyz="0 0 1".
+
+    The attribute is one of a start tag.
     """
 
     name: str
@@ -44,37 +44,41 @@ def attributes(text: str, start: int) -> Iterator[Attribute]:
     """Yield the attributes of the start tag at an offset."""
     name = _TAG_NAME.match(text, start)
     position = name.end() if name else start
-    while found := _ATTRIBUTE.match(text, position):
-        group = 2 if found[2] is not None else 3
-        yield Attribute(found[1], found.start(1), found.start(group), found.end(group), found.end())
-        position = found.end()
+    while match := _ATTRIBUTE.match(text, position):
+        group = 2 if match[2] is not None else 3
+        yield Attribute(match[1], match.start(1), match.start(group), match.end(group), match.end())
+        position = match.end()
 
 
 def attribute(text: str, start: int, name: str) -> Attribute | None:
     """Return the attribute of this name of the start tag at an offset."""
-    return next((found for found in attributes(text, start) if found.name == name), None)
+    return next(
+        (candidate for candidate in attributes(text, start) if candidate.name == name), None
+    )
 
 
 def name_end(text: str, start: int) -> int:
     """Return the offset after the name of the start tag at an offset."""
-    found = _TAG_NAME.match(text, start)
-    return found.end() if found else start
+    match = _TAG_NAME.match(text, start)
+    return match.end() if match else start
 
 
 def head_end(text: str, start: int) -> tuple[int, bool]:
-    """Return the offset after the start tag at an offset, and whether it is an empty element
-    (<a/>).
+    """Return the offset after the start tag at an offset, and whether the element is empty.
+
+    An empty element is written <a/>.
     """
-    found = _HEAD.match(text, start)
-    if found is None:
+    match = _HEAD.match(text, start)
+    if match is None:
         end = text.find(">", start)
         return (end + 1 if end >= 0 else len(text)), text[end - 1 : end] == "/"
-    return found.end(), found[3] == "/" or found[2].endswith("/")
+    return match.end(), match[3] == "/" or match[2].endswith("/")
 
 
 def element_end(text: str, start: int) -> int:
-    """Return the offset after the end tag of the element at an offset; the end of the text where
-    that is missing.
+    """Return the offset after the end tag of the element at an offset.
+
+    Returns the end of the text where the end tag is missing.
     """
     position, is_empty = head_end(text, start)
     if is_empty:
@@ -95,16 +99,18 @@ def element_end(text: str, start: int) -> int:
 
 
 def indentation(text: str, start: int) -> str:
-    """Return the blank text between the start of a line and an offset; empty if there is something
-    else.
+    """Return the blank text between the start of a line and an offset.
+
+    It is empty if there is something else.
     """
     line = text[text.rfind("\n", 0, start) + 1 : start]
     return line if line.isspace() else ""
 
 
 def indented(xml: str, indent: str, newline: str) -> str:
-    """Return the text of an element with its lines moved to an indentation; the first line has
-    none.
+    """Return the text of an element with its lines moved to an indentation.
+
+    The first line has none.
     """
     lines = xml.replace("\r", "").split("\n")
     margin = min((len(line) - len(line.lstrip()) for line in lines[1:] if line.strip()), default=0)
@@ -114,14 +120,15 @@ def indented(xml: str, indent: str, newline: str) -> str:
 
 
 def child_indentation(text: str, start: int) -> str:
-    """Return the indentation of the children of the element at an offset: its first child's, else
-    one step more.
+    """Return the indentation of the children of the element at an offset.
+
+    It is that of its first child, else one step more than that of the element.
     """
-    own = indentation(text, start)
+    own_indentation = indentation(text, start)
     end, is_empty = head_end(text, start)
     token = None if is_empty else _TOKEN.search(text, end)
     if token is not None and not token[0].startswith("</"):
-        found = indentation(text, token.start())
-        if len(found) > len(own):
-            return found
-    return own + ("\t" if own.startswith("\t") else _STEP)
+        child_indent = indentation(text, token.start())
+        if len(child_indent) > len(own_indentation):
+            return child_indent
+    return own_indentation + ("\t" if own_indentation.startswith("\t") else _STEP)

@@ -1,5 +1,6 @@
-"""Unresolved merge conflicts of git in a text, and the text with the first version of each,
-which keeps its lines.
+"""Unresolved merge conflicts of git in a text, and the text with the first version of each.
+
+This text keeps its lines.
 """
 
 import re
@@ -10,8 +11,9 @@ _VISIBLE = re.compile(r"[^\r\n]")
 
 
 class _MergeConflict(NamedTuple):
-    """The offsets of a conflict, and those that go: its marker lines, and every version but the
-    first.
+    """The offsets of a conflict, and those of the parts that are removed.
+
+    Removed are its marker lines, and every version but the first.
     """
 
     start: int
@@ -21,12 +23,12 @@ class _MergeConflict(NamedTuple):
 
 def find_conflicts(text: str) -> list[_MergeConflict]:
     """Return the conflicts of a text whose three marker lines are there."""
-    found: list[_MergeConflict] = []
+    conflicts: list[_MergeConflict] = []
     opened: re.Match[str] | None = None
     first_end: re.Match[str] | None = None
     has_middle = False
     if "<<<<<<<" not in text:
-        return found
+        return conflicts
     for marker in _MARKER.finditer(text):
         match marker[1][0]:
             case "<":
@@ -35,14 +37,15 @@ def find_conflicts(text: str) -> list[_MergeConflict]:
                 first_end, has_middle = first_end or marker, has_middle or marker[1][0] == "="
             case _ if opened is not None and first_end is not None and has_middle:
                 removed = (opened.span(), (first_end.start(), marker.end()))
-                found.append(_MergeConflict(opened.start(), marker.end(), removed))
+                conflicts.append(_MergeConflict(opened.start(), marker.end(), removed))
                 opened = None
-    return found
+    return conflicts
 
 
 def without_conflicts(text: str, conflicts: list[_MergeConflict]) -> str:
-    """Return a text with blanks for what goes of its conflicts, so that all else stays where it
-    is.
+    """Return a text with blanks for what is removed of its conflicts.
+
+    Nothing else moves.
     """
     pieces: list[str] = []
     position = 0
@@ -63,8 +66,9 @@ def describe_conflicts(text: str, conflicts: list[_MergeConflict]) -> str:
 
 
 class _ResolvedFile(NamedTuple):
-    """The bytes of a file with the first version of each conflict, what is wrong, and the line of
-    the first.
+    """The bytes of a file with the first version of each conflict, and what is wrong.
+
+    `line` is that of the first conflict.
     """
 
     data: bytes

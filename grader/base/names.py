@@ -1,7 +1,7 @@
 """The known name that is closest to a mistyped one: to suggest it, or to read it in its place."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from itertools import islice, product
 
@@ -78,25 +78,41 @@ def closest(
         likeness: The smallest ratio of difflib.
         is_clear: Whether no other known name may be nearly as similar.
     """
-    from difflib import SequenceMatcher, get_close_matches  # late: few files have a misspelt name
+    from difflib import get_close_matches  # late: few files have a misspelt name
 
     if len(name) > MAX_LENGTH:
         return None
-    lower, words = name.lower(), sorted(_words(name))
-    candidates = _candidates(name, known)
-    if len(words) > 1:
-        for candidate, other in candidates.items():
-            if sorted(_words(candidate)) == words:
-                return other
+    lower, candidates = name.lower(), _candidates(name, known)
+    reordered = _with_same_words(name, candidates)
+    if reordered is not None:
+        return reordered
     matches = get_close_matches(lower, candidates, n=2, cutoff=likeness)
-    if is_clear and len(matches) > 1:
-        first, second = (SequenceMatcher(None, lower, match).ratio() for match in matches)
-        if first - second <= _MARGIN:
-            return None
+    if is_clear and _are_equally_similar(lower, matches):
+        return None
     if not matches:  # difflib rates swapped letters in short names too low, such as xzy for xyz
         letters = sorted(lower)
         matches = [candidate for candidate in candidates if sorted(candidate) == letters]
     return candidates[matches[0]] if matches else None
+
+
+def _with_same_words(name: str, candidates: Mapping[str, str]) -> str | None:
+    """Return the known name that has the several words of another one in another order."""
+    words = sorted(_words(name))
+    if len(words) > 1:
+        for candidate, other in candidates.items():
+            if sorted(_words(candidate)) == words:
+                return other
+    return None
+
+
+def _are_equally_similar(name: str, matches: Sequence[str]) -> bool:
+    """Return whether two names are nearly as similar to another one."""
+    from difflib import SequenceMatcher  # late: as above
+
+    if len(matches) < 2:
+        return False
+    first, second = (SequenceMatcher(None, name, match).ratio() for match in matches)
+    return first - second <= _MARGIN
 
 
 def _candidates(name: str, known: Iterable[str]) -> dict[str, str]:
@@ -126,8 +142,9 @@ def _sides_in(words: tuple[str, ...]) -> tuple[str, ...]:
 
 
 def _are_siblings(sides: tuple[str, ...], others: tuple[str, ...]) -> bool:
-    """Return whether two names differ in the numbers or sides that both of them have. Numbers of
-    another length may be mistyped.
+    """Return whether two names differ in the numbers or sides that both of them have.
+
+    Numbers of another length may be mistyped.
     """
     if len(sides) != len(others):
         return False
@@ -138,8 +155,9 @@ def _are_siblings(sides: tuple[str, ...], others: tuple[str, ...]) -> bool:
 
 
 def is_misspelling(name: str, known: str) -> bool:
-    """Return whether a name is similar to another, and so is each of its words: not robot_arm and
-    robot_base.
+    """Return whether a name is similar to another, and so is each of its words.
+
+    The names robot_arm and robot_base are not similar in this sense.
     """
     if closest(name, [known]) is None:
         return False
@@ -155,54 +173,59 @@ def is_misspelling(name: str, known: str) -> bool:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """Return `; did you mean 'x'?` for the end of a message, or nothing if no known name is
-    close.
+    """Return the end of a message: `; did you mean 'x'?`.
+
+    Returns nothing if no known name is close.
     """
     match = closest(name, known)
     return f"; did you mean {quoted(match)}?" if match else ""
 
 
 def similar_there(name: str, known: Iterable[str]) -> str:
-    """Return `; there is 'x'` for the end of a message that asks for a name, or nothing if no known
-    name is close: the one that is asked for is the right one.
+    """Return the end of a message that asks for a name: `; there is 'x'`.
+
+    Returns nothing if no known name is close: the one that is asked for is the right one.
     """
     match = closest(name, known)
     return f"; there is {quoted(match)}" if match else ""
 
 
 def folded(name: str) -> str:
-    """Return the letters and digits of a name in lower case: my_robot, My-Robot and MYROBOT are
-    one name.
+    """Return the letters and digits of a name in lower case.
+
+    The names my_robot, My-Robot and MYROBOT become one name.
     """
     return "".join(filter(str.isalnum, name.casefold()))
 
 
 def near(name: str, known: Iterable[str], suffix: str = "") -> str | None:
-    """Return the known name that another one surely stands for; None if none is near, or several
-    are equally near.
+    """Return the known name that another one surely stands for.
+
+    Returns None if none is near, or several are equally near.
 
     Words are compared one by one, whatever their case: one letter, or one exchanged pair, may
     differ in a known word of four letters or more, two in seven or more. `suffix`, the kind of
     thing that is named, may be missing at the end.
     """
-    own, others = _words(name), set(islice(known, _MAX_KNOWN + 1)) - {name}
+    words, others = _words(name), set(islice(known, _MAX_KNOWN + 1)) - {name}
     if len(others) > _MAX_KNOWN:
         return None
     distances: dict[str, tuple[int, bool]] = {}
     for other in others:
-        distance = _distance(own, _words(other), suffix)
+        distance = _distance(words, _words(other), suffix)
         if distance is not None:
             distances[other] = distance
     nearest = min(distances.values(), default=None)
-    found = [other for other, distance in distances.items() if distance == nearest]
-    if len(found) == 1:
-        return found[0]
+    nearest_names = [other for other, distance in distances.items() if distance == nearest]
+    if len(nearest_names) == 1:
+        return nearest_names[0]
     return None
 
 
 def are_of_one_side(name: str, other: str) -> bool:
-    """Return whether two names have the same numbers and words of side, place and measure, in
-    any order.
+    """Return whether two names have the same numbers and words of side, place and measure.
+
+    The order of these does not matter.
     """
     words = _words(name), _words(other)
     pairs: Iterable[tuple[str, str]] = ()
@@ -229,8 +252,9 @@ def _letters(words: tuple[str, ...]) -> str:
 def _distance(
     name: tuple[str, ...], known: tuple[str, ...], suffix: str
 ) -> tuple[int, bool] | None:
-    """Return how many letters differ, and whether the suffix is missing; None for names that are
-    not near.
+    """Return how many letters differ, and whether the suffix is missing.
+
+    Returns None for names that are not near.
     """
     texts = [_letters(name), _letters(known)]
     if not all(texts) or max(map(len, texts)) > MAX_LENGTH:
@@ -251,8 +275,9 @@ def _distance(
 
 
 def _differing_letters(word: str, known: str) -> int | None:
-    """Return how many letters or exchanged pairs differ in two words; None if these are too
-    many.
+    """Return how many letters or exchanged pairs differ in two words.
+
+    Returns None if these are too many.
     """
     if word == known:
         return 0
@@ -278,8 +303,9 @@ def _most_differing(word: str, known: str) -> int:
 
 
 def _are_distinct(word: str, known: str) -> bool:
-    """Return whether two words differ in a side, axis or measure that is, or may be, joined to
-    another word.
+    """Return whether two words differ in a side, axis or measure.
+
+    This word may be joined to another word.
     """
     if {word, known} <= _DISTINCT or word[1:] == known[1:]:  # posx and posy, lwheel and rwheel
         return True

@@ -1,5 +1,6 @@
-"""As many pairs as possible of two sides, if each item fits some items of the other side: Kuhn's
-algorithm.
+"""Kuhn's algorithm: as many pairs as possible of two sides.
+
+Each item fits some items of the other side.
 """
 
 from collections.abc import Sequence

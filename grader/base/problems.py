@@ -137,9 +137,14 @@ def in_order(problems: Iterable[Problem]) -> tuple[Problem, ...]:
 
 
 def causes(problems: Iterable[Problem]) -> list[Problem]:
-    """Return the problems for which ROS 2 rejects a file; only those of xacro if that stops
-    before.
+    """Return the problems for which ROS 2 rejects a file.
+
+    Returns only those of xacro if xacro stops before.
     """
-    found = [problem for problem in problems if problem.kind.effect == "rejects"]
-    own = [problem for problem in found if not problem.kind.is_consequence]
-    return [problem for problem in own if problem.kind.is_before_ros] or own or found
+    rejecting = [problem for problem in problems if problem.kind.effect == "rejects"]
+    independent = [problem for problem in rejecting if not problem.kind.is_consequence]
+    return (
+        [problem for problem in independent if problem.kind.is_before_ros]
+        or independent
+        or rejecting
+    )

@@ -18,8 +18,9 @@ _SPARE = 0.25  # seconds of a limit of the shell that are left to say so
 
 
 def limit_processor_time(seconds: float) -> None:
-    """Raise OutOfTime in the main thread after more seconds of processor time, and end the process
-    by SIGXCPU later. An earlier limit no longer counts.
+    """Raise OutOfTime in the main thread after more seconds of processor time.
+
+    SIGXCPU ends the process later. An earlier limit no longer counts.
 
     A lower limit of the process itself, as of `ulimit -t`, stays.
     """
@@ -31,10 +32,10 @@ def limit_processor_time(seconds: float) -> None:
     soft, hard = _own_limits()
     used = time.process_time()
     end = min(ceil(used + seconds) + _GRACE, soft)
-    own = min(soft, hard)
-    if own < used + seconds + _SPARE:
-        seconds = max(own - _SPARE - used, 0.001)
-        reason = f"this takes more than the {own} s of processor time that `ulimit -t` allows"
+    limit = min(soft, hard)
+    if limit < used + seconds + _SPARE:
+        seconds = max(limit - _SPARE - used, 0.001)
+        reason = f"this takes more than the {limit} s of processor time that `ulimit -t` allows"
 
     def stop(_number: int, _frame: FrameType | None) -> None:
         raise OutOfTime(reason)
@@ -59,8 +60,9 @@ def lift_processor_time() -> None:
 
 @cache
 def _own_limits() -> tuple[float, float]:
-    """Return the limits that this process has been started with: the lower one, and that which it
-    cannot raise.
+    """Return the limits that this process has been started with.
+
+    These are the lower one, and that which it cannot raise.
     """
     import resource
 

@@ -1,5 +1,7 @@
-"""Results that are used again: a class has equal small files in every submission, those of a
-handout, and an editor shows the same files after each change of one of them.
+"""Results that are used again.
+
+A class has equal small files in every submission, those of a handout, and an editor shows the same
+files after each change of one of them.
 """
 
 from collections.abc import Callable, Hashable
@@ -40,8 +42,9 @@ class _Work(Protocol):
 
 
 class Answers(Generic[_Asked]):
-    """What something was asked, and its answers. Where another one answers alike, work that asks
-    nothing else has the same result.
+    """What something was asked, and its answers.
+
+    Where another one answers alike, work that asks nothing else has the same result.
     """
 
     def __init__(self, asked: _Asked) -> None:

@@ -35,8 +35,9 @@ class Location(NamedTuple):
 
 
 class Edit(NamedTuple):
-    """A change of the text of one file: `old`, which stands at a place, becomes `new`, and nothing
-    else changes.
+    """A change of the text of one file: `old`, at a place, becomes `new`.
+
+    Nothing else changes.
 
     Line and column count from 1, as in a Location. With `renamed`, the file
     gets this path instead.
@@ -63,8 +64,9 @@ class Source:
     is_expanded = False  # whether xacro made its elements of other texts
 
     def __init__(self, path: str, text: str, tags: list[int] | None = None) -> None:
-        """`tags` holds the offset of each start tag in document order; without it the text must be
-        well-formed XML.
+        """`tags` holds the offset of each start tag in document order.
+
+        Without it the text must be well-formed XML.
         """
         self.path, self.text, self._given_tags = path, text, tags
 
@@ -86,15 +88,17 @@ class Source:
         return Location(self.path, line, offset - start + 1)
 
     def tag(self, index: int, attribute: str | None = None) -> Location:
-        """Return the location of the start tag with this index in document order, or of an
-        attribute if it has it.
+        """Return the location of the start tag with this index in document order.
+
+        With an attribute that the tag has, it is the location of the attribute.
         """
         start = self._tags[index]
         return self.at(start if attribute is None else self._attribute(start, attribute))
 
     def next_tag(self, index: int, name: str) -> int:
-        """Return the index of the first start tag of this name after another one; that one if there
-        is none.
+        """Return the index of the first start tag of this name after another one.
+
+        Returns the index of the other one if there is none.
         """
         opening = re.compile(rf"<\s*{re.escape(name)}(?![^\s=/>])")
         others = range(index + 1, len(self._tags))
@@ -115,8 +119,8 @@ class Source:
     def _attribute(self, start: int, name: str) -> int:
         from grader.base import markup  # late: its patterns are for a fault
 
-        found = markup.attribute(self.text, start, name)
-        return found.start if found is not None else start
+        written = markup.attribute(self.text, start, name)
+        return written.start if written is not None else start
 
     @property
     def cost(self) -> int:
@@ -136,15 +140,17 @@ class Source:
         return Edit(place.path, place.line, place.column, self.text[start:end], new)
 
     def element(self, tag: int) -> "tuple[Source, int]":
-        """Return the text that the element with this index was written in, and the offset of its
-        start tag.
+        """Return the text that the element with this index was written in.
+
+        Also returns the offset of its start tag.
         """
         return self, self._tags[tag]
 
 
 class Base(NamedTuple):
-    """The location of a submission in a repository: the folder of its paths with a slash, or the
-    archive around them.
+    """The location of a submission in a repository.
+
+    It is the folder of its paths with a slash, or the archive around them.
 
     With `is_outside` it is in no repository. `here` is what comes before its paths in the current
     folder.
@@ -157,8 +163,9 @@ class Base(NamedTuple):
 
 
 class LazyLocation(NamedTuple):
-    """The place of an element or of one of its attributes, which is computed on demand: most never
-    are.
+    """The place of an element or attribute, computed on demand.
+
+    Most are never computed.
 
     `tag` counts the element's start tag in document order, from 0. With `inside` the first element
     of this name in it is meant. Where an element holds one, it takes no part in comparison:
@@ -179,8 +186,9 @@ class LazyLocation(NamedTuple):
 def place(
     element: LazyLocation | None, attribute: str | None = None, inside: str | None = None
 ) -> LazyLocation | None:
-    """Return the place of an element that was read from the file, of one of its attributes, or of
-    an element inside.
+    """Return the place of an element that was read from the file.
+
+    It may also be the place of one of its attributes, or of an element inside.
     """
     if element is not None:
         return LazyLocation(element.source, element.tag, attribute, inside)

@@ -19,8 +19,9 @@ MAX_PEOPLE = 12  # whom a line lists
 
 
 def printable(text: str) -> str:
-    """Return a text with escapes for all that is neither a visible character nor a plain space; a
-    tab becomes a space.
+    """Return a text with escapes for all but visible characters and plain spaces.
+
+    A tab becomes a space.
 
     These are control characters, bidirectional marks, other spaces, and bytes that are not UTF-8.
     """
@@ -32,17 +33,19 @@ def printable(text: str) -> str:
 
 
 def without_commands(text: str) -> str:
-    """Return a text with a space wherever the runner of a CI system would treat a line as a
-    command.
+    """Return a text with a space wherever the runner of a CI system would see a command.
+
+    A command is a line that the runner treats as one.
     """
     return without_tag_commands(_LINE_COMMAND.sub(r"\1: ", text))
 
 
 def without_tag_commands(text: str, bracket: str = " [") -> str:
-    """Return a text with another bracket in the commands that may be anywhere in a line, such as
-    ##vso[.
+    """Return a text with another bracket in the commands that may be anywhere in a line.
+
+    Such a command begins with ##vso[.
     """
-    return _TAG_COMMAND.sub(lambda found: found[0][:-1] + bracket, text)
+    return _TAG_COMMAND.sub(lambda match: match[0][:-1] + bracket, text)
 
 
 def _escape(character: str) -> str:
@@ -57,8 +60,9 @@ def _escape(character: str) -> str:
 
 
 def printable_path(path: Path | str) -> str:
-    """Return a path for a message: bytes that are not UTF-8 are replaced, control characters
-    escaped.
+    """Return a path for a message.
+
+    Bytes that are not UTF-8 are replaced, control characters escaped.
     """
     text = os.fsencode(path).decode("utf-8", "replace")
     if text.isprintable():
@@ -67,8 +71,9 @@ def printable_path(path: Path | str) -> str:
 
 
 def shell_quoted(path: Path | str) -> str:
-    """Return a path as a word of a command that a message suggests: with quotes where a shell needs
-    them.
+    """Return a path as a word of a command that a message suggests.
+
+    It has quotes where a shell needs them.
     """
     from shlex import quote  # late: most messages suggest no command
 
@@ -86,8 +91,9 @@ def quoted(name: str) -> str:
 
 
 def cut(text: str, most: int) -> str:
-    """Return a text of at most so many characters, the last three of which are points if it was
-    longer.
+    """Return a text of at most so many characters.
+
+    If it was longer, the last three of them are points.
     """
     if len(text) <= most:
         return text
@@ -102,8 +108,9 @@ def named(key: str, name: str) -> str:
 
 
 def capitalised(text: str) -> str:
-    """Return a text with a capital, unless it begins with a quote, a file or an attribute, such as
-    xyz="0 0".
+    """Return a text with a capital, unless it begins with a quote, a file or an attribute.
+
+    An attribute is such as xyz="0 0".
     """
     if text.split(" ", 1)[0].isalpha():
         return text[:1].upper() + text[1:]

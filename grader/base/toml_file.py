@@ -86,8 +86,8 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
     shown = printable_path(path)
     try:
         text = data.decode().removeprefix("\ufeff")
-        if found := _LONG_KEY.search(text):
-            line = text.count("\n", 0, found.start(1)) + 1
+        if match := _LONG_KEY.search(text):
+            line = text.count("\n", 0, match.start(1)) + 1
             raise RubricError((f"{shown}:{line}: a key has more than {_MAX_DEPTH} parts",))
         return text, tomllib.loads(text, parse_float=Decimal)
     except UnicodeDecodeError as error:
@@ -101,23 +101,27 @@ def read_toml(data: bytes, path: Path) -> tuple[str, dict[str, Any]]:
 
 
 def complain_of(complaints: Sequence[tuple[TomlPath, str]], text: str, path: Path) -> None:
-    """Raise RubricError with a line for each complaint, in the order of the file, if there are
-    any.
+    """Raise RubricError with a line for each complaint, if there are any.
+
+    The lines are in the order of the file.
     """
     if complaints:
         lines, shown = key_lines(text), printable_path(path)
-        found = one_line_each(path, [(line_of(lines, at), what) for at, what in complaints])
-        more = len(found) - _MAX_COMPLAINTS
+        complaints_by_line = one_line_each(
+            path, [(line_of(lines, at), what) for at, what in complaints]
+        )
+        more = len(complaints_by_line) - _MAX_COMPLAINTS
         rest = (f"{shown}: {more} more mistakes are not listed",) if more > 0 else ()
-        raise RubricError((*found[:_MAX_COMPLAINTS], *rest))
+        raise RubricError((*complaints_by_line[:_MAX_COMPLAINTS], *rest))
 
 
-def one_line_each(path: Path, found: Iterable[tuple[int, str]]) -> list[str]:
-    """Return what was found in a file by its lines; what several lines share once, with all of
-    them.
+def one_line_each(path: Path, complaints: Iterable[tuple[int, str]]) -> list[str]:
+    """Return complaints about a file by its lines.
+
+    What several lines share stands there once, with all of them.
     """
     places: dict[str, list[int]] = {}
-    for line, what in sorted(found, key=lambda it: it[0]):
+    for line, what in sorted(complaints, key=lambda complaint: complaint[0]):
         places.setdefault(what, []).append(line)
     return [
         f"{printable_path(path)}:{line}: {what}{_also(other)}"
@@ -134,8 +138,9 @@ def _also(lines: Sequence[int]) -> str:
 
 
 def _syntax_mistake(error: str, text: str) -> str:
-    """Return the place of the mistake that a message of tomllib is about, what it means, and the
-    line.
+    """Return the place of the mistake that a message of tomllib is about.
+
+    Also returns what it means, and the line.
     """
     text = text.replace("\r\n", "\n")
     lines = text.split("\n")
@@ -173,8 +178,9 @@ def _why_not_utf8(data: bytes, at: int) -> str:
 
 
 def key_lines(text: str) -> dict[TomlPath, int]:
-    """Return the line of every table header and key of a valid TOML text, by its path; arrays
-    count from 0.
+    """Return the line of every table header and key of a valid TOML text, by its path.
+
+    Arrays count from 0.
     """
     lines: dict[TomlPath, int] = {(): 1}
     for line, path in _statement_paths(text):
@@ -291,8 +297,9 @@ class TomlRowReader:
     def row(
         self, where: TomlPath, row: TomlRow, table: KeyTable, defaults: Mapping[str, Any] = _NOTHING
     ) -> TomlRow:
-        """Return the valid values of a table, converted; complain of the others and of missing
-        ones.
+        """Return the valid values of a table, converted.
+
+        Complains of the others and of missing ones.
         """
         parsed: TomlRow = {**defaults}
         for key, value in row.items():
@@ -312,8 +319,9 @@ class TomlRowReader:
         return parsed
 
     def guess(self, name: str, known: Iterable[str]) -> str:
-        """Return which known name a misspelt one may mean, as a clause; empty if none is
-        similar.
+        """Return which known name a misspelt one may mean, as a clause.
+
+        It is empty if none is similar.
         """
         self._guesses -= 1
         if self._guesses >= 0:

@@ -1,5 +1,6 @@
-"""The types of values in a TOML file: name, JSON Schema and conversion of each, made from Python
-annotations.
+"""The types of values in a TOML file, made from Python annotations.
+
+Each has a name, a JSON Schema and a conversion.
 """
 
 from collections.abc import Callable, Mapping
@@ -18,8 +19,9 @@ class WrongValue(ValueError):
 
 
 class TomlType(NamedTuple):
-    """A type: its name for messages, its JSON Schema, and `parse`, which converts a TOML value or
-    raises WrongValue.
+    """A type of values: its name for messages, its JSON Schema and its conversion.
+
+    `parse` converts a TOML value or raises WrongValue.
     """
 
     name: str
@@ -28,8 +30,9 @@ class TomlType(NamedTuple):
 
 
 class Constraint(NamedTuple):
-    """A constraint for `Annotated`: `must_be` ends the message "... must be", `schema` adds to the
-    type's schema.
+    """A constraint for `Annotated`.
+
+    `must_be` ends the message "... must be", `schema` adds to the type's schema.
     """
 
     must_be: str
@@ -72,8 +75,9 @@ def simple_type(
     accepts: Callable[[Any], bool],
     convert: Callable[[Any], Any] = lambda value: value,
 ) -> TomlType:
-    """Return a type whose values `accepts` recognises and `convert` converts, unless that raises
-    WrongValue.
+    """Return a type whose values `accepts` recognises and `convert` converts.
+
+    A value for which `convert` raises WrongValue does not belong to it.
     """
 
     def parse(value: Any) -> Any:
@@ -111,8 +115,9 @@ _PLURALS: Mapping[Any, str] = {
 
 @lru_cache(maxsize=256)
 def toml_type(annotation: Any) -> TomlType:
-    """Return the type for str, float, int, bool, Literal, a union, list, tuple, Mapping, or
-    Annotated.
+    """Return the type for an annotation.
+
+    The annotation is str, float, int, bool, Literal, a union, list, tuple, Mapping, or Annotated.
     """
     inner = get_args(annotation)
     origin = get_origin(annotation)
@@ -160,8 +165,9 @@ def _table_type(inner: tuple[Any, ...]) -> TomlType:
 
 
 def described(base: TomlType, description: str, **keywords: Any) -> TomlType:
-    """Return a type whose JSON Schema says what the value means; without a description, only the
-    keywords are added.
+    """Return a type whose JSON Schema says what the value means.
+
+    Without a description, only the keywords are added.
     """
     text = {"description": description} if description else {}
     return base._replace(schema={**base.schema, **text, **keywords})

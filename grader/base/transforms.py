@@ -104,8 +104,9 @@ class Transform:
 
     @property
     def quaternion(self) -> tuple[float, float, float, float]:
-        """The rotation as a unit quaternion x, y, z, w, as in ROS 2's messages; w is not
-        negative.
+        """The rotation as a unit quaternion x, y, z, w, as in ROS 2's messages.
+
+        The number w is not negative.
         """
         a, b, c, d, e, f, g, h, i = self.rotation
         # four times the product of each two components: the row of the largest one is most exact
@@ -130,8 +131,9 @@ IDENTITY = Transform()
 
 
 def rotation_from_rpy(rpy: Vector) -> Rotation:
-    """Return Rz(yaw) Ry(pitch) Rx(roll): roll about x, then pitch about y, then yaw about z, all
-    fixed (REP 103).
+    """Return Rz(yaw) Ry(pitch) Rx(roll).
+
+    This is roll about x, then pitch about y, then yaw about z, all fixed (REP 103).
     """
     if rpy == (0.0, 0.0, 0.0):
         return IDENTITY_ROTATION
@@ -186,8 +188,9 @@ def turn_between(one: Rotation, other: Rotation) -> float:
 
 
 def unit(vector: Vector) -> Vector | None:
-    """Return the unit vector of a direction, or None for length zero. Safe from overflow and
-    underflow.
+    """Return the unit vector of a direction, or None for length zero.
+
+    Safe from overflow and underflow.
     """
     if vector in AXES:  # the most frequent case
         return vector
@@ -215,8 +218,9 @@ def minus(a: Vector, b: Vector) -> Vector:
 
 
 def degrees_between(a: Vector, b: Vector) -> float:
-    """Return the angle between two directions in degrees, as exact near 0 as elsewhere; NaN for a
-    zero vector.
+    """Return the angle between two directions in degrees, as exact near 0 as elsewhere.
+
+    Returns NaN for a zero vector.
     """
     sine, cosine = hypot(*cross(a, b)), dot(a, b)
     return degrees(atan2(sine, cosine)) if sine or cosine else nan

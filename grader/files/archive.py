@@ -17,6 +17,7 @@ import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, ExitStack
+from dataclasses import dataclass, field
 from functools import partial
 from typing import IO, Any, Literal, NamedTuple
 
@@ -61,8 +62,9 @@ _DECOMPRESSORS: dict[str, Any] = {"gz": gzip.open, "bz2": bz2.open, "xz": lzma.o
 def read_archive(
     file: IO[bytes], kind: str, name: str, allowance: limits.Allowance | None = None
 ) -> Tree:
-    """Return the files in an archive. `file` is closed with the tree, or at once if it cannot be
-    read (InputError).
+    """Return the files in an archive.
+
+    `file` is closed with the tree, or at once if it cannot be read (InputError).
     """
     allowance = allowance or limits.Allowance()
     with ExitStack() as opened:
@@ -107,8 +109,9 @@ def _decompress(
 
 
 class ArchiveMember(NamedTuple):
-    """One entry of an archive. `reason` says why one of kind other is not read; `open` gives the
-    content of a file.
+    """One entry of an archive.
+
+    `reason` says why one of kind other is not read; `open` gives the content of a file.
     """
 
     path: str
@@ -118,46 +121,74 @@ class ArchiveMember(NamedTuple):
     reason: str = ""
 
 
+@dataclass(slots=True)
+class _SortedMembers:
+    """The members of an archive by what becomes of them."""
+
+    kept: dict[str, ArchiveMember] = field(default_factory=dict)
+    ignored: list[IgnoredFile] = field(default_factory=list)
+    generated: set[str] = field(default_factory=set)
+    unseen: set[str] = field(default_factory=set)
+    settings: list[File] = field(default_factory=list)
+
+    def add(self, member: ArchiveMember) -> None:
+        """Add a member: it is kept, ignored, or only its path counts."""
+        path = _path_in_tree(member)
+        if isinstance(path, IgnoredFile):
+            self.ignored.append(path)
+        elif part := ignored_part(path):
+            self._add_ignored(member, path, part)
+        elif path:
+            self.kept[path] = member
+
+    def _add_ignored(self, member: ArchiveMember, path: str, part: str) -> None:
+        if is_setting(path) and member.kind == "file":
+            self.settings.append(_file_of(member, path))
+        if is_generated(path) and member.kind == "file":
+            self.generated.add(path)
+        self.unseen |= {part} - {path}
+
+    def remove_environments(self) -> None:
+        """Remove what is in virtual environments of Python."""
+        environments = {
+            path.rpartition("/")[0] for path in self.kept if path.endswith("/pyvenv.cfg")
+        }
+        if environments:
+            self.kept = {
+                path: member
+                for path, member in self.kept.items()
+                if environments.isdisjoint(parents(path))
+            }
+
+    def paths_of(self, kind: str) -> list[str]:
+        """Return the paths of the members of a kind that are kept."""
+        return [path for path, member in self.kept.items() if member.kind == kind]
+
+
 def tree_of(
     members: Iterable[ArchiveMember], name: str, limit: int = limits.MAX_UNPACKED_SIZE
 ) -> Tree:
-    """Return the file tree that the members of an archive make; raises InputError if they are too
-    many or too large.
+    """Return the file tree that the members of an archive make.
+
+    Raises InputError if they are too many or too large.
     """
-    found: dict[str, ArchiveMember] = {}
-    ignored: list[IgnoredFile] = []
-    generated: set[str] = set()
-    unseen: set[str] = set()
-    settings: list[File] = []
+    entries = _SortedMembers()
     for member in _check_limits(members, name, min(limit, limits.MAX_UNPACKED_SIZE)):
-        path = _path_in_tree(member)
-        if isinstance(path, IgnoredFile):
-            ignored.append(path)
-        elif part := ignored_part(path):
-            if is_setting(path) and member.kind == "file":
-                settings.append(_file_of(member, path))
-            if is_generated(path) and member.kind == "file":
-                generated.add(path)
-            unseen |= {part} - {path}
-        elif path:
-            found[path] = member
-    if environments := {path.rpartition("/")[0] for path in found if path.endswith("/pyvenv.cfg")}:
-        found = {
-            path: member for path, member in found.items() if environments.isdisjoint(parents(path))
-        }
-    folders = [path for path, member in found.items() if member.kind == "folder"]
-    files = [_file_of(member, path) for path, member in found.items() if member.kind == "file"]
-    ignored += [IgnoredFile(path, member.reason) for path, member in found.items() if member.reason]
-    links = [path for path, member in found.items() if member.kind == "link"]
+        entries.add(member)
+    entries.remove_environments()
+    kept, ignored = entries.kept, entries.ignored
+    files = [_file_of(kept[path], path) for path in entries.paths_of("file")]
+    ignored += [IgnoredFile(path, member.reason) for path, member in kept.items() if member.reason]
+    links = entries.paths_of("link")
     ignored += [IgnoredFile(path, IS_LINK, is_closed=True) for path in links]
     return make_tree(
         name,
         files,
-        folders,
+        entries.paths_of("folder"),
         sorted(ignored),
-        sorted(generated),
-        [*unseen, *links],
-        settings=lambda: settings,
+        sorted(entries.generated),
+        [*entries.unseen, *links],
+        settings=lambda: entries.settings,
     )
 
 
@@ -178,8 +209,9 @@ def _path_in_tree(member: ArchiveMember) -> str | IgnoredFile:
 
 
 def _check_limits(members: Iterable[ArchiveMember], name: str, limit: int) -> list[ArchiveMember]:
-    """Return the members; raises InputError for too many, or too much in those that are not ignored
-    for their size.
+    """Return the members of an archive that is within the limits.
+
+    Raises InputError for too many, or too much in those that are not ignored for their size.
     """
     listed: list[ArchiveMember] = []
     total = 0
@@ -274,8 +306,9 @@ def _open_tar_member(archive: tarfile.TarFile, info: tarfile.TarInfo) -> IO[byte
 
 
 def safe_path(name: str) -> str | None:
-    """Return a member's name as a printable path inside the archive; empty for its root; None where
-    it leads out.
+    """Return a member's name as a printable path inside the archive.
+
+    It is empty for the root of the archive, and None for a name that leads out of it.
     """
     plain = name.replace("\\", "/")
     if plain.startswith("/") or plain[1:2] == ":" or ".." in plain.split("/"):
@@ -284,8 +317,9 @@ def safe_path(name: str) -> str | None:
 
 
 def error_text(error: BaseException, shown: str) -> str:
-    """Return what an error of an archive says, fit for a message; raises MachineError if that is
-    not the cause.
+    """Return what an error of an archive says, fit for a message.
+
+    Raises MachineError if that is not the cause.
     """
     MachineError.check(error, shown)
     return printable_path(" ".join(str(error).split())[:200]) or type(error).__name__

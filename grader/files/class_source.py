@@ -53,8 +53,9 @@ _IN_MEMORY = 16 * 1024 * 1024
 
 
 class Children(NamedTuple):
-    """The names in one folder, unsorted. `refused` are names that are not read, each with its
-    reason.
+    """The names in one folder, unsorted.
+
+    `refused` are names that are not read, each with its reason.
     """
 
     folders: list[str]
@@ -63,8 +64,9 @@ class Children(NamedTuple):
 
 
 def _is_litter(name: str) -> bool:
-    """Return whether a file is not worth reporting: hidden, or left by an operating system or a
-    tool.
+    """Return whether a file is not worth reporting.
+
+    Such a file is hidden, or left by an operating system or a tool.
     """
     return name.startswith(".") or name in _NOT_REPORTED
 
@@ -79,20 +81,21 @@ class ClassDirectory:
         self._root, self._top = root, os.fspath(root)
 
     def children(self, folder: str, limit: int | None = None) -> Children:
-        """Return the names in a folder, at most `limit`; none if it cannot be opened, but
-        InputError for the top.
+        """Return the names in a folder, at most `limit`.
+
+        Returns none if it cannot be opened, but raises InputError for the top.
         """
-        found = Children([], [], [])
+        children = Children([], [], [])
         try:
             with os.scandir(f"{self._top}/{folder}" if folder else self._top) as entries:
                 for entry in islice(entries, limit):
                     if not _is_litter(entry.name):
-                        _add_entry(entry, found)
+                        _add_entry(entry, children)
         except OSError as error:
             refused = read_error(error, printable_path(folder or self._top))
             if not folder:
                 raise refused from None
-        return found
+        return children
 
     def has(self, path: str) -> bool:
         """Return whether there is a file or folder."""
@@ -133,8 +136,9 @@ class ClassDirectory:
         return os.fdopen(open_regular(Path(self._root, path), top=str(self._root)), "rb")
 
     def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
-        """Return the files of an archive, whose bytes update the digest; None for a file of another
-        kind.
+        """Return the files of an archive, whose bytes update the digest.
+
+        Returns None for a file of another kind.
         """
         tree = outer_tree(Path(self._root, path), str(self._root))
         try:
@@ -146,23 +150,24 @@ class ClassDirectory:
         return tree
 
 
-def _add_entry(entry: "os.DirEntry[str]", found: Children) -> None:
+def _add_entry(entry: "os.DirEntry[str]", children: Children) -> None:
     try:
         if entry.is_symlink():
-            found.refused.append((entry.name, IS_LINK))
+            children.refused.append((entry.name, IS_LINK))
         elif entry.is_dir():
-            found.folders.append(entry.name)
+            children.folders.append(entry.name)
         elif entry.is_file():
-            found.files.append(entry.name)
+            children.files.append(entry.name)
         else:
-            found.refused.append((entry.name, "is not a regular file"))
+            children.refused.append((entry.name, "is not a regular file"))
     except OSError as error:
         MachineError.check(error, printable_path(entry.name))
-        found.refused.append((entry.name, f"cannot be read: {error.strerror}"))
+        children.refused.append((entry.name, f"cannot be read: {error.strerror}"))
 
 
 class ClassZip:
     """An open zip of many submissions; paths are those of its `members`, with forward slashes.
+
     Raises InputError.
 
     `outside` are the members that lead out of it, and cannot be read.
@@ -190,15 +195,15 @@ class ClassZip:
 
     def children(self, folder: str, limit: int | None = None) -> Children:
         """Return the names in a folder, at most `limit`."""
-        found = Children([], [], [])
+        children = Children([], [], [])
         for name, kind in islice(self._folders.get(folder, {}).items(), limit):
             if kind == "folder":
-                found.folders.append(name)
+                children.folders.append(name)
             elif kind == "file":
-                found.files.append(name)
+                children.files.append(name)
             else:
-                found.refused.append((name, kind))
-        return found
+                children.refused.append((name, kind))
+        return children
 
     def has(self, path: str) -> bool:
         """Return whether there is a file or folder."""
@@ -248,8 +253,9 @@ class ClassZip:
         return self._member(path).open()
 
     def archive(self, path: str, digest: "hashlib._Hash") -> Tree | None:
-        """Return the files of an archive in it, whose bytes update the digest; None for a file of
-        another kind.
+        """Return the files of an archive in it, whose bytes update the digest.
+
+        Returns None for a file of another kind.
         """
         member, name = self._member(path), path.rpartition("/")[2]
         if member.kind != "file":
@@ -287,8 +293,9 @@ class ClassZip:
 
 
 def _copy_archive(member: ArchiveMember, to: IO[bytes], digest: "hashlib._Hash") -> str | None:
-    """Copy an archive and update the digest; return its kind, or None for a file that is not an
-    archive.
+    """Copy an archive and update the digest.
+
+    Returns its kind, or None for a file that is not an archive.
     """
     with member.open() as content:
         chunk = content.read(_CHUNK)

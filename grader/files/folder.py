@@ -120,8 +120,8 @@ class _Walk:
 
     def _entries(self, where: str) -> list["os.DirEntry[str]"]:
         try:
-            with os.scandir(f"{self._folder}/{where}") as found:
-                return sorted(islice(found, limits.MAX_FILES + 1), key=attrgetter("name"))
+            with os.scandir(f"{self._folder}/{where}") as entries:
+                return sorted(islice(entries, limits.MAX_FILES + 1), key=attrgetter("name"))
         except OSError as error:
             if not where:
                 raise read_error(error, self._shown) from None
@@ -143,8 +143,9 @@ def _size(entry: "os.DirEntry[str]", shown: str) -> int:
 
 
 def file_at(path: Path, name: str, top: str) -> File:
-    """Return a single file under its name in a submission; raises InputError if it is a symlink or
-    missing.
+    """Return a single file under its name in a submission.
+
+    Raises InputError if it is a symlink or missing.
 
     Below the folder `top` no symlink is followed.
     """
@@ -158,10 +159,11 @@ def file_at(path: Path, name: str, top: str) -> File:
 
 
 def _generated_files(folder: Path, path: str) -> list[str]:
-    """Return the files of packages below a build folder: they are named in the report, never
-    read.
+    """Return the files of packages below a build folder.
+
+    They are named in the report, never read.
     """
-    found: list[str] = []
+    generated: list[str] = []
     seen = 0
     with suppress(RecursionError):  # os.walk raises it for folders nested a thousand deep
         for where, folders, names in os.walk(folder / path):
@@ -170,15 +172,16 @@ def _generated_files(folder: Path, path: str) -> list[str]:
             if seen > _MAX_GENERATED:
                 break
             copies = (f"{where}/{name}" for name in names if is_generated("build/" + name))
-            found += [printable_path(os.path.relpath(copy, folder)) for copy in copies]
-    return found
+            generated += [printable_path(os.path.relpath(copy, folder)) for copy in copies]
+    return generated
 
 
 def _find_settings(top: str) -> list[File]:
-    """Return the hidden files of a folder that say how packages are built; no symlink is
-    followed.
+    """Return the hidden files of a folder that say how packages are built.
+
+    No symlink is followed.
     """
-    found: list[File] = []
+    settings: list[File] = []
     waiting = [""]
     seen = 0
     while waiting:
@@ -192,15 +195,16 @@ def _find_settings(top: str) -> list[File]:
                 elif is_setting(path) and entry.is_file(follow_symlinks=False):
                     shown = printable_path(path)
                     read = partial(_read_file, f"{top}/{path}", shown, top)
-                    found.append(File(shown, entry.stat(follow_symlinks=False).st_size, read))
+                    settings.append(File(shown, entry.stat(follow_symlinks=False).st_size, read))
         if seen > limits.MAX_FILES:
             break
-    return found
+    return settings
 
 
 def _read_file(path: str, shown: str, top: str, limit: int, *, first: bool = False) -> bytes:
-    """Return the bytes of a file; messages use its name in the submission, so they are the same on
-    every machine.
+    """Return the bytes of a file.
+
+    Messages use its name in the submission, so they are the same on every machine.
     """
     if first:
         return read_start(path, limit, shown, top)

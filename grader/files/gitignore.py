@@ -93,8 +93,9 @@ def _is_ignored(path: Sequence[str], rules: Sequence[_IgnoreRule], *, is_folder:
 
 
 def _rules_above(folder: Path) -> tuple[tuple[str, ...], tuple[_IgnoreRule, ...]]:
-    """Return the folders from the root of the repository down to a folder, and the rules that hold
-    there; none where git ignores it itself.
+    """Return the folders from the root of the repository down to a folder, and the rules there.
+
+    Returns none where git ignores the folder itself.
     """
     real = Path(os.path.realpath(folder))
     root = next((above for above in (real, *real.parents) if (above / ".git").exists()), real)
@@ -142,5 +143,5 @@ def _rule(line: str, depth: int) -> _IgnoreRule | None:
 
 def _pattern(name: str) -> re.Pattern[str]:
     """Return the pattern of a name, in which a backslash stands before a plain character."""
-    text = _ESCAPED.sub(lambda found: f"[{found[1]}]" if found[1] in "*?[" else found[1], name)
+    text = _ESCAPED.sub(lambda match: f"[{match[1]}]" if match[1] in "*?[" else match[1], name)
     return re.compile(translate(text.replace("[^", "[!")))

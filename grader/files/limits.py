@@ -1,5 +1,4 @@
-"""What is read of a submission: what the names of files tell, parts that no student wrote, and
-limits.
+"""What is read of a submission: what file names tell, parts that no student wrote, and limits.
 
 Robots, packages and archives are known by their names.
 """
@@ -49,8 +48,9 @@ HARMLESS_SIZE = 32 * 1024 * 1024  # bytes that an archive may contain regardless
 
 
 def ignored_part(path: str) -> str | None:
-    """Return how far a path leads to something ignored: a folder of tools or of a build, or a
-    hidden folder or file.
+    """Return how far a path leads to something ignored.
+
+    This is a folder of tools or of a build, or a hidden folder or file.
     """
     *folders, name = path.split("/")
     for index, folder in enumerate(folders):

@@ -25,8 +25,9 @@ _SIGNATURES = {
 
 
 def archive_kind(start: bytes) -> str | None:
-    """Return the kind of archive that the first 512 bytes of a file show: zip, tar, gz, bz2, xz,
-    7z, rar, or None.
+    """Return the kind of archive that the first 512 bytes of a file show.
+
+    It is zip, tar, gz, bz2, xz, 7z, rar, or None.
     """
     tar = "tar" if start[257:262] == b"ustar" else None
     return next(
@@ -35,8 +36,9 @@ def archive_kind(start: bytes) -> str | None:
 
 
 def open_tree(path: Path, is_opened: Callable[[str], bool] = lambda _: False) -> Tree | None:
-    """Return the files at a path, including those in its archives; None for a single file that is
-    not an archive.
+    """Return the files at a path, including those in its archives.
+
+    Returns None for a single file that is not an archive.
 
     `is_opened` is that of `with_inner`.
     """
@@ -45,8 +47,9 @@ def open_tree(path: Path, is_opened: Callable[[str], bool] = lambda _: False) ->
 
 
 def outer_tree(path: Path, top: str = "") -> Tree | None:
-    """Return the files at a path, without opening archives in it; None for a single file that is
-    not an archive.
+    """Return the files at a path, without opening archives in it.
+
+    Returns None for a single file that is not an archive.
 
     Below the folder `top` no symlink is followed. Raises InputError.
     """
@@ -91,8 +94,9 @@ def with_inner(
     allowance: limits.Allowance | None = None,
     depth: int = 0,
 ) -> Tree:
-    """Return the tree with what is in its archives; beside a package and a URDF, only in those that
-    are.
+    """Return the tree with what is in its archives.
+
+    Beside a package and a URDF, only archives that contain them are opened.
     """
     archives = _archives_to_open(tree, is_opened)
     if not archives:

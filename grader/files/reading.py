@@ -1,6 +1,4 @@
-"""Read a student's files: regular files only, never more than a limit, never outside the
-submission.
-"""
+"""Read a student's files: regular files, up to a limit, never outside the submission."""
 
 import errno
 import os
@@ -34,8 +32,9 @@ _ADVICE = " for a URDF (--max-size raises it)"
 
 
 def shipped_folder(*names: str) -> Path:
-    """Return a folder that comes with the grader: in a wheel it is in the package, in a checkout
-    next to it.
+    """Return a folder that comes with the grader.
+
+    In a wheel it is in the package, in a checkout next to it.
     """
     package = Path(__file__).resolve().parent.parent
     return next(
@@ -51,8 +50,9 @@ def read_capped(
     top: str = "",
     advice: str = _ADVICE,
 ) -> bytes:
-    """Return the bytes of a regular file of at most `limit` bytes; raises InputError in one
-    sentence for anything else.
+    """Return the bytes of a regular file of at most `limit` bytes.
+
+    Raises InputError in one sentence for anything else.
 
     `shown` is its name in messages (default: the path), and `advice` ends the one about a file that
     is too large. Below the folder `top` no symlink is followed.
@@ -62,8 +62,9 @@ def read_capped(
 
 
 def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> bytes:
-    """Return the first bytes of a regular file; the other arguments and errors are those of
-    `read_capped`.
+    """Return the first bytes of a regular file.
+
+    The other arguments and errors are those of `read_capped`.
     """
     handle = open_regular(path, shown, top)
     try:
@@ -75,8 +76,9 @@ def read_start(path: Path | str, count: int, shown: str = "", top: str = "") -> 
 
 
 def read_error(error: OSError, shown: str) -> InputError:
-    """Return the error for a file that cannot be read; raises MachineError if the file is not
-    the cause.
+    """Return the error for a file that cannot be read.
+
+    Raises MachineError if the file is not the cause.
     """
     MachineError.check(error, shown)
     return InputError(f"cannot read {shown}: {error.strerror or error}")
@@ -104,8 +106,9 @@ def open_regular(path: Path | str, shown: str = "", top: str = "") -> int:
 
 
 def _open_below(top: str, path: str) -> int:
-    """Open `path`, which begins with `top`, folder by folder: a symlink on it, created at any
-    moment, is an OSError.
+    """Open `path`, which begins with `top`, folder by folder.
+
+    A symlink on it, created at any moment, is an OSError.
     """
     if not _OPENS_IN_FOLDERS:
         return _open_and_verify(top, path)
@@ -127,8 +130,9 @@ def _open_below(top: str, path: str) -> int:
 
 
 def _open_and_verify(top: str, path: str) -> int:
-    """Open a file if the system cannot open it folder by folder (Windows), and verify that no
-    symlink led to it.
+    """Open a file if the system cannot open it folder by folder (Windows).
+
+    Verifies that no symlink led to it.
     """
     handle = os.open(path, _FLAGS)
     real, plain, inside = map(
@@ -167,8 +171,9 @@ def sha256_of(data: bytes) -> str:
 
 @cache
 def _sha256() -> Callable[[bytes], Any]:
-    """Return the interpreter's own SHA-256, as `random` does, unless OpenSSL is loaded: loading
-    that takes long.
+    """Return the interpreter's own SHA-256, as `random` does, unless OpenSSL is loaded.
+
+    Loading that takes long.
     """
     small = (
         () if "hashlib" in sys.modules else ("_sha2", "_sha256")
@@ -177,8 +182,9 @@ def _sha256() -> Callable[[bytes], Any]:
 
 
 def not_there(path: Path) -> NotThereError:
-    """Return the error for a path that does not exist, with the existing name closest to its
-    first wrong part.
+    """Return the error for a path that does not exist.
+
+    It has the existing name closest to the path's first wrong part.
     """
     from grader.base.names import closest  # late: most paths are correct
 
@@ -206,8 +212,9 @@ def advice_for(path: str) -> str:
 
 
 def capped(data: bytes, limit: int, shown: str, advice: str = _ADVICE) -> bytes:
-    """Return the bytes that were read of a file; raises InputError if they are more than the
-    limit.
+    """Return the bytes that were read of a file.
+
+    Raises InputError if they are more than the limit.
     """
     if len(data) > limit:
         raise InputError(f"{shown} is larger than {size_text(limit)}, the limit{advice}")

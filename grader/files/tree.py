@@ -15,8 +15,9 @@ _SMALL = 4096  # bytes
 
 
 class _ContentReader(Protocol):
-    """Gives the bytes of a file: of at most `limit` bytes (InputError beyond), or only the first
-    `limit` of them.
+    """Gives the bytes of a file.
+
+    These are at most `limit` bytes (InputError beyond), or only the first `limit` of them.
     """
 
     def __call__(self, limit: int, *, first: bool = False) -> bytes:
@@ -24,8 +25,9 @@ class _ContentReader(Protocol):
 
 
 def keep_small(read: _ContentReader) -> _ContentReader:
-    """Return a reader that keeps the bytes of a small file: a search looks into it before it is
-    read.
+    """Return a reader that keeps the bytes of a small file.
+
+    A search looks into it before it is read.
     """
     whole = b""
 
@@ -41,8 +43,9 @@ def keep_small(read: _ContentReader) -> _ContentReader:
 
 
 class IgnoredFile(NamedTuple):
-    """A file or folder that is not read, and why: `is encrypted`. What `is_closed` may have to
-    be graded.
+    """A file or folder that is not read, and why: `is encrypted`.
+
+    With `is_closed`, it may contain what has to be graded.
     """
 
     path: str
@@ -54,8 +57,9 @@ class IgnoredFile(NamedTuple):
 
 
 class File(NamedTuple):
-    """One regular file; `path` is relative to the submission, with forward slashes, and
-    printable.
+    """One regular file.
+
+    `path` is relative to the submission, with forward slashes, and printable.
     """
 
     path: str
@@ -103,8 +107,9 @@ class Tree:
         return [path for path in sorted(self.unseen) if not ignored_part(f"{path}/")]
 
     def read(self, path: str, limit: int) -> bytes | None:
-        """Return the bytes of a file; None where there is none, or none that can be read within a
-        limit.
+        """Return the bytes of a file.
+
+        Returns None where there is none, or none that can be read within a limit.
         """
         if path not in self.files:
             return None
@@ -114,8 +119,9 @@ class Tree:
             return None
 
     def only(self, belongs: Callable[[str], bool]) -> "Tree":
-        """Return the tree of only the files, folders and notes whose paths belong; a folder's path
-        ends in a slash.
+        """Return the tree of only the files, folders and notes whose paths belong.
+
+        A folder's path ends in a slash.
         """
         files = {path: file for path, file in self.files.items() if belongs(path)}
         folders = frozenset(path for path in self.folders if belongs(f"{path}/"))
@@ -140,8 +146,8 @@ class Tree:
         def inside(paths: Iterable[str]) -> dict[str, str]:
             return {path.removeprefix(start): path for path in paths if path.startswith(start)}
 
-        own = {inner: self.files[path] for inner, path in inside(self.files).items()}
-        files = {inner: File(inner, file.size, file.read) for inner, file in own.items()}
+        contained = {inner: self.files[path] for inner, path in inside(self.files).items()}
+        files = {inner: File(inner, file.size, file.read) for inner, file in contained.items()}
         folders, unseen = frozenset(inside(self.folders)), frozenset(inside(self.unseen))
         return Tree(folder.rpartition("/")[2], files, folders, unseen=unseen, kept=(self,))
 
@@ -156,8 +162,9 @@ def make_tree(
     kept: tuple[object, ...] = (),
     settings: Callable[[], Iterable[File]] = tuple,
 ) -> Tree:
-    """Return a tree of these files; folders that only their paths name are added. Raises InputError
-    for too many.
+    """Return a tree of these files; folders that only their paths name are added.
+
+    Raises InputError for too many.
 
     A file that is too large is ignored: it is named, and never read.
     """

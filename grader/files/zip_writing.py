@@ -11,8 +11,9 @@ _UNIX = 3
 
 
 def zip_of(files: Mapping[str, bytes], executables: Collection[str] = ()) -> bytes:
-    """Return a zip of files by their paths; `executables` are the paths that get permission to be
-    run.
+    """Return a zip of files by their paths.
+
+    `executables` are the paths that get permission to be run.
 
     It has no timestamps and a fixed order. It is not compressed, because zlib's output differs
     between its versions.

@@ -1,5 +1,6 @@
-"""Grade on a Dask cluster: each Dask worker grades in separate processes, so that no submission can
-end it.
+"""Grade on a Dask cluster.
+
+Each Dask worker grades in separate processes, so that no submission can end it.
 """
 
 import asyncio
@@ -24,8 +25,9 @@ _lock = threading.Lock()  # a Dask worker may have many threads
 
 
 class Cluster(Executor):
-    """An executor whose tasks run on the workers of a Dask cluster; raises InputError if it cannot
-    be used.
+    """An executor whose tasks run on the workers of a Dask cluster.
+
+    Raises InputError if it cannot be used.
 
     `roots` are the class: every worker has to see them at the same paths. If a worker is lost, Dask
     gives its tasks to another one; a task that ends one worker after the other raises WorkerError.
@@ -96,8 +98,9 @@ class Cluster(Executor):
         self._client.close()
 
     def _check_workers(self, address: str, roots: Sequence[Path]) -> int:
-        """Return how many tasks the workers run at once; raises InputError if one could not grade
-        this class.
+        """Return how many tasks the workers run at once.
+
+        Raises InputError if one could not grade this class.
         """
         threads = self._client.nthreads()
         if not threads:
@@ -157,8 +160,9 @@ async def _connect_once(address: str) -> None:
 
 
 def _version_and_access(roots: Sequence[str]) -> tuple[str, str]:
-    """Return, on a worker, the version of its grader and the first path of the class that it does
-    not see.
+    """Return, on a worker, the version of its grader.
+
+    Also returns the first path of the class that the worker does not see.
     """
     return __version__, next((root for root in roots if not Path(root).exists()), "")
 
@@ -170,8 +174,9 @@ def _run_in_process(
     arguments: tuple[Any, ...],
     named: dict[str, Any],
 ) -> Any:
-    """Run a function in a process of this worker; return WorkerError, which if raised would fill
-    the worker's log.
+    """Run a function in a process of this worker, and return its result or a WorkerError.
+
+    A WorkerError that is raised would fill the worker's log.
     """
     with _lock:
         processes = _processes(preload)

@@ -1,5 +1,6 @@
-"""How worker processes start: forked from a server that loads the grader once, beside the command's
-own imports.
+"""How worker processes start: forked from a server that loads the grader once.
+
+The server loads it beside the command's own imports.
 """
 
 import multiprocessing
@@ -10,8 +11,9 @@ from typing import Any
 
 
 def worker_context(preload: Sequence[str] = ()) -> Any:
-    """Return the multiprocessing context: a fork server with the grader's modules, else spawned
-    processes.
+    """Return the multiprocessing context.
+
+    It is a fork server with the grader's modules, else it spawns processes.
 
     Args:
         preload: The modules that the server loads before it forks, late imports included.
@@ -30,8 +32,9 @@ def worker_context(preload: Sequence[str] = ()) -> Any:
 
 
 def start_server(preload: Sequence[str] = ()) -> None:
-    """Start the fork server with Ctrl-C blocked: while it loads modules it would print a traceback
-    of its own.
+    """Start the fork server with Ctrl-C blocked.
+
+    Otherwise it would print a traceback of its own while it loads modules.
     """
     if worker_context(preload).get_start_method() == "forkserver":
         from multiprocessing import forkserver, resource_tracker

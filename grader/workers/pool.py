@@ -1,5 +1,6 @@
-"""Worker processes on this machine: an executor as in `concurrent.futures` whose tasks end in any
-case.
+"""Worker processes on this machine.
+
+They are an executor as in `concurrent.futures` whose tasks end in any case.
 """
 
 import errno
@@ -43,8 +44,10 @@ _MAX_TRIES = 3  # to submit a task to a pool, which may break at any moment
 
 
 class WorkerError(GraderError):
-    """Why a task has no result, as a message for a report. `is_own_fault` is False if another task
-    may be the cause; `timeout` is the limit of processor time that it reached, 0 if it did not.
+    """Why a task has no result, as a message for a report.
+
+    `is_own_fault` is False if another task may be the cause; `timeout` is the limit of processor
+    time that it reached, 0 if it did not.
     """
 
     def __init__(self, reason: str, *, is_own_fault: bool = True, timeout: float = 0) -> None:
@@ -62,8 +65,10 @@ def out_of_time(timeout: float) -> WorkerError:
 
 
 class Processes(Executor):
-    """Worker processes. The future of a task that exceeds `timeout` seconds of processor time, or
-    ends its worker, raises WorkerError.
+    """Worker processes.
+
+    The future of a task that exceeds `timeout` seconds of processor time, or ends its worker,
+    raises WorkerError.
 
     Another worker then replaces the one that ended. All of them end with the process that started
     them, however that ends. `memory` is the limit for each worker, in bytes; workers start with
@@ -139,8 +144,9 @@ class Processes(Executor):
         return ProcessPool(self._workers, 0, _start_worker, (self._memory,), self._context)
 
     def _watch_pool(self) -> None:
-        """Replace a broken pool: it never completes a task whose worker ended while it sent, or
-        before it began.
+        """Replace a broken pool.
+
+        It never completes a task whose worker ended while it sent, or before it began.
         """
         while not self._is_shut.wait(_CHECK_INTERVAL):
             with self._lock:
@@ -222,8 +228,9 @@ def processors() -> int:
 
 
 def _start_worker(memory: int) -> None:
-    """Prepare a worker process: its memory is limited, it ignores Ctrl-C, and always ends with its
-    parent.
+    """Prepare a worker process.
+
+    Its memory is limited, it ignores Ctrl-C, and always ends with its parent.
     """
     leave = os._exit
     # pebble does not notice a worker that ends with exit code 0.

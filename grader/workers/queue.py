@@ -1,5 +1,6 @@
-"""Tasks in an executor: in groups as long as none fails, one by one after a failure; and the
-progress of a run.
+"""Tasks in an executor, and the progress of a run.
+
+They run in groups as long as none fails, one by one after a failure.
 """
 
 import time
@@ -22,8 +23,9 @@ _Result = TypeVar("_Result")
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """The progress of a run. `errored` and `unreadable` count submissions that were graded in this
-    run.
+    """The progress of a run.
+
+    `errored` and `unreadable` count submissions that were graded in this run.
     """
 
     total: int

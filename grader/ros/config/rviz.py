@@ -1,5 +1,6 @@
-"""RViz configuration files: the fixed frame and the enabled displays, as RViz of ROS 2 reads
-them.
+"""RViz configuration files as RViz of ROS 2 reads them.
+
+What is read are the fixed frame and the enabled displays.
 """
 
 from collections.abc import Iterator
@@ -54,7 +55,7 @@ class Display(NamedTuple):
                 return "its Alpha is 0"
         tables = links.value.values() if links is not None and isinstance(links.value, dict) else ()
         shown = [value for link in tables if (value := link.get("Value")) is not None]
-        if shown and not any(_switched_on(it, default=True) for it in shown):
+        if shown and not any(_switched_on(switch, default=True) for switch in shown):
             return "all its links are off"
         return ""
 
@@ -76,8 +77,9 @@ class Display(NamedTuple):
 
 
 class RvizFile(NamedTuple):
-    """The content of an RViz file. `fault` is set where it cannot be read: nothing else is known
-    then.
+    """The content of an RViz file.
+
+    `fault` is set where it cannot be read: nothing else is known then.
     """
 
     source: Source
@@ -95,18 +97,18 @@ class RvizFile(NamedTuple):
             return (self.fault,)
         if self.unread:
             return ()
-        found = [self.conflict] if self.conflict is not None else []
+        listed = [self.conflict] if self.conflict is not None else []
         for display in self.displays:
             if display.package == "rviz":
                 kind = display.kind
                 message = (
                     f"rviz/{kind} is a class of ROS 1; in ROS 2 it is rviz_default_plugins/{kind}"
                 )
-                found.append(Problem(kinds.ROS1_CLASS, message, display.location))
+                listed.append(Problem(kinds.ROS1_CLASS, message, display.location))
         if not any(display.kind == "TF" and display.enabled for display in self.displays):
             start = Location(self.source.path, 1, 1)
-            found.append(Problem(kinds.NO_TF, "the file has no enabled TF display", start))
-        return tuple(found)
+            listed.append(Problem(kinds.NO_TF, "the file has no enabled TF display", start))
+        return tuple(listed)
 
 
 @reuse
@@ -136,8 +138,9 @@ def read_rviz(data: bytes, path: str) -> RvizFile:
 
 
 def _switched_on(node: YamlNode | None, *, default: bool) -> bool:
-    """Return a setting as RViz reads it: everything but false, 0 and the empty text is on
-    (QVariant::toBool).
+    """Return a setting as RViz reads it.
+
+    Everything but false, 0 and the empty text is on (QVariant::toBool).
     """
     if node is None or node.text is None:
         return default
@@ -145,8 +148,9 @@ def _switched_on(node: YamlNode | None, *, default: bool) -> bool:
 
 
 def _displays(root: YamlNode) -> Iterator[Display]:
-    """Yield the displays of the root group and of the groups in it; in a disabled group they are
-    disabled.
+    """Yield the displays of the root group and of the groups in it.
+
+    In a disabled group they are disabled.
     """
     listed = root.get("Displays")
     is_on = _switched_on(root.get("Enabled"), default=_switched_on(root.get("Value"), default=True))

@@ -1,5 +1,6 @@
-"""YAML with the location of each value, read by event: neither depth nor aliases use unlimited time
-or memory.
+"""YAML with the location of each value.
+
+It is read by event: neither depth nor aliases use unlimited time or memory.
 """
 
 import re
@@ -50,8 +51,9 @@ class YamlFault(Exception):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class YamlNode:
-    """A value with its location: a text, a list or a mapping. An alias is the same object as its
-    anchor.
+    """A value with its location: a text, a list or a mapping.
+
+    An alias is the same object as its anchor.
     """
 
     source: Source
@@ -121,8 +123,9 @@ class YamlNode:
 
     @property
     def pairs(self) -> "list[tuple[str, YamlNode]]":
-        """The keys of a mapping with their values, also those that are written again, as rcl reads
-        them.
+        """The keys of a mapping with their values, as rcl reads them.
+
+        Keys that are written again are among them.
         """
         if isinstance(self.value, dict):
             return [*self.replaced, *self.value.items()]
@@ -161,8 +164,9 @@ class Visits:
 
 
 def yaml_value(text: str) -> Any:
-    """Return the value of a short YAML text: a number, a text, a list. Raises ValueError if it has
-    none.
+    """Return the value of a short YAML text: a number, a text, a list.
+
+    Raises ValueError if it has none.
     """
     try:
         loaded = yaml.load(text, Loader=_LOADER)  # noqa: S506  a safe loader
@@ -173,8 +177,9 @@ def yaml_value(text: str) -> Any:
 
 
 def check_one_document(text: str, path: str) -> None:
-    """Raise YamlFault for what yaml.safe_load refuses besides: a second document, and a tag that it
-    does not know.
+    """Raise YamlFault for what yaml.safe_load refuses besides.
+
+    This is a second document, and a tag that it does not know.
     """
     source, documents, depth = Source(path, text), 0, 0
     try:
@@ -205,8 +210,9 @@ def yaml_root(source: Source) -> YamlNode | None:
 
 
 def read_yaml(data: bytes, path: str) -> YamlNode:
-    """Return the first document of a YAML text; an empty text is an empty mapping. Raises
-    YamlFault.
+    """Return the first document of a YAML text; an empty text is an empty mapping.
+
+    Raises YamlFault.
     """
     is_wide = data.startswith((b"\xff\xfe", b"\xfe\xff"))
     text = data.decode("utf-16" if is_wide else "utf-8", "replace")
@@ -238,8 +244,9 @@ def first_alias(source: Source) -> tuple[str, Location] | None:
 
 
 def _locate_mark(source: Source, mark: Any) -> Location:
-    """Return the location of a mark by its offset: the lines of YAML also end at separators of
-    Unicode.
+    """Return the location of a mark by its offset.
+
+    The lines of YAML also end at separators of Unicode.
     """
     return source.at(min(mark.index + source.text.startswith("\ufeff"), len(source.text)))
 
@@ -279,8 +286,9 @@ class _Anchors:
         self._source, self._nodes, self._aliases = source, dict[str, YamlNode](), 0
 
     def node(self, event: yaml.NodeEvent) -> YamlNode:
-        """Return the node of an event. Raises YamlFault for an alias without an anchor, and for too
-        many.
+        """Return the node of an event.
+
+        Raises YamlFault for an alias without an anchor, and for too many.
         """
         if isinstance(event, yaml.AliasEvent):
             return self._resolve_alias(
@@ -307,12 +315,12 @@ class _Anchors:
 
     def _resolve_alias(self, anchor: str, location: Location) -> YamlNode:
         self._aliases += 1
-        found = self._nodes.get(anchor)
-        if found is None:
+        anchored = self._nodes.get(anchor)
+        if anchored is None:
             raise YamlFault(f"there is no anchor for the alias {anchor}", location)
         if self._aliases > _MAX_ALIASES:
             raise YamlFault(f"the file has more than {_MAX_ALIASES} aliases", location)
-        return found
+        return anchored
 
 
 def _attach_node(parent: YamlNode, key: list[YamlNode], node: YamlNode) -> None:

@@ -1,5 +1,6 @@
-"""The slips for which a YAML file cannot be read: a tab, a blank after a colon, a bracket or a
-quote.
+"""The slips for which a YAML file cannot be read.
+
+A slip is a tab, a blank after a colon, a bracket or a quote.
 """
 
 import re
@@ -21,8 +22,9 @@ _CLOSING = {"[": "]", "{": "}"}
 
 
 def yaml_slips(data: bytes, path: str) -> list[Slip]:
-    """Return what YAML refuses in a file, each with the change of one line after which it can be
-    read on; nothing where a line may mean several things.
+    """Return what YAML refuses in a file, each with the change of one line.
+
+    After this change it can be read on. Returns nothing where a line may mean several things.
     """
     if len(data) > _MAX_BYTES:
         return []
@@ -31,10 +33,10 @@ def yaml_slips(data: bytes, path: str) -> list[Slip]:
     slips: list[Slip] = []
     fault = _fault(lines, path)
     while isinstance(fault, YamlFault) and len(slips) < _MAX_SLIPS:
-        found = _meant(fault, lines, path)
-        if found is None:
+        correction = _meant(fault, lines, path)
+        if correction is None:
             return []
-        index, new = found
+        index, new = correction
         slips.append(_slip(fault, index, lines[index], new, path))
         lines[index] = new
         fault = _fault(lines, path)
@@ -84,10 +86,10 @@ def _meant(fault: YamlFault, lines: list[str], path: str) -> tuple[int, str] | N
         for new in _changes(lines, index):
             after = [*lines]
             after[index] = new
-            found = _fault(after, path)
-            if isinstance(found, YamlNode):
-                complete.setdefault(_plain(found), (index, new))
-            elif found.location.line > fault.location.line:
+            result = _fault(after, path)
+            if isinstance(result, YamlNode):
+                complete.setdefault(_plain(result), (index, new))
+            elif result.location.line > fault.location.line:
                 further = further or (index, new)
     if complete:
         return next(iter(complete.values())) if len(complete) == 1 else None
@@ -120,13 +122,7 @@ def _changes(lines: Sequence[str], index: int) -> Iterator[str]:
     line = lines[index]
     if len(line) > _MAX_LENGTH or not line.strip():
         return
-    content = line.lstrip()
-    indentation = line[: len(line) - len(content)]
-    if "\t" in indentation:
-        others = [*reversed(lines[:index]), *lines[index + 1 :]]
-        texts = [other for other in others if other.strip() and not other.startswith("\t")]
-        for other in texts[:2]:
-            yield other[: len(other) - len(other.lstrip())] + content
+    yield from _without_tabs(lines, index)
     spaced = _NO_BLANK.sub(r"\1: ", line, count=1)
     if spaced != line:
         yield spaced
@@ -138,3 +134,14 @@ def _changes(lines: Sequence[str], index: int) -> Iterator[str]:
     for quote in "'\"":
         if code.count(quote) % 2:
             yield f"{code.rstrip()}{quote}{rest}"
+
+
+def _without_tabs(lines: Sequence[str], index: int) -> Iterator[str]:
+    """Yield a line with tabs at its start with the indentation of others instead."""
+    line = lines[index]
+    content = line.lstrip()
+    if "\t" in line[: len(line) - len(content)]:
+        others = [*reversed(lines[:index]), *lines[index + 1 :]]
+        texts = [other for other in others if other.strip() and not other.startswith("\t")]
+        for other in texts[:2]:
+            yield other[: len(other) - len(other.lstrip())] + content

@@ -51,15 +51,17 @@ _Section = tuple[tuple[str, ...], YamlNode]
 
 
 def sections_in(node: YamlNode, keys: tuple[str, ...] = ()) -> Iterator[_Section]:
-    """Yield the parameters of each node in a parameter file: the keys of the node, and the mapping
-    below.
+    """Yield the parameters of each node in a parameter file.
+
+    These are the keys of the node, and the mapping below.
     """
     yield from _sections_below(node, keys, Visits(), {})
 
 
 def keys_of_sections(node: YamlNode) -> dict[str, tuple[str, ...]]:
-    """Return the keys of the sections of a parameter file by the full names of their nodes:
-    /ns/node.
+    """Return the keys of the sections of a parameter file by the full names of their nodes.
+
+    A full name is such as /ns/node.
     """
     return {f"/{'/'.join(keys).strip('/')}": keys for keys, _ in sections_in(node) if keys}
 
@@ -94,7 +96,7 @@ def _nested(node: YamlNode, made: dict[YamlNode, YamlNode]) -> YamlNode:
             table = inner
         tables.setdefault(outer, []).append(table)
         places.setdefault(outer, node.key_marks[key])
-    value = {key: _nested(_joined(it), made) for key, it in tables.items()}
+    value = {key: _nested(_joined(entries), made) for key, entries in tables.items()}
     made[node] = replace(node, value=value, key_marks=places)
     return made[node]
 

@@ -173,7 +173,7 @@ class CppEvaluation:
 
     def call(self, node: CppNode) -> CppValue:
         """Return a call of a function or method that is recorded."""
-        arguments = [self.value_of(it) for it in arguments_of(node)]
+        arguments = [self.value_of(argument) for argument in arguments_of(node)]
         function = node.child("function")
         owner = None
         if function is not None and function.kind == "field_expression":
@@ -185,7 +185,7 @@ class CppEvaluation:
 
     def made(self, node: CppNode) -> CppValue:
         """Return what makes an object, `new Type(...)` or `Type{...}`, as a call of its type."""
-        arguments = [self.value_of(it) for it in arguments_of(node)]
+        arguments = [self.value_of(argument) for argument in arguments_of(node)]
         kind = node.child("type")
         if kind is None:
             return _constructed(CppCall("", arguments, node, ()))
@@ -220,8 +220,9 @@ class CppEvaluation:
         return self._value_of_shared(node, field.text, node.text)
 
     def _value_of_shared(self, node: CppNode, name: str, written: str) -> CppValue:
-        """Return the value of the variable of a namespace or class that a name means at a place;
-        the name as it is written, where none has it.
+        """Return the value of the variable of a namespace or class that a name means at a place.
+
+        Returns the name as it is written, where none has it.
         """
         variables = self._variables_at(node, name)
         return self._value_of_variable(variables, node) if variables else CppName(written, node)
@@ -237,16 +238,17 @@ class CppEvaluation:
         key = (name, function.node)
         if key not in self._locals:
             node = function.node
-            uses = [it for it in self.unit.uses.get(name, ()) if it.file is node.file]
-            inside = [it for it in uses if node.start <= it.start < node.end]
+            uses = [use for use in self.unit.uses.get(name, ()) if use.file is node.file]
+            inside = [use for use in uses if node.start <= use.start < node.end]
             self._budget.charge(1 + len(uses) + _OF_USE * len(inside))
-            declared = [it for it in inside if _declaration_of(it) is not None]
+            declared = [use for use in inside if _declaration_of(use) is not None]
             self._locals[key] = _LocalVariable(declared, inside) if declared else None
         return self._locals[key]
 
     def uses_of(self, name: CppNode) -> Sequence[CppNode] | None:
-        """Return where the variable is written that a name means at a place; None where that is
-        not known.
+        """Return where the variable is written that a name means at a place.
+
+        Returns None where that is not known.
         """
         function = self.unit.function_around(name)
         local = self._local_variable(name.text, function) if function is not None else None
@@ -274,19 +276,28 @@ class CppEvaluation:
         writes: list[_Write] = []
         if value is not None:
             writes.append(_Write("declared", name, self._value_once(name, declaration, value)))
-        if local.effects is None:
-            local.effects = [(name, not_known("it depends on itself"))]
-            effects = [
-                (it, self._effect_of(it, declaration)) for it in local.uses if it is not name
-            ]
-            local.effects = [(use, effect) for use, effect in effects if effect != []]
-        self._budget.charge(1 + len(local.effects))
-        for use, effect in local.effects:
+        effects = self._effects_on(local, name, declaration)
+        self._budget.charge(1 + len(effects))
+        for use, effect in effects:
             if use.start < node.start:
                 if isinstance(effect, Unknown):
                     return effect
                 writes += effect
         return _last(writes)
+
+    def _effects_on(
+        self, local: "_LocalVariable", name: CppNode, declaration: CppNode
+    ) -> "list[tuple[CppNode, list[_Write] | Unknown]]":
+        """Return what changes a local variable, and where; it is computed once."""
+        if local.effects is None:
+            local.effects = [(name, not_known("it depends on itself"))]
+            effects: list[tuple[CppNode, list[_Write] | Unknown]] = []
+            for use in local.uses:
+                effect = self._effect_of(use, declaration) if use is not name else []
+                if effect != []:
+                    effects.append((use, effect))
+            local.effects = effects
+        return local.effects
 
     def _value_once(self, name: CppNode, declaration: CppNode, value: CppNode | None) -> CppValue:
         """Return the value that a variable is declared with, which is evaluated once."""
@@ -302,7 +313,7 @@ class CppEvaluation:
         kind = declaration.child("type")
         name = plain_name(kind) if kind is not None else ""
         if value.kind in ("argument_list", "initializer_list", "parameter_list"):
-            arguments = [self.value_of(it) for it in value.children]
+            arguments = [self.value_of(argument) for argument in value.children]
             if value.kind == "initializer_list" and kind is not None and _is_plain(name):
                 return arguments[0] if len(arguments) == 1 else not_known("it has no value")
             types = template_arguments(kind) if kind is not None else ()
@@ -355,8 +366,8 @@ class CppEvaluation:
             return True
         is_of_this = use.kind == "identifier" or is_member_of_this(use)
         scopes = self.unit.scopes_of(function)
-        found = self.unit.variables_named(use.text, scopes)
-        return is_of_this and bool(found) and found[0] is not variable
+        variables = self.unit.variables_named(use.text, scopes)
+        return is_of_this and bool(variables) and variables[0] is not variable
 
     def _value_written(self, writes: Sequence[_Write], node: CppNode) -> CppValue:
         """Return the value of a member at a place, if it is set once, before that."""
@@ -378,8 +389,10 @@ class CppEvaluation:
     # ----------------------------------------------------------------------
 
     def _effect_of(self, use: CppNode, declaration: CppNode | None) -> list[_Write] | Unknown:
-        """Return the values that a variable gets where its name is written; Unknown where that is
-        not known. `declaration` is that of a local one, whose methods may change it.
+        """Return the values that a variable gets where its name is written.
+
+        Returns Unknown where that is not known. `declaration` is that of a local one, whose methods
+        may change it.
         """
         node = use
         if is_member_of_this(use) and use.parent is not None:
@@ -391,7 +404,7 @@ class CppEvaluation:
             case (("argument_list" | "template_argument_list"), _):
                 return self._effect_of_argument(node, parent)
             case "field_initializer", _:
-                values = [self.value_of(it) for it in arguments_of(parent)]
+                values = [self.value_of(argument) for argument in arguments_of(parent)]
                 return [_Write("set", node, values[0] if values else not_known("it has no value"))]
             case "assignment_expression", "left":
                 return self._effect_of_assignment(node, parent)
@@ -430,8 +443,9 @@ class CppEvaluation:
     def _effect_of_method(
         self, node: CppNode, parent: CppNode, declaration: CppNode | None
     ) -> list[_Write] | Unknown:
-        """Return the effect of a method on a variable: one that is called in a statement after the
-        declaration is part of its value.
+        """Return the effect of a method on a variable.
+
+        A method that is called in a statement after the declaration is part of its value.
         """
         call, field = parent.parent, parent.child("field")
         name = field.text if field is not None else ""
@@ -442,7 +456,7 @@ class CppEvaluation:
             return not_known("a method may change it")
         if not call.parent or call.parent.parent is not declaration.parent:
             return not_known("a method may change it")
-        arguments = [self.value_of(it) for it in arguments_of(call)]
+        arguments = [self.value_of(argument) for argument in arguments_of(call)]
         return [_Write("set", node, CppCall(name, arguments, call, (), _BEFORE))]
 
     def _value_of_macro(self, name: str) -> CppValue:
@@ -522,9 +536,7 @@ def _is_unconditional(node: CppNode) -> bool:
 
 
 def _is_statement(node: CppNode) -> bool:
-    """Return whether an expression is a statement of the body of its function, which is always
-    executed.
-    """
+    """Return whether an expression is an always executed statement of its function's body."""
     statement = node.parent
     if statement is None or statement.kind != "expression_statement":
         return False
@@ -545,8 +557,9 @@ def is_member_of_this(use: CppNode) -> bool:
 
 
 def _declaration_of(name: CppNode) -> CppNode | None:
-    """Return the declaration that declares a name as a local variable or a parameter; None for a
-    name that is used.
+    """Return the declaration that declares a name as a local variable or a parameter.
+
+    Returns None for a name that is used.
     """
     node = name
     for around in name.ancestors():

@@ -12,8 +12,9 @@ CppValue = Any
 
 
 class CppName:
-    """Something that has a name and no value that is known: `rclcpp::ReliabilityPolicy::Reliable`,
-    `this`, a parameter of a function.
+    """Something that has a name and no value that is known.
+
+    Examples are `rclcpp::ReliabilityPolicy::Reliable`, `this`, a parameter of a function.
     """
 
     def __init__(self, name: str, node: CppNode) -> None:

@@ -33,8 +33,10 @@ class CppClass(NamedTuple):
 
 
 class CppFunction(NamedTuple):
-    """A function that is defined. `owner` is the class or namespace that its name begins with, as
-    it is written, or the full name of the class around it.
+    """A function that is defined.
+
+    `owner` is the class or namespace that its name begins with, as it is written, or the full name
+    of the class around it.
     """
 
     name: str
@@ -53,9 +55,9 @@ class CppFunction(NamedTuple):
     def parameters(self) -> list[CppNode]:
         """Its parameters, in their order."""
         declarator = _function_declarator(self.node)
-        found = declarator.child("parameters") if declarator is not None else None
+        parameter_list = declarator.child("parameters") if declarator is not None else None
         kinds = ("parameter_declaration", "optional_parameter_declaration")
-        return found.of_kind(*kinds) if found is not None else []
+        return parameter_list.of_kind(*kinds) if parameter_list is not None else []
 
 
 class CppVariable(NamedTuple):
@@ -96,11 +98,11 @@ class CppFile:
     @cached_property
     def uses(self) -> Mapping[str, Sequence[CppNode]]:
         """Where each name of a variable, function or member is written."""
-        found: dict[str, list[CppNode]] = {}
+        nodes_by_name: dict[str, list[CppNode]] = {}
         for node in self.syntax.root.walk():
             if node.kind in ("identifier", "field_identifier") or is_argument(node):
-                found.setdefault(node.text, []).append(node)
-        return found
+                nodes_by_name.setdefault(node.text, []).append(node)
+        return nodes_by_name
 
     @cached_property
     def words(self) -> frozenset[str]:
@@ -206,7 +208,7 @@ class _Reader:
         """Add another name for a type or a namespace."""
         name, kind = node.child("name"), node.child("type")
         if kind is None:
-            kind = next((it for it in node.children if it is not name), None)
+            kind = next((child for child in node.children if child is not name), None)
         if name is not None and kind is not None:
             self.file.aliases.append((place.full(name.text), plain(kind.text)))
 
@@ -293,7 +295,7 @@ def is_guard(node: CppNode) -> bool:
 
 def is_constant(declaration: CppNode) -> bool:
     """Return whether a declaration says that its variables do not change."""
-    return any(it.text in _CONSTANTS for it in declaration.of_kind("type_qualifier"))
+    return any(qualifier.text in _CONSTANTS for qualifier in declaration.of_kind("type_qualifier"))
 
 
 def declared_in(declaration: CppNode) -> Iterator[tuple[CppNode, CppNode | None]]:
@@ -315,8 +317,9 @@ def _is_given(parameter: CppNode) -> bool:
 
 
 def is_argument(node: CppNode) -> bool:
-    """Return whether a name is an argument although the grammar takes it for the type of a
-    parameter: in a function, `Type name(argument);`.
+    """Return whether a name is an argument although the grammar takes it for a parameter's type.
+
+    In a function, such a name is in `Type name(argument);`.
     """
     parent = node.parent
     is_name = node.kind in ("type_identifier", "qualified_identifier")

@@ -41,8 +41,8 @@ def text_of_literal(node: CppNode) -> str | None:
     return _ESCAPE.sub(_unescaped, inside).decode("utf-8", "replace")
 
 
-def _unescaped(found: re.Match[bytes]) -> bytes:
-    octal, byte, short, long, plain = found.groups()
+def _unescaped(match: re.Match[bytes]) -> bytes:
+    octal, byte, short, long, plain = match.groups()
     if octal is not None:
         return bytes([int(octal, 8) % 256])
     if byte is not None:

@@ -15,8 +15,9 @@ _INITIALIZED = ("field_initializer", "init_declarator")
 
 
 def class_written(node: CppNode) -> str:
-    """Return the class of which something makes an object, as it is written; empty for something
-    else.
+    """Return the class of which something makes an object, as it is written.
+
+    It is empty for something else.
     """
     if node.kind == "call_expression":
         owner, _, short = called_name(node).rpartition("::")
@@ -72,8 +73,9 @@ def _last_name(node: CppNode | None) -> CppNode | None:
 
 
 def self_of(use: CppNode, same: Collection[str]) -> CppNode:
-    """Return the expression that is the object whose name is written, also by one of the methods
-    that return the object.
+    """Return the expression that is the object whose name is written.
+
+    The name may be followed by calls of the methods that return the object.
     """
     node = use
     if use.field == "field" and use.parent is not None:

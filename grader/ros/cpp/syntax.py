@@ -86,8 +86,10 @@ class CppNode:
 
 
 class CppSyntax:
-    """A C++ file: its text, and the root of its syntax. `unread` says why it is not read, as part
-    of a sentence; `error` is the place of the first text that is no C++.
+    """A C++ file: its text, and the root of its syntax.
+
+    `unread` says why it is not read, as part of a sentence; `error` is the place of the first text
+    that is no C++.
     """
 
     def __init__(self, path: str, text: str) -> None:
@@ -152,8 +154,8 @@ def _parser() -> "Parser":
 def _without_macros(text: str) -> str:
     """Return a text with blanks in place of macros that declare nothing."""
 
-    def replaced(found: re.Match[str]) -> str:
-        word = found[0]
+    def replaced(match: re.Match[str]) -> str:
+        word = match[0]
         return word if word.lstrip().startswith("#") else " " * len(word)
 
     return _IGNORED.sub(replaced, text)

@@ -36,11 +36,11 @@ class CppUnit:
     @cached_property
     def classes(self) -> Mapping[str, Sequence[CppClass]]:
         """The classes by their full names."""
-        found: dict[str, list[CppClass]] = {}
+        by_name: dict[str, list[CppClass]] = {}
         for file in self.files:
             for each in file.classes:
-                found.setdefault(each.name, []).append(each)
-        return found
+                by_name.setdefault(each.name, []).append(each)
+        return by_name
 
     @cached_property
     def functions(self) -> tuple[CppFunction, ...]:
@@ -55,30 +55,30 @@ class CppUnit:
     @cached_property
     def variables(self) -> Mapping[str, Sequence[CppVariable]]:
         """The variables of namespaces and classes by their full names."""
-        found: dict[str, list[CppVariable]] = {}
+        by_name: dict[str, list[CppVariable]] = {}
         for file in self.files:
             for each in file.variables:
-                found.setdefault(each.name, []).append(each)
-        return found
+                by_name.setdefault(each.name, []).append(each)
+        return by_name
 
     @cached_property
     def _aliases(self) -> Mapping[str, Sequence[str]]:
-        found: dict[str, list[str]] = {}
+        by_name: dict[str, list[str]] = {}
         for file in self.files:
             for name, target in file.aliases:
-                targets = found.setdefault(name, [])
+                targets = by_name.setdefault(name, [])
                 if target not in targets:
                     targets.append(target)
-        return found
+        return by_name
 
     @cached_property
     def macros(self) -> Mapping[str, Sequence[CppMacro]]:
         """The macros without parameters by their names."""
-        found: dict[str, list[CppMacro]] = {}
+        by_name: dict[str, list[CppMacro]] = {}
         for file in self.files:
             for name, each in file.macros.items():
-                found.setdefault(name, []).extend(each)
-        return found
+                by_name.setdefault(name, []).extend(each)
+        return by_name
 
     @cached_property
     def called_macros(self) -> frozenset[str]:
@@ -86,8 +86,9 @@ class CppUnit:
         return frozenset(name for file in self.files for name in file.called_macros)
 
     def meanings(self, name: str, scopes: Sequence[str] = ()) -> tuple[str, ...]:
-        """Return the full names that a name of a type may stand for, in these scopes; what is not
-        defined in the files is itself, also in the namespaces that are opened.
+        """Return the full names that a name of a type may stand for, in these scopes.
+
+        What is not defined in the files is itself, also in the namespaces that are opened.
         """
         for _ in range(_MAX_ALIASES):
             target = self._target_of(name, scopes)
@@ -138,11 +139,11 @@ class CppUnit:
     @cached_property
     def uses(self) -> Mapping[str, Sequence[CppNode]]:
         """Where each name of a variable, function or member is written."""
-        found: dict[str, list[CppNode]] = {}
+        by_name: dict[str, list[CppNode]] = {}
         for file in self.files:
             for name, nodes in file.uses.items():
-                found.setdefault(name, []).extend(nodes)
-        return found
+                by_name.setdefault(name, []).extend(nodes)
+        return by_name
 
     def calls_in(self, function: CppFunction) -> Sequence[CppNode]:
         """Return the calls in a function, and what else makes objects or is the object itself."""
@@ -150,13 +151,13 @@ class CppUnit:
 
     @cached_property
     def _calls(self) -> Mapping[CppNode, Sequence[CppNode]]:
-        found: dict[CppNode, list[CppNode]] = {}
+        calls: dict[CppNode, list[CppNode]] = {}
         for file in self.files:
             for node in file.calls:
                 function = self.function_around(node)
                 if function is not None:
-                    found.setdefault(function.node, []).append(node)
-        return found
+                    calls.setdefault(function.node, []).append(node)
+        return calls
 
     def function_around(self, node: CppNode) -> CppFunction | None:
         """Return the function that a place is in."""
@@ -210,14 +211,15 @@ def template_arguments(call: CppNode) -> tuple[str, ...]:
     while node is not None:
         given = node.child("arguments")
         if given is not None and given.kind == "template_argument_list":
-            return tuple(it.text for it in given.children if it.kind != "comment")
+            return tuple(argument.text for argument in given.children if argument.kind != "comment")
         node = node.child("field") or node.child("name")
     return ()
 
 
 def resolve_include(path: str, included: str, files: Mapping[str, object]) -> str | None:
-    """Return the file of a package that an `#include` in another one means; None for one of another
-    package.
+    """Return the file of a package that an `#include` in another one means.
+
+    Returns None for one of another package.
 
     Args:
         path: The path of the file with the `#include`.

@@ -85,8 +85,9 @@ _SEARCHED = ("AMENT_PREFIX_PATH", "PATH", "PYTHONPATH", "LD_LIBRARY_PATH", "HOME
 
 @dataclass(slots=True)
 class ActionVisitor:
-    """A visitor of actions that adds its findings. `when` is whether an action is executed, None
-    if this is unknown.
+    """A visitor of actions that adds its findings.
+
+    `when` is whether an action is executed, None if this is unknown.
     """
 
     findings: Findings
@@ -106,24 +107,30 @@ class ActionVisitor:
     depth: int = 0
 
     def launch(self, description: Value, context: Context, at: Position) -> None:
-        """Execute a description, and then what its timers and the start and end of its processes
-        execute.
+        """Execute a description, and then what its timers and events execute.
+
+        The events are the start and end of its processes.
         """
         self.visit(description, context, context.when, at)
         for _ in range(_MAX_DEPTH):
             later, self.later = self.later, []
             started = [self._is_started(target) for *_, target in later]
-            for (actions, call, own, when, target), is_started in zip(later, started, strict=True):
+            for (actions, call, inner_context, when, target), is_started in zip(
+                later, started, strict=True
+            ):
                 if is_started is False and any(started):
                     # Another event may start the process.
-                    self.later.append((actions, call, own, when, target))
+                    self.later.append((actions, call, inner_context, when, target))
                     continue
-                inner = replace(own, arguments=context.arguments, has_others=context.has_others)
+                inner = replace(
+                    inner_context, arguments=context.arguments, has_others=context.has_others
+                )
                 self.visit_all(actions, call, inner, is_started if when else None)
 
     def _is_started(self, target: Value) -> bool | None:
-        """Return whether the process is started on which an action waits; True if it waits on
-        none.
+        """Return whether the process is started on which an action waits.
+
+        Returns True if it waits on none.
         """
         if not isinstance(target, Call):
             return True
@@ -158,8 +165,9 @@ class ActionVisitor:
         self.depth -= 1
 
     def add_form(self, signal: EvaluationSignal, at: Position, when: bool | None) -> None:
-        """Add an error in the form of a description: launch looks at all of it before it
-        executes any of it.
+        """Add an error in the form of a description.
+
+        Launch looks at all of it before it executes any of it.
         """
         at, is_silent = signal.at or at, self.findings.is_silent
         if not isinstance(signal, EvaluationFails):
@@ -237,8 +245,9 @@ class ActionVisitor:
             self.visit(action, context, when, call.at)
 
     def perhaps(self, actions: Value, call: Call, context: Context, when: bool | None) -> None:
-        """Visit what may never be executed: errors in it do not count, but for what is no
-        action.
+        """Visit what may never be executed.
+
+        Errors in it do not count, but for what is no action.
         """
         was_silent, executed = self.findings.is_silent, self.executed
         self.findings.is_silent, self.executed = True, {}
@@ -326,15 +335,15 @@ def _visit_description(
 def _declare_argument(
     visitor: ActionVisitor, call: Call, context: Context, when: bool | None
 ) -> None:
-    name, choices, default = (call.kwargs.get(it) for it in ("name", "choices", "default_value"))
+    name, default = call.kwargs.get("name"), call.kwargs.get("default_value")
     if not isinstance(name, str):
         raise Undetermined("the name of this launch argument is not evaluated", call.at)
     visitor.findings.declared.append(name)
     if when is False:
         return
-    is_given = name in context.given or (
-        name in context.arguments and call.kwargs.get("condition") is not None
-    )
+    is_given = name in context.given
+    if name in context.arguments and call.kwargs.get("condition") is not None:
+        is_given = True
     if default is None and not is_given:
         context.arguments[name] = Unknown(f"the launch argument {name!r} has no default", call.at)
         raise MissingValue(
@@ -345,13 +354,19 @@ def _declare_argument(
     value = context.arguments[name]
     if isinstance(value, str):
         visitor.findings.values.append((name, value))
-    if choices is not None and when:
-        if not isinstance(value, str) or not isinstance(choices, list | tuple):
-            raise Undetermined(f"whether {name!r} is one of its choices is not evaluated", call.at)
-        if value not in choices:
-            raise EvaluationFails(
-                f"the value {value!r} of {name!r} is not one of its choices", call.at
-            )
+    if when:
+        _check_choice(name, value, call)
+
+
+def _check_choice(name: str, value: Value, call: Call) -> None:
+    """Raise for the value of an argument that is not one of its choices, or may be none."""
+    choices = call.kwargs.get("choices")
+    if choices is None:
+        return
+    if not isinstance(value, str) or not isinstance(choices, list | tuple):
+        raise Undetermined(f"whether {name!r} is one of its choices is not evaluated", call.at)
+    if value not in choices:
+        raise EvaluationFails(f"the value {value!r} of {name!r} is not one of its choices", call.at)
 
 
 def _assign_argument(
@@ -412,11 +427,11 @@ def _set_parameter(visitor: ActionVisitor, call: Call, context: Context, when: b
         )
     )
     if "filename" in call.kwargs:
-        found = file_for_all(call.kwargs["filename"], context, call.at, location)
-        visitor.findings.refer("read" if when else "parameters", found.path, call)
+        file = file_for_all(call.kwargs["filename"], context, call.at, location)
+        visitor.findings.refer("read" if when else "parameters", file.path, call)
     else:
-        found = set_for_all(call.kwargs["name"], call.kwargs["value"], context, call.at, location)
-    given[-1] = found if when else given[-1]
+        file = set_for_all(call.kwargs["name"], call.kwargs["value"], context, call.at, location)
+    given[-1] = file if when else given[-1]
 
 
 def _set_time(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
@@ -492,11 +507,11 @@ def _call_opaque_function(
     ):
         raise Undetermined("the result of this OpaqueFunction is not evaluated", call.at)
     arguments = (Call("launch.launch_context.LaunchContext", [], {}, call.at), *args)
-    found = visitor.call_function(function, call.at, arguments if when else None, context)
-    if isinstance(found, Unknown):
-        visitor.findings.add(found.as_signal(), found.at, when)
-    elif found is not None:
-        visitor.visit_all(found, call, context, when)
+    returned = visitor.call_function(function, call.at, arguments if when else None, context)
+    if isinstance(returned, Unknown):
+        visitor.findings.add(returned.as_signal(), returned.at, when)
+    elif returned is not None:
+        visitor.visit_all(returned, call, context, when)
 
 
 def _include_file(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:

@@ -1,5 +1,6 @@
-"""The arguments of launch files as they are written: where a file declares them, and where it uses
-them.
+"""The arguments of launch files where a file declares them, and where it uses them.
+
+They are as they are written.
 """
 
 import ast
@@ -42,17 +43,18 @@ class _ArgumentName(NamedTuple):
 
 
 def argument_names(data: bytes, path: str) -> tuple[Source, list[_ArgumentName]]:
-    """Return the text of a launch file, and the names of arguments in it in the order of the
-    text.
+    """Return the text of a launch file, and the names of arguments in it.
+
+    The names are in the order of the text.
     """
     if path.endswith(".py"):
         code = parse(data, path)
-        found = [*_in_python(code)] if isinstance(code, Code) else []
-        return code.source, sorted(found, key=lambda it: it.start)
+        names = [*_in_python(code)] if isinstance(code, Code) else []
+        return code.source, sorted(names, key=lambda argument: argument.start)
     source = Source(path, data.decode("utf-8", "replace"))
     read = _in_yaml(source) if path.endswith((".yaml", ".yml")) else _in_xml(data, source)
-    found = [*read]
-    return source, sorted(found, key=lambda it: it.start)
+    names = [*read]
+    return source, sorted(names, key=lambda argument: argument.start)
 
 
 def _in_python(code: Code) -> Iterator[_ArgumentName]:
@@ -65,7 +67,7 @@ def _in_python(code: Code) -> Iterator[_ArgumentName]:
         if called not in _CALLS:
             continue
         keyword, is_definition = _CALLS[called]
-        named = [it.value for it in node.keywords if it.arg == keyword]
+        named = [given.value for given in node.keywords if given.arg == keyword]
         for value in (*node.args[:1], *named):
             span = _span_of_text(code.source, value)
             if span is not None and isinstance(value, ast.Constant):
@@ -95,14 +97,14 @@ def _in_xml(data: bytes, source: Source) -> Iterator[_ArgumentName]:
             name = markup.attribute(source.text, start, "name")
             if name is not None and (parent is None or parent.tag != "include"):
                 yield _ArgumentName(source.text[slice(*name.value)], True, *name.value)
-    text = _COMMENT.sub(lambda found: " " * len(found[0]), source.text)
-    for found in _VARIABLE.finditer(text):
-        yield _ArgumentName(found[1], False, *found.span(1))
+    text = _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
+    for match in _VARIABLE.finditer(text):
+        yield _ArgumentName(match[1], False, *match.span(1))
 
 
 def _in_yaml(source: Source) -> Iterator[_ArgumentName]:
-    text = _YAML_COMMENT.sub(lambda found: " " * len(found[0]), source.text)
-    for found in _YAML_ARGUMENT.finditer(text):
-        yield _ArgumentName(found[1], True, *found.span(1))
-    for found in _VARIABLE.finditer(text):
-        yield _ArgumentName(found[1], False, *found.span(1))
+    text = _YAML_COMMENT.sub(lambda match: " " * len(match[0]), source.text)
+    for match in _YAML_ARGUMENT.finditer(text):
+        yield _ArgumentName(match[1], True, *match.span(1))
+    for match in _VARIABLE.finditer(text):
+        yield _ArgumentName(match[1], False, *match.span(1))

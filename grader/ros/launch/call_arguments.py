@@ -1,5 +1,6 @@
-"""The constructors of launch's classes, and what they require of their arguments, as they check it
-themselves.
+"""The constructors of launch's classes, and what they require of their arguments.
+
+They check it themselves.
 
 An argument is a text (a string or substitutions), a list of them, a parameter of a node, and so on:
 `_CHECKS` has a check of each kind, which returns what is wrong.
@@ -121,9 +122,9 @@ class LaunchFunctions(dict[str, Any]):
 
     def get(self, name: str, default: Any = None) -> Any:
         """Return a function; None for one that is not evaluated."""
-        found = super().get(name)
-        if found is not None:
-            return found
+        function = super().get(name)
+        if function is not None:
+            return function
         return _find_function(name) or default
 
     def __contains__(self, name: object) -> bool:
@@ -131,18 +132,21 @@ class LaunchFunctions(dict[str, Any]):
 
 
 def _find_function(name: str) -> "Callable[[Evaluation, Call], Value] | None":
-    """Return the constructor of a class of launch, or one that fails: of a name that is not
-    there.
+    """Return the constructor of a class of launch, or one that fails.
+
+    It fails for a name that is not there.
     """
-    owner, _, own = name.rpartition(".")
+    owner, _, member = name.rpartition(".")
     names, cls = exports().get(owner), class_named(owner)
-    if names is not None and own in names:
-        made = class_named(names[own])
+    if names is not None and member in names:
+        made = class_named(names[member])
         return partial(_record_constructor, made) if made is not None else None
     if names is not None or (
-        cls is not None and own not in cls.methods and not own.startswith("_")
+        cls is not None and member not in cls.methods and not member.startswith("_")
     ):
-        return partial(_fail_missing, f"{cls.short if cls is not None else owner} has no {own!r}")
+        return partial(
+            _fail_missing, f"{cls.short if cls is not None else owner} has no {member!r}"
+        )
     return None
 
 
@@ -185,8 +189,9 @@ def _fail_missing(message: str, *_: object) -> Value:
 
 
 def check(cls: LaunchClass, call: Call) -> Unknown | None:
-    """Name and check the arguments of a constructor; return what is not evaluated. Raises
-    EvaluationFails.
+    """Name and check the arguments of a constructor; return what is not evaluated.
+
+    Raises EvaluationFails.
     """
     if cls.short not in _EVALUATED and not is_a(cls.name, SOURCE):
         return Unknown(f"{cls.short} is not evaluated", call.at)
@@ -203,17 +208,7 @@ def check(cls: LaunchClass, call: Call) -> Unknown | None:
 
 def _name_arguments(cls: LaunchClass, call: Call) -> None:
     """Give the arguments of a constructor their names. Raises EvaluationFails as Python does."""
-    positional = [name for name, row in cls.parameters.items() if row.is_positional]
-    if len(call.args) > len(positional):
-        if cls.short in _TAKES_A_LIST:
-            hint = "put [ ] around them"
-        else:
-            names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
-            hint = f"write {names[:100]}"
-        raise EvaluationFails(
-            f"{cls.short} takes {len(positional)} argument without a name: {hint}", call.at
-        )
-    given = dict(zip(positional, call.args, strict=False))
+    given = _given_by_place(cls, call)
     twice = given.keys() & call.kwargs.keys()
     if twice:
         raise EvaluationFails(f"{cls.short} is given {min(twice)!r} twice", call.at)
@@ -231,6 +226,21 @@ def _name_arguments(cls: LaunchClass, call: Call) -> None:
             raise EvaluationFails(f"{cls.short} needs the argument {name}=...", call.at)
 
 
+def _given_by_place(cls: LaunchClass, call: Call) -> dict[str, Value]:
+    """Return the arguments of a call without a name, by their names. Raises EvaluationFails."""
+    positional = [name for name, row in cls.parameters.items() if row.is_positional]
+    if len(call.args) > len(positional):
+        if cls.short in _TAKES_A_LIST:
+            hint = "put [ ] around them"
+        else:
+            names = ", ".join(f"{name}=..." for name in cls.parameters if name not in positional)
+            hint = f"write {names[:100]}"
+        raise EvaluationFails(
+            f"{cls.short} takes {len(positional)} argument without a name: {hint}", call.at
+        )
+    return dict(zip(positional, call.args, strict=False))
+
+
 class _Fault(NamedTuple):
     """What is wrong with an argument, after its name."""
 
@@ -242,8 +252,9 @@ _NO_LIST = _Fault("has to be a list: put [ ] around it")
 
 
 def _wrong_argument(cls: LaunchClass, call: Call, name: str, value: Value) -> str:
-    """Return what is wrong with an argument, or, without a name, with all together. Raises
-    Undetermined.
+    """Return what is wrong with an argument, or, without a name, with all together.
+
+    Raises Undetermined.
     """
     if bound := _find_bound(value):
         text = unparse(bound)[:60]
@@ -408,25 +419,28 @@ def _wrong_typed(call: Call) -> str:
         if kind is None or isinstance(value, kind):
             return ""
         return f"the value is {kind_of(value)}, not {kind.__name__}"
-    if isinstance(value, list | tuple) and not any(isinstance(it, Call | Unknown) for it in value):
-        is_wrong = kind is not None or not all(isinstance(it, SCALARS) for it in value)
+    if isinstance(value, list | tuple) and not any(
+        isinstance(element, Call | Unknown) for element in value
+    ):
+        is_wrong = kind is not None or not all(isinstance(element, SCALARS) for element in value)
         return f"the value is {kind_of(value)}" if is_wrong else ""
     fault = _wrong_text(value)
     return fault.message if fault is not None else ""
 
 
 def type_of(call: Call) -> "type | None":
-    """Return the type that ParameterValue is given; None for none. Raises Undetermined for the type
-    of a list.
+    """Return the type that ParameterValue is given; None for none.
+
+    Raises Undetermined for the type of a list.
     """
     given = call.kwargs.get("value_type")
     if given is None:
         return None
     name = getattr(given, "name", "").removeprefix("builtins.")
-    found = {kind.__name__: kind for kind in SCALARS}.get(name)
-    if found is None:
+    scalar = {kind.__name__: kind for kind in SCALARS}.get(name)
+    if scalar is None:
         raise Undetermined(f"the type {name}")
-    return found
+    return scalar
 
 
 def _wrong_texts(value: Value) -> _Fault | None:
@@ -538,7 +552,7 @@ def _wrong_event_handler(call: Call) -> str:
     target = call.kwargs.get("target_action")
     items = value if isinstance(value, list) else [value]
     if not isinstance(value, Function) and not all(
-        isinstance(it, Call) and _is_entity(it) for it in items
+        isinstance(handler, Call) and _is_entity(handler) for handler in items
     ):
         raise Undetermined("what this event handler executes")
     if isinstance(target, str | list | dict | int | float):

@@ -1,5 +1,6 @@
-"""Components: classes that a launch file loads into a container, and the containers that it
-starts, as launch_ros does.
+"""Components, and the containers that a launch file starts for them, as launch_ros does.
+
+Components are classes that a launch file loads into a container.
 
 What components publish, and which parameters they get, is not evaluated.
 """

@@ -1,5 +1,6 @@
-"""Launch files in XML and YAML: read as entities, which become the actions that a Python launch
-file would create.
+"""Launch files in XML and YAML, read as entities.
+
+The entities become the actions that a Python launch file would create.
 
 Their values are texts with substitutions, by launch's grammar, and texts that are numbers.
 """
@@ -8,7 +9,7 @@ import re
 import shlex
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, NoReturn
 
 from grader.base.names import closest, did_you_mean
 from grader.base.source import Location, Source
@@ -252,8 +253,9 @@ class _Entity:
 
 
 def read_frontend(data: bytes, source: Source, *, is_yaml: bool) -> _Entity | LaunchFault:
-    """Return the root entity of a launch file in XML or YAML, or why it cannot be read. Never
-    raises.
+    """Return the root entity of a launch file in XML or YAML, or why it cannot be read.
+
+    Never raises.
     """
     try:
         data.decode()  # as open does, whatever the file itself says of its encoding
@@ -303,23 +305,24 @@ def _xml_root(file: XmlFile) -> _Entity:
     def entity(element: Element, depth: int) -> _Entity:
         location = file.location(element)
         attributes = {str(name): str(value) for name, value in element.attrib.items()}
-        found = _Entity(str(element.tag), Position(location.line, location.column), attributes)
+        parsed = _Entity(str(element.tag), Position(location.line, location.column), attributes)
         placed = [*attributes][:_MAX_PLACES]
-        found.places = {name: _position_at(file.location(element, name)) for name in placed}
-        found.actions = [
-            entity(it, depth + 1) for it in element.iterchildren("*") if depth < _MAX_DEPTH
+        parsed.places = {name: _position_at(file.location(element, name)) for name in placed}
+        parsed.actions = [
+            entity(child, depth + 1) for child in element.iterchildren("*") if depth < _MAX_DEPTH
         ]
-        for inner in found.actions:
-            found.nested.setdefault(inner.kind, []).append(inner)
-        return found
+        for inner in parsed.actions:
+            parsed.nested.setdefault(inner.kind, []).append(inner)
+        return parsed
 
     return entity(file.root, 0)
 
 
 @dataclass(slots=True)
 class _YamlReader:
-    """A reader of entities from YAML's lists and mappings; aliases can multiply them, so they are
-    counted.
+    """A reader of entities from YAML's lists and mappings.
+
+    Aliases can multiply them, so they are counted.
     """
 
     count: int = 0
@@ -457,17 +460,28 @@ def _check_names(entity: _Entity, parts: _Parts) -> None:
     """Compare the names in an entity with those that it may have. Raises EvaluationSignal."""
     inner = [*entity.nested, *(action.kind for action in entity.actions)]
     for name in [*inner, *entity.attributes]:
-        is_evaluated = name not in parts or parts[name].is_evaluated
-        # value-sep makes a list of the attribute value in XML; YAML has lists itself.
-        is_separator = name.endswith("-sep") and name.removesuffix("-sep") in parts
-        if not is_evaluated or (is_separator and (name not in parts or entity.is_yaml)):
+        if not _is_evaluated(name, entity, parts):
             raise Undetermined(f"{name} of <{entity.kind}> is not evaluated", entity.at)
-    elements = {name for name, part in parts.items() if part.holds == "elements"}
     if "children" not in parts:
+        elements = {name for name, part in parts.items() if part.holds == "elements"}
         for name in inner:
             if name not in elements:
                 hint = did_you_mean(name, elements)
                 raise EvaluationFails(f"<{entity.kind}> contains no <{name}>{hint}", entity.at)
+    _check_attributes(entity, parts)
+
+
+def _is_evaluated(name: str, entity: _Entity, parts: _Parts) -> bool:
+    """Return whether an attribute or element of this name is evaluated in an entity."""
+    # value-sep makes a list of the attribute value in XML; YAML has lists itself.
+    is_separator = name.endswith("-sep") and name.removesuffix("-sep") in parts
+    if is_separator and (name not in parts or entity.is_yaml):
+        return False
+    return name not in parts or parts[name].is_evaluated
+
+
+def _check_attributes(entity: _Entity, parts: _Parts) -> None:
+    """Raise EvaluationFails for an attribute that an entity may not have."""
     for name in entity.attributes:
         if name not in parts or parts[name].holds != "value":
             hint = _RENAMED.get(name) or did_you_mean(name, parts)
@@ -525,7 +539,9 @@ def _read_argument(entity: _Entity, name: str, value: Any) -> Value:
     if name == "respawn" or entity.kind == "set_parameter":
         text = "launch.substitutions.text_substitution.TextSubstitution"
         parts = _parse_value(value, at)
-        return [Call(text, [], {"text": it}, at) if isinstance(it, str) else it for it in parts]
+        return [
+            Call(text, [], {"text": part}, at) if isinstance(part, str) else part for part in parts
+        ]
     if name == "period":
         return _parse_if_text(value, at)
     return _parse_value(value, at) if isinstance(value, str) and name not in _RAW else value
@@ -538,7 +554,7 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
     for name, inner in entity.nested.items():
         match name:
             case "param":
-                kwargs["parameters"] = [_read_parameter(it) for it in inner]
+                kwargs["parameters"] = [_read_parameter(child) for child in inner]
             case "remap":
                 kwargs["remappings"] = _read_pairs(inner, "from", "to")
             case "arg" | "let":
@@ -549,12 +565,15 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
                 before = kwargs.get("composable_node_descriptions", ())
                 kwargs["composable_node_descriptions"] = [*before, *components]
             case "choice":
-                kwargs["choices"] = [_read_attributes(it, _NESTED[name])["value"] for it in inner]
+                kwargs["choices"] = [
+                    _read_attributes(child, _NESTED[name])["value"] for child in inner
+                ]
 
 
 def _read_component(entity: _Entity) -> Call:
-    """Return a component, whose parameters are not evaluated, without its remappings. Raises
-    EvaluationSignal.
+    """Return a component, whose parameters are not evaluated, without its remappings.
+
+    Raises EvaluationSignal.
     """
     given = _read_attributes(entity, _NESTED[entity.kind])
     condition = _take_condition(given, entity)
@@ -606,8 +625,9 @@ def _read_parameter(entity: _Entity) -> Value:
 
 
 def _read_parameter_value(entity: _Entity, given: Mapping[str, Any]) -> Value:
-    """Return the value of a <param> as the ParameterValue that it is in Python. Raises
-    EvaluationSignal.
+    """Return the value of a <param> as the ParameterValue that it is in Python.
+
+    Raises EvaluationSignal.
     """
     if "value" not in given:
         raise EvaluationFails("a <param> needs a value", entity.at)
@@ -638,8 +658,9 @@ def _read_parameter_value(entity: _Entity, given: Mapping[str, Any]) -> Value:
 
 
 def _converted(text: str, kind: type, entity: _Entity) -> dict[str, Value]:
-    """Return the arguments of ParameterValue for a value in XML with a type, as launch's
-    type_utils.py converts it. Raises EvaluationFails.
+    """Return the arguments of ParameterValue for a value in XML with a type.
+
+    They are converted as by launch's type_utils.py. Raises EvaluationFails.
     """
     if "$(" in text:
         of_kind = Call(f"builtins.{kind.__name__}", [], {}, entity.at)
@@ -652,8 +673,9 @@ def _converted(text: str, kind: type, entity: _Entity) -> dict[str, Value]:
 
 
 def _separated_values(entity: _Entity, kind: str | None) -> list[Value]:
-    """Return the list that a value in XML is with the attribute value-sep, as launch_xml's
-    entity.py splits it.
+    """Return the list that a value in XML is with the attribute value-sep.
+
+    It is split as by launch_xml's entity.py.
     """
     text, separator = str(entity.attributes["value"]), str(entity.attributes["value-sep"])
     if not separator:
@@ -667,8 +689,8 @@ def _separated_values(entity: _Entity, kind: str | None) -> list[Value]:
 def _parse_value(text: str, at: Position) -> list[Value]:
     """Return a value as a list of strings and substitutions. Raises EvaluationFails."""
     parser = _ValueParser(text, at)
-    found = parser.template("", 0)
-    return found or [""]
+    parts = parser.template("", 0)
+    return parts or [""]
 
 
 def _parse_if_text(value: Any, at: Position) -> Any:
@@ -680,8 +702,9 @@ def _parse_if_text(value: Any, at: Position) -> Any:
 
 
 def _command_line(text: str, at: Position) -> list[list[Value]]:
-    """Return the words of a line as launch splits it: strings are split, the values of
-    substitutions are not.
+    """Return the words of a line as launch splits it.
+
+    Strings are split, the values of substitutions are not.
     """
     words: list[list[Value]] = [[]]
     for piece in _parse_value(text, at):
@@ -689,23 +712,24 @@ def _command_line(text: str, at: Position) -> list[list[Value]]:
             words[-1].append(piece)
             continue
         try:
-            found = shlex.split(piece)
+            pieces = shlex.split(piece)
         except ValueError:
             raise EvaluationFails(
                 "quotes cannot enclose a substitution in a line of arguments: remove them", at
             ) from None
-        if piece[:1].isspace() or not found:
+        if piece[:1].isspace() or not pieces:
             words.append([])
-        words[-1] += found[:1]
-        words += [[word] for word in found[1:]]
+        words[-1] += pieces[:1]
+        words += [[word] for word in pieces[1:]]
         if piece[-1:].isspace():
             words.append([])
     return [word for word in words if word]
 
 
 def _typed_text(text: str, kind: type | None, at: Position) -> Any:
-    """Return the value of a text in XML as a type, by default any scalar; a text that is none of it
-    stays a text.
+    """Return the value of a text in XML as a type, by default any scalar.
+
+    A text that is none of it stays a text.
     """
     if kind is float:
         try:
@@ -725,8 +749,9 @@ def _typed_text(text: str, kind: type | None, at: Position) -> Any:
 
 
 def _is_typed(value: Any, kind: type | None, at: Position) -> bool:
-    """Return whether a value is a text or of a type; with None, whether it is a scalar. Raises
-    Undetermined.
+    """Return whether a value is a text or of a type; with None, whether it is a scalar.
+
+    Raises Undetermined.
     """
     if isinstance(value, list) and kind is None:
         raise Undetermined("a list in this place is not evaluated", at)
@@ -794,18 +819,18 @@ class _ValueParser:
 
     def value(self, quote: str, depth: int) -> list[Value]:
         if not quote and self.next in ("'", '"'):
-            own = self.next
+            start = self.next
             self.position += 1
-            return self.template(own, depth)
-        found: list[Value] = []
+            return self.template(start, depth)
+        parts: list[Value] = []
         while self.next and self.next not in _BEFORE_NEXT[quote]:
-            found.append(self.part(_BEFORE_NEXT[quote], quote, depth))
-        if not found:
+            parts.append(self.part(_BEFORE_NEXT[quote], quote, depth))
+        if not parts:
             raise EvaluationFails(
                 f"an argument is missing in {self.text[:60]!r}: write one space between arguments",
                 self.at,
             )
-        return found
+        return parts
 
     def call(self, name: str, values: list[list[Value]]) -> Call:
         """Return a substitution as the call that it is in Python. Raises EvaluationFails."""
@@ -814,11 +839,7 @@ class _ValueParser:
                 "$(command ...) needs quotes around its command: $(command 'xacro ...')", self.at
             )
         if name not in _SUBSTITUTIONS:
-            if name in front_end("substitution"):
-                raise Undetermined(f"the substitution $({name} ...) is not evaluated", self.at)
-            similar = closest(name, _SUBSTITUTIONS)
-            hint = f"; did you mean $({similar} ...)?" if similar else ""
-            raise EvaluationFails(f"there is no substitution $({name} ...){hint}", self.at)
+            self.fail_unknown(name)
         required, optional, rest = _SUBSTITUTIONS[name]
         if rest:
             return self.call_with_rest(name, values)
@@ -828,9 +849,17 @@ class _ValueParser:
             raise EvaluationFails(f"$({name} ...) takes {count}", self.at)
         kwargs: dict[str, Value] = {}
         for argument, value in zip(names, values, strict=False):
-            texts = [part for part in value if isinstance(part, str)]
-            kwargs[argument] = "".join(texts) if len(texts) == len(value) else value
+            is_text = all(isinstance(part, str) for part in value)
+            kwargs[argument] = "".join(map(str, value)) if is_text else value
         return Call(front_end("substitution")[name], [], kwargs, self.at)
+
+    def fail_unknown(self, name: str) -> NoReturn:
+        """Raise for a substitution that is not evaluated, or that does not exist."""
+        if name in front_end("substitution"):
+            raise Undetermined(f"the substitution $({name} ...) is not evaluated", self.at)
+        similar = closest(name, _SUBSTITUTIONS)
+        hint = f"; did you mean $({similar} ...)?" if similar else ""
+        raise EvaluationFails(f"there is no substitution $({name} ...){hint}", self.at)
 
     def call_with_rest(self, name: str, values: list[list[Value]]) -> Call:
         """Return a substitution that takes any number of values. Raises EvaluationFails."""

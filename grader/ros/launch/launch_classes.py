@@ -31,8 +31,9 @@ class _ConstructorParameter(NamedTuple):
 
 
 class LaunchClass(NamedTuple):
-    """A class: the parameters of its constructor, with those that it passes on, and the names of
-    its methods.
+    """A class of launch: its constructor's parameters, and the names of its methods.
+
+    The parameters include those that it passes on.
     """
 
     name: str
@@ -86,8 +87,9 @@ def is_a(name: str, base: str) -> bool:
 
 @cache
 def exports() -> Mapping[str, Mapping[str, str]]:
-    """Return for each module the names that it exports, with the full name of the class, if it is
-    one.
+    """Return for each module the names that it exports.
+
+    Each has the full name of the class, if it is one.
     """
     return {
         module: {**names["classes"], **dict.fromkeys(names["others"], "")}
@@ -96,8 +98,9 @@ def exports() -> Mapping[str, Mapping[str, str]]:
 
 
 def front_end(kind: str) -> Mapping[str, str]:
-    """Return the classes by the names that XML and YAML have for them; `kind` is action or
-    substitution.
+    """Return the classes by the names that XML and YAML have for them.
+
+    `kind` is action or substitution.
     """
     names: Mapping[str, str] = _table()[kind]
     return names

@@ -153,26 +153,26 @@ class _LaunchReader:
         suffix = PurePosixPath(path).suffix.lower()
         is_xml = suffix == ".xml" or (suffix in (".launch", "") and data.lstrip().startswith(b"<"))
         if is_xml or suffix in (".yaml", ".yml"):
-            own = _read_entities(data, path, context, include, is_yaml=not is_xml)
+            launch_read = _read_entities(data, path, context, include, is_yaml=not is_xml)
         else:
-            own = _read_python(data, path, installed, context, include)
+            launch_read = _read_python(data, path, installed, context, include)
         self.open.pop()
         for launch in included:
-            joined = {name: getattr(own, name) + getattr(launch, name) for name in _JOINED}
-            own = own._replace(**joined)
-        return own
+            joined = {name: getattr(launch_read, name) + getattr(launch, name) for name in _JOINED}
+            launch_read = launch_read._replace(**joined)
+        return launch_read
 
     def include(self, target: str, context: Context, included: list[Launch]) -> NotIncluded | None:
         """Read an included file; return why it is not read."""
         if target in self.open:
             return NotIncluded("it includes itself", is_circular=True)
-        found = context.machine.open_installed(target)
-        if found is None:
+        opened = context.machine.open_installed(target)
+        if opened is None:
             return NotIncluded(f"it includes {target}, which the submission does not install")
         if self.includes_left == 0:
             return NotIncluded(f"it includes more than {_MAX_INCLUDES} launch files")
         self.includes_left -= 1
-        launch = self.read(*found, target, context)
+        launch = self.read(*opened, target, context)
         faults = launch.faults if launch.syntax is None else (*launch.faults, launch.syntax)
         if context.when is not True:  # an error in the file counts only if it is included
             launch = launch._replace(
@@ -222,31 +222,42 @@ def _read_python(
     file = _PythonLaunchFile(context)
     entry = file.run(code, installed).get(_ENTRY)
     visitor = ActionVisitor(findings, include, file.call)
-    interpreter = file.interpreter
     if isinstance(entry, Function):
-        description = file.call(entry, entry.at, (), context)
-        error = _description_error(description)
-        if error:
-            findings.add_fault(error, entry.at)
-        elif not isinstance(description, Unknown) or interpreter.doubt is None:
-            visitor.launch(description, context, entry.at)
-    elif interpreter.doubt is None and not interpreter.errors:
-        message = f"the file does not define the function {_ENTRY}, which ros2 launch calls"
-        if entry is None:
-            findings.add_fault(message, START)
-        else:
-            findings.add_undecided(
-                f"{_ENTRY}, which the file does not define itself, is not evaluated", START
-            )
+        _call_entry(file, entry, visitor, context)
+    else:
+        _add_missing_entry(file, findings, is_bound=entry is not None)
     _add_python(findings, file)
     if code.conflict is not None:
         findings.add_fault(*code.conflict)
-    nodes = [
-        call for call in interpreter.calls if call.name == _NODE and call not in visitor.visited
-    ]
-    return _make_launch(
-        code.source, findings, tuple(_forgotten_node(node, findings) for node in nodes)
-    )
+    nodes = []
+    for call in file.interpreter.calls:
+        if call.name == _NODE and call not in visitor.visited:
+            nodes.append(_forgotten_node(call, findings))
+    return _make_launch(code.source, findings, tuple(nodes))
+
+
+def _call_entry(
+    file: "_PythonLaunchFile", entry: Function, visitor: ActionVisitor, context: Context
+) -> None:
+    """Execute the description that the function of a launch file returns."""
+    description = file.call(entry, entry.at, (), context)
+    error = _description_error(description)
+    if error:
+        visitor.findings.add_fault(error, entry.at)
+    elif not isinstance(description, Unknown) or file.interpreter.doubt is None:
+        visitor.launch(description, context, entry.at)
+
+
+def _add_missing_entry(file: "_PythonLaunchFile", findings: Findings, *, is_bound: bool) -> None:
+    """Add that a file does not define the function that ros2 launch calls."""
+    if file.interpreter.doubt is not None or file.interpreter.errors:
+        return
+    if is_bound:
+        message = f"{_ENTRY}, which the file does not define itself, is not evaluated"
+        findings.add_undecided(message, START)
+    else:
+        message = f"the file does not define the function {_ENTRY}, which ros2 launch calls"
+        findings.add_fault(message, START)
 
 
 def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
@@ -312,13 +323,16 @@ def _references_of(findings: Findings) -> list[NamedFile]:
     for reference in findings.references:
         if reference.purpose not in ("read", "parameters"):
             named.add(reference.path)
-    return [it for it in findings.references if it.purpose != "read" or it.path not in named]
+    return [
+        other for other in findings.references if other.purpose != "read" or other.path not in named
+    ]
 
 
 @dataclass(slots=True)
 class _PythonLaunchFile:
-    """The evaluation of a launch file; `context` is that of the action which calls one of its
-    functions.
+    """The evaluation of a launch file.
+
+    `context` is that of the action which calls one of its functions.
     """
 
     context: Context
@@ -334,7 +348,7 @@ class _PythonLaunchFile:
         """Evaluate the file, and return its names."""
         names = {"__file__": f"{PREFIX}/{installed}", "__name__": _MODULE_NAME}
         known: dict[str, Collection[str]] = {
-            module: own.keys() for module, own in exports().items()
+            module: exported.keys() for module, exported in exports().items()
         }
         if _MOVEIT in code.source.text:
             from grader.ros.launch.moveit_configs import (  # late: few files use it
@@ -344,7 +358,7 @@ class _PythonLaunchFile:
 
             known = {**moveit_exports(), **known}
             self.moveit = MoveItConfigurations(lambda: self.context, self.reads).functions()
-        packages_last = sorted(known.items(), key=lambda it: -it[0].count("."))
+        packages_last = sorted(known.items(), key=lambda export: -export[0].count("."))
         self.interpreter = Interpreter(
             self._functions(),
             names,
@@ -357,9 +371,7 @@ class _PythonLaunchFile:
     def call(
         self, function: Function, at: Position, args: Sequence[Value] | None, context: Context
     ) -> Value:
-        """Return the value of a call of one of the file's functions, in the context of an
-        action.
-        """
+        """Return the value of a call of a function of the file, in an action's context."""
         before, self.context = self.context, context
         try:
             return self.interpreter.call_from_outside(function, at, args)
@@ -418,14 +430,14 @@ class _PythonLaunchFile:
     def _perform(self, _: Evaluation, call: Call) -> Value:
         """Return the text of a substitution as Python gets it."""
         try:
-            found = resolve(call.owner, self.context, call.at)
+            result = resolve(call.owner, self.context, call.at)
         except Undetermined as error:
             error.at = None  # at this call, not at the substitution
             raise
         reason = "the content of a file is not evaluated"
-        if isinstance(found, Contents):
-            return FileText(reason=reason, at=call.at, contents=found)
-        return found
+        if isinstance(result, Contents):
+            return FileText(reason=reason, at=call.at, contents=result)
+        return result
 
     def _text(self, evaluation: Evaluation, call: Call) -> Value:
         """Return the text of a file that is expanded, or read for the first time."""

@@ -1,5 +1,6 @@
-"""The nodes that a launch file starts and the files that it names, and the state while its actions
-are visited.
+"""The nodes that a launch file starts and the files that it names.
+
+The state while its actions are visited is here too.
 """
 
 import posixpath
@@ -81,26 +82,30 @@ def not_evaluated(reason: str) -> str:
 
 
 class Machine(Protocol):
-    """What is installed on the machine of a launch file: what builds of the packages of the
-    workspace install, and ROS 2.
+    """What is installed on the machine of a launch file.
+
+    This is what builds of the packages of the workspace install, and ROS 2.
     """
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
-        """Return an installed file by its path below the prefix: its bytes, and its path in the
-        workspace.
+        """Return an installed file by its path below the prefix.
+
+        Returns its bytes, and its path in the workspace.
         """
 
     def has_package(self, name: str) -> bool:
         """Return whether a package certainly is on the machine."""
 
     def misspelt_package(self, name: str) -> str | None:
-        """Return the package of the workspace that the name of one that certainly is not there
-        stands for.
+        """Return the package of the workspace that a name stands for.
+
+        The name is that of a package that certainly is not there.
         """
 
     def files_in(self, folder: str) -> "Sequence[str] | None":
-        """Return the names of the installed files in a folder below the prefix; None where they are
-        not all known.
+        """Return the names of the installed files in a folder below the prefix.
+
+        Returns None where they are not all known.
         """
 
     def has_program(self, package: str, name: str) -> bool | None:
@@ -141,23 +146,26 @@ class Context:
         return replace(self, arguments=dict(self.arguments), to_all=dict(self.to_all))
 
     def text_of(self, path: str) -> str | None:
-        """Return the text of a file; None for one that is not installed below the prefix, or is no
-        text.
+        """Return the text of a file.
+
+        Returns None for one that is not installed below the prefix, or is no text.
         """
         if not path.startswith(f"{PREFIX}/"):
             return None
-        found = self.machine.open_installed(posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
-        if found is None:
+        opened = self.machine.open_installed(posixpath.normpath(path).removeprefix(f"{PREFIX}/"))
+        if opened is None:
             return None
         try:
-            return found[0].decode().replace("\r\n", "\n")
+            return opened[0].decode().replace("\r\n", "\n")
         except UnicodeDecodeError:
             return None
 
 
 class ParameterValue(NamedTuple):
-    """The value that a parameter is given, a scalar or a list of them or Unknown, where it is
-    written, and where its name is in a file.
+    """The value that a parameter is given, and where it is written.
+
+    The value is a scalar or a list of them or Unknown. If its name is in a file, its place is there
+    too.
     """
 
     value: Any
@@ -166,8 +174,9 @@ class ParameterValue(NamedTuple):
 
 
 class GivenParameters(NamedTuple):
-    """Parameters that a node is given at once: those of a file, by the path that launch has of it,
-    or `values`.
+    """Parameters that a node is given at once.
+
+    They are those of a file, by the path that launch has of it, or `values`.
     """
 
     location: Location
@@ -181,8 +190,9 @@ class GivenParameters(NamedTuple):
 
 
 class StartedNode(NamedTuple):
-    """A program that is started. `when` is True, False where a condition prevents it, None if known
-    at run time only.
+    """A program that is started.
+
+    `when` is True, False where a condition prevents it, None if known at run time only.
 
     `frame_prefix` is what robot_state_publisher puts before the name of each link; None where it is
     known at run time. The same holds for `namespace`, for the `remaps` of names, and for all that
@@ -205,8 +215,9 @@ class StartedNode(NamedTuple):
     ] = ()  # the paths below the prefix of the launch files by which its own is included
 
     def topic(self, name: str) -> str | None:
-        """Return the topic that the node has for a name in its program; None where it is known at
-        run time.
+        """Return the topic that the node has for a name in its program.
+
+        Returns None where it is known at run time.
         """
         # A rule for one node of the process, node:name:=other, is not resolved.
         if (
@@ -220,8 +231,9 @@ class StartedNode(NamedTuple):
         return self.full_name(next(rules, full))
 
     def full_name(self, name: str) -> str:
-        """Return a name with the namespace; ~ is the name that the node is given, and stays if it
-        is given none.
+        """Return a name with the namespace.
+
+        ~ is the name that the node is given, and stays if it is given none.
         """
         if name.startswith("~/") and self.node_name:
             name = f"{self.node_name}{name[1:]}"
@@ -238,8 +250,9 @@ class StartedNode(NamedTuple):
 
 
 class LoadedComponent(NamedTuple):
-    """A class that a launch file loads into a container of rclcpp_components; None for what is not
-    known.
+    """A class that a launch file loads into a container of rclcpp_components.
+
+    What is not known of it is None.
 
     `container` is the full name of a container that the launch file asks for by its name; empty for
     one that it starts for the component.
@@ -263,8 +276,9 @@ class Container(NamedTuple):
 
 
 class NamedFile(NamedTuple):
-    """A file that the launch file names. `path` begins with a stand-in where a folder depends on
-    the machine.
+    """A file that the launch file names.
+
+    `path` begins with a stand-in where a folder depends on the machine.
     """
 
     purpose: Purpose
@@ -333,8 +347,9 @@ class Launch(NamedTuple):
     later: tuple[_LaterWord, ...] = ()  # evaluated as the releases do that have it
 
     def in_releases(self, releases: Collection[Release]) -> "Launch":
-        """Return it as some releases launch it: what all of them lack stops it. With none, every
-        release will do.
+        """Return the launch file as some releases launch it.
+
+        What all of them lack stops it. With none, every release will do.
         """
         faults = list(self.faults)
         for word in self.later:
@@ -360,8 +375,9 @@ class Launch(NamedTuple):
         return "a launch file cannot be read"
 
     def frames_of(self, link: str) -> tuple[str | None, ...]:
-        """Return the frames of a link that robot_state_publisher publishes (a rubric may prefix
-        it); None if unknown.
+        """Return the frames of a link that robot_state_publisher publishes.
+
+        A rubric may prefix them. Returns None if they are unknown.
 
         tf2 ignores a slash at the start.
         """
@@ -372,14 +388,16 @@ class Launch(NamedTuple):
         ]
         prefixes = dict.fromkeys(node.frame_prefix for node in publishers) or [""]
         return tuple(
-            it if it is None else (it + link.removeprefix(it)).removeprefix("/") for it in prefixes
+            prefix if prefix is None else (prefix + link.removeprefix(prefix)).removeprefix("/")
+            for prefix in prefixes
         )
 
 
 @dataclass(slots=True)
 class Findings:
-    """The findings so far in one launch file. `sets_parameters`: an action gives parameters to all
-    nodes.
+    """The findings so far in one launch file.
+
+    `sets_parameters`: an action gives parameters to all nodes.
     """
 
     locate: Callable[[Position], Location]
@@ -422,8 +440,9 @@ class Findings:
         self.add_doubt(reason, at)
 
     def add(self, signal: EvaluationSignal, at: Position, when: bool | None) -> None:
-        """Add what ends an action: an error only if it certainly is executed. `at` is the position
-        of the action.
+        """Add what ends an action.
+
+        An error is added only if it certainly is executed. `at` is the position of the action.
         """
         if self.is_silent or when is False:
             return

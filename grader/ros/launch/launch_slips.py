@@ -19,8 +19,9 @@ def launch_slips(code: Code) -> list[Slip]:
 
 
 def name_slips(code: Code) -> list[Slip]:
-    """Return the names that a Python file uses and does not define, each near one that it
-    defines.
+    """Return the names that a Python file uses and does not define.
+
+    Each is near one that it defines.
     """
     return [*_LaunchNames(code).undefined()]
 

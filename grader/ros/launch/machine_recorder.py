@@ -10,8 +10,9 @@ if TYPE_CHECKING:
 
 
 class MachineRecorder:
-    """A machine whose answers are recorded. With the same answers, a launch file is evaluated
-    alike.
+    """A machine whose answers are recorded.
+
+    With the same answers, a launch file is evaluated alike.
     """
 
     def __init__(self, answers: "Answers[Machine]") -> None:

@@ -1,5 +1,6 @@
-"""The package moveit_configs_utils of ROS 2 Jazzy: MoveItConfigsBuilder, and the nodes that its
-launch functions start.
+"""The package moveit_configs_utils of ROS 2 Jazzy: MoveItConfigsBuilder and launch functions.
+
+The launch functions start nodes.
 
 The builder reads the files of a MoveIt configuration while the launch file is loaded; one that it
 needs and that is not installed stops it.
@@ -49,8 +50,8 @@ _INCLUDE = "launch.actions.include_launch_description.IncludeLaunchDescription"
 _DECLARED = "launch.actions.declare_launch_argument.DeclareLaunchArgument"
 _CONFIGURATION = "launch.substitutions.launch_configuration.LaunchConfiguration"
 _IF, _UNLESS = (
-    f"launch.conditions.{it}"
-    for it in ("if_condition.IfCondition", "unless_condition.UnlessCondition")
+    f"launch.conditions.{condition}"
+    for condition in ("if_condition.IfCondition", "unless_condition.UnlessCondition")
 )
 _MAX_DEPTH, _MAX_NUMBER = 40, 50
 _DEFAULT_PIPELINES = (
@@ -157,14 +158,15 @@ class _Configuration:
 
     def doubted(self, reason: str, at: Position) -> UnknownText:
         """Return a text that is not known, with the doubt whether MoveIt finds it at all."""
-        found = UnknownText(reason, at)
-        self.doubt(found)
-        return found
+        unknown = UnknownText(reason, at)
+        self.doubt(unknown)
+        return unknown
 
 
 @dataclass(slots=True)
 class MoveItConfigurations:
-    """The functions of moveit_configs_utils, in a launch file whose context is `context()`;
+    """The functions of moveit_configs_utils, in a launch file whose context is `context()`.
+
     `reads` are its files.
     """
 
@@ -189,7 +191,8 @@ class MoveItConfigurations:
     def _build(self, evaluation: Evaluation, call: Call) -> Call:
         given = _named(call, ("robot_name", "robot_description", "package_name"))
         robot, description = (
-            known(given.get(it, "robot_description")) for it in ("robot_name", "robot_description")
+            known(given.get(argument, "robot_description"))
+            for argument in ("robot_name", "robot_description")
         )
         if "robot_name" not in given or not isinstance(robot, str):
             raise EvaluationFails("MoveItConfigsBuilder needs the name of the robot")
@@ -214,16 +217,19 @@ class MoveItConfigurations:
     def _finish(self, _: Evaluation, call: Call) -> Namespace:
         """Return the configuration, with what is made by default, as an object with its parts."""
         assert call.owner is not None
-        own = self._built[call.owner]
+        configuration = self._built[call.owner]
         for name in _DEFAULT_PARTS:
-            if not own.parts.get(name):
-                self._made(own, name, call.at, {})
-        if _PILZ in own.parts["planning_pipelines"] and "pilz_cartesian_limits" not in own.parts:
-            self._made(own, "pilz_cartesian_limits", call.at, {})
+            if not configuration.parts.get(name):
+                self._made(configuration, name, call.at, {})
+        if (
+            _PILZ in configuration.parts["planning_pipelines"]
+            and "pilz_cartesian_limits" not in configuration.parts
+        ):
+            self._made(configuration, "pilz_cartesian_limits", call.at, {})
         parts: dict[str, Value] = {
-            name: own.parts.get(name, {}) for name in (*_PARTS, "pilz_cartesian_limits")
+            name: configuration.parts.get(name, {}) for name in (*_PARTS, "pilz_cartesian_limits")
         }
-        parts["package_path"] = PurePosixPath(own.folder)
+        parts["package_path"] = PurePosixPath(configuration.folder)
         parts["move_group_capabilities"] = {"capabilities": "", "disable_capabilities": ""}
         parts["to_dict"] = PlainFunction("to_dict", partial(_as_dict, parts), "holds")
 
@@ -235,13 +241,15 @@ class MoveItConfigurations:
         return Namespace("MoveItConfigs", find)
 
     def _made(
-        self, own: _Configuration, name: str, at: Position, given: Mapping[str, Value]
+        self, configuration: _Configuration, name: str, at: Position, given: Mapping[str, Value]
     ) -> None:
         """Make a part of a configuration, as the method of this name does."""
         if name in _YAML_PARTS:
             ending, stem = _YAML_PARTS[name]
-            table = self._yaml(self._path(own, given, f"config/{stem}.yaml"), at)
-            own.parts[name] = {own.description + ending: table} if ending else _spread(table)
+            table = self._yaml(self._path(configuration, given, f"config/{stem}.yaml"), at)
+            configuration.parts[name] = (
+                {configuration.description + ending: table} if ending else _spread(table)
+            )
         else:
             make = {
                 "robot_description": self._description,
@@ -251,21 +259,24 @@ class MoveItConfigurations:
                 "sensors_3d": self._sensors,
                 "planning_scene_monitor": self._scene,
             }
-            own.parts[name] = make[name](own, at, given)
+            configuration.parts[name] = make[name](configuration, at, given)
 
-    def _path(self, own: _Configuration, given: Mapping[str, Value], default: str) -> str:
+    def _path(self, configuration: _Configuration, given: Mapping[str, Value], default: str) -> str:
         """Return the path of a file that is given, or a default, in the package."""
         value = given.get("file_path")
         text = path_text(known(value)) if value is not None else default
         if text is None:
             raise Undetermined("the path of a file for MoveIt is not evaluated")
-        return posixpath.join(own.folder, text)
+        return posixpath.join(configuration.folder, text)
 
-    def _names(self, own: _Configuration) -> Sequence[str] | None:
-        """Return the names of the files that are installed in the folder config; None where this
-        is not known.
+    def _names(self, configuration: _Configuration) -> Sequence[str] | None:
+        """Return the names of the files that are installed in the folder config.
+
+        Returns None where this is not known.
         """
-        return self.context().machine.files_in(f"{own.folder}/config".removeprefix(f"{PREFIX}/"))
+        return self.context().machine.files_in(
+            f"{configuration.folder}/config".removeprefix(f"{PREFIX}/")
+        )
 
     def _is_there(self, path: str) -> bool:
         return self.context().text_of(path) is not None
@@ -278,19 +289,19 @@ class MoveItConfigurations:
     def _yaml(self, path: str, at: Position) -> Value:
         """Return the table in a file that has to be there."""
         self._read(path, at, BY_MOVEIT)
-        found = self.context().machine.open_installed(
+        opened = self.context().machine.open_installed(
             posixpath.normpath(path).removeprefix(f"{PREFIX}/")
         )
-        if found is None:
+        if opened is None:
             return UnknownTable("a file for MoveIt is not evaluated", at)
         try:
-            return _read_value(read_yaml(*found), 0)
+            return _read_value(read_yaml(*opened), 0)
         except (YamlFault, Undetermined, ValueError) as error:
-            raise Undetermined(f"the file {found[1]} is not evaluated: {error}", at) from None
+            raise Undetermined(f"the file {opened[1]} is not evaluated: {error}", at) from None
 
-    def _robot_of_assistant(self, own: _Configuration, at: Position) -> str | None:
+    def _robot_of_assistant(self, configuration: _Configuration, at: Position) -> str | None:
         """Return the path of the robot that .setup_assistant names, if it names one."""
-        path = f"{own.folder}/{SETUP_ASSISTANT}"
+        path = f"{configuration.folder}/{SETUP_ASSISTANT}"
         table = self._yaml(path, at) if self._is_there(path) else None
         config = table.get("moveit_setup_assistant_config") if isinstance(table, dict) else None
         robot = config.get("urdf", config.get("URDF")) if isinstance(config, dict) else None
@@ -303,16 +314,16 @@ class MoveItConfigurations:
         return None
 
     def _description(
-        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+        self, configuration: _Configuration, at: Position, given: Mapping[str, Value]
     ) -> dict[str, Value]:
         """Return the robot; if its file is not there, MoveIt waits for a topic."""
-        path = self._path(own, given, f"config/{own.robot}.urdf.xacro")
+        path = self._path(configuration, given, f"config/{configuration.robot}.urdf.xacro")
         if "file_path" not in given:
-            path = self._robot_of_assistant(own, at) or path
+            path = self._robot_of_assistant(configuration, at) or path
         is_there = self._is_there(path)
         if not is_there and "file_path" not in given:
             return {
-                own.description: own.doubted(
+                configuration.description: configuration.doubted(
                     "the file of the robot that MoveIt finds is not evaluated", at
                 )
             }
@@ -320,53 +331,47 @@ class MoveItConfigurations:
             contents = self._read(path, at, "xacro", _mappings(given))
         else:
             contents = Contents(path, "xacro")
-        return {own.description: FileText("the output of xacro is not evaluated", at, contents)}
+        return {
+            configuration.description: FileText(
+                "the output of xacro is not evaluated", at, contents
+            )
+        }
 
     def _semantic(
-        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+        self, configuration: _Configuration, at: Position, given: Mapping[str, Value]
     ) -> dict[str, Value]:
-        path = self._path(own, given, f"config/{own.robot}.srdf")
-        key = f"{own.description}_semantic"
+        path = self._path(configuration, given, f"config/{configuration.robot}.srdf")
+        key = f"{configuration.description}_semantic"
         is_open = "file_path" not in given and any(
-            name.endswith(".srdf") for name in self._names(own) or ()
+            name.endswith(".srdf") for name in self._names(configuration) or ()
         )
         if is_open and not self._is_there(path):
-            return {key: own.doubted("the SRDF that MoveIt finds is not evaluated", at)}
+            return {key: configuration.doubted("the SRDF that MoveIt finds is not evaluated", at)}
         contents = self._read(path, at, "xacro", _mappings(given))
         return {key: FileText("the output of xacro is not evaluated", at, contents)}
 
     def _pipelines(
-        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+        self, configuration: _Configuration, at: Position, given: Mapping[str, Value]
     ) -> dict[str, Value]:
-        names = self._names(own)
+        names, ending = self._names(configuration), "_planning.yaml"
         wanted, default = (
-            known(given.get(it)) for it in ("pipelines", "default_planning_pipeline")
+            known(given.get(argument)) for argument in ("pipelines", "default_planning_pipeline")
         )
-        found = [
-            name.removesuffix("_planning.yaml")
-            for name in names or ()
-            if name.endswith("_planning.yaml")
-        ]
-        pipelines, with_all = wanted, given.get("load_all", True)
+        configured = [name.removesuffix(ending) for name in names or () if name.endswith(ending)]
+        pipelines, unordered = wanted, None
         if wanted is None:
-            pipelines = [*found, *(it for it in _DEFAULT_PIPELINES if it not in found and with_all)]
-        if not isinstance(pipelines, list | tuple) or (
-            names is None and wanted is None and not with_all
-        ):
-            raise Undetermined("the pipelines of MoveIt are not evaluated", at)
-        if not pipelines:
-            raise EvaluationFails("MoveIt finds no *_planning.yaml", at)
-        default = default or ("ompl" if "ompl" in pipelines else pipelines[0])
-        if default not in pipelines:
-            raise EvaluationFails(
-                f"the default pipeline {default!r} is none of {', '.join(map(str, pipelines))}", at
-            )
-        if wanted is None:
+            with_all = given.get("load_all", True)
+            if names is None and not with_all:
+                raise Undetermined("the pipelines of MoveIt are not evaluated", at)
+            others = _DEFAULT_PIPELINES if with_all else ()
+            pipelines = [*dict.fromkeys([*configured, *others])]
             unordered = UnknownText("the order in which files are found is not known", at)
-        else:
-            unordered = None
+        if not isinstance(pipelines, list | tuple):
+            raise Undetermined("the pipelines of MoveIt are not evaluated", at)
+        default = _default_pipeline(pipelines, default, at)
         tables = {
-            it: self._pipeline(own, it, at, is_there=it in found) for it in map(str, pipelines)
+            pipeline: self._pipeline(configuration, pipeline, at, is_there=pipeline in configured)
+            for pipeline in map(str, pipelines)
         }
         return {
             "planning_pipelines": unordered or [*pipelines],
@@ -374,25 +379,27 @@ class MoveItConfigurations:
             **tables,
         }
 
-    def _pipeline(self, own: _Configuration, name: str, at: Position, *, is_there: bool) -> Value:
+    def _pipeline(
+        self, configuration: _Configuration, name: str, at: Position, *, is_there: bool
+    ) -> Value:
         if not is_there and name in _DEFAULT_PIPELINES:
             return UnknownTable(f"the default configuration of {name} is not evaluated", at)
-        table = self._yaml(f"{own.folder}/config/{name}_planning.yaml", at)
+        table = self._yaml(f"{configuration.folder}/config/{name}_planning.yaml", at)
         is_whole = name != "ompl" or (isinstance(table, dict) and "planner_configs" in table)
         if is_whole:
             return table
         return UnknownTable("the default configuration of ompl is not evaluated", at)
 
     def _controllers(
-        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+        self, configuration: _Configuration, at: Position, given: Mapping[str, Value]
     ) -> dict[str, Value]:
         manages = given.get("moveit_manage_controllers", True)
         made: dict[str, Value] = {"moveit_manage_controllers": manages}
         if "file_path" in given:
-            return made | _spread(self._yaml(self._path(own, given, ""), at))
-        ending, names = "_controllers.yaml", self._names(own)
-        for name in ("moveit", "moveit2", own.robot):
-            path = f"{own.folder}/config/{name}{ending}"
+            return made | _spread(self._yaml(self._path(configuration, given, ""), at))
+        ending, names = "_controllers.yaml", self._names(configuration)
+        for name in ("moveit", "moveit2", configuration.robot):
+            path = f"{configuration.folder}/config/{name}{ending}"
             if self._is_there(path):
                 return made | _spread(self._yaml(path, at))
         if names is None:
@@ -406,14 +413,14 @@ class MoveItConfigurations:
             raise EvaluationFails(
                 f"MoveIt cannot choose between {listed}: give trajectory_execution a file_path", at
             )
-        return made | _spread(self._yaml(f"{own.folder}/config/{fitting[0]}", at))
+        return made | _spread(self._yaml(f"{configuration.folder}/config/{fitting[0]}", at))
 
     def _sensors(
-        self, own: _Configuration, at: Position, given: Mapping[str, Value]
+        self, configuration: _Configuration, at: Position, given: Mapping[str, Value]
     ) -> dict[str, Value]:
-        path = self._path(own, given, "config/sensors_3d.yaml")
+        path = self._path(configuration, given, "config/sensors_3d.yaml")
         if not self._is_there(path):
-            if self._names(own) is not None:
+            if self._names(configuration) is not None:
                 return {}
             return _spread(UnknownTable("sensors are not evaluated", at))
         table = self._yaml(path, at)
@@ -459,15 +466,16 @@ class MoveItConfigurations:
     def _found_in(
         self, configs: Namespace, name: str, at: Position
     ) -> Iterator[StartRow | Unknown]:
-        """Yield the rows of what a function starts for controllers or virtual joints; Unknown
-        for unknown ones.
+        """Yield the rows of what a function starts for controllers or virtual joints.
+
+        Yields Unknown for unknown ones.
         """
         if name == "generate_spawn_controllers_launch":
-            for it in _controllers_in(configs.find("trajectory_execution"), at):
-                if isinstance(it, Unknown):
-                    yield it
+            for controller in _controllers_in(configs.find("trajectory_execution"), at):
+                if isinstance(controller, Unknown):
+                    yield controller
                 else:
-                    yield StartRow("controller_manager/spawner", arguments=(it,))
+                    yield StartRow("controller_manager/spawner", arguments=(controller,))
         elif name == "generate_static_virtual_joint_tfs_launch":
             srdf = next(iter(configs.find("robot_description_semantic").values()))
             if isinstance(srdf, FileText):
@@ -482,8 +490,9 @@ class MoveItConfigurations:
 
 
 def _named(call: Call, names: Sequence[str]) -> dict[str, Value]:
-    """Return the arguments of a call by their names, but those that are None. Raises
-    EvaluationFails.
+    """Return the arguments of a call by their names, but those that are None.
+
+    Raises EvaluationFails.
     """
     wrong = next((name for name in call.kwargs if name not in names), None)
     if wrong is not None or len(call.args) > len(names):
@@ -507,9 +516,9 @@ def _read_value(node: YamlNode, depth: int) -> Value:
         raise Undetermined("it is nested too deeply")
     match node.value:
         case dict() as table:
-            return {name: _read_value(it, depth + 1) for name, it in table.items()}
+            return {name: _read_value(entry, depth + 1) for name, entry in table.items()}
         case list() as items:
-            return [_read_value(it, depth + 1) for it in items]
+            return [_read_value(element, depth + 1) for element in items]
         case str() as text:
             if node.is_string or len(text) > _MAX_NUMBER:
                 return text
@@ -523,23 +532,35 @@ def _spread(table: Value) -> dict[str, Value]:
     return {"": table}
 
 
+def _default_pipeline(pipelines: Sequence[Value], wanted: Value, at: Position) -> Value:
+    """Return the pipeline that MoveIt uses by default: the wanted one, OMPL, or the first."""
+    if not pipelines:
+        raise EvaluationFails("MoveIt finds no *_planning.yaml", at)
+    default = wanted or ("ompl" if "ompl" in pipelines else pipelines[0])
+    if default not in pipelines:
+        names = ", ".join(map(str, pipelines))
+        raise EvaluationFails(f"the default pipeline {default!r} is none of {names}", at)
+    return default
+
+
 def _as_dict(parts: Mapping[str, Value]) -> dict[str, Value]:
-    found: dict[str, Value] = {}
+    entries: dict[str, Value] = {}
     for name in _PARTS:
-        found |= parts[name]
+        entries |= parts[name]
     for name, table in parts["pilz_cartesian_limits"].items():
-        limits = found.get(name)
+        limits = entries.get(name)
         if isinstance(limits, dict) and isinstance(table, dict):
-            found[name] = {**limits, **table}
+            entries[name] = {**limits, **table}
         elif isinstance(table, Unknown):
-            found[name] = table
-    return found
+            entries[name] = table
+    return entries
 
 
 @dataclass(frozen=True, slots=True)
 class _Actions:
-    """Makes the actions of a description from the rows of the table, as if they were written at
-    a place.
+    """Makes the actions of a description from the rows of the table.
+
+    They are made as if they were written at a place.
     """
 
     at: Position
@@ -597,9 +618,7 @@ class _Actions:
         return [node(condition=self.when("debug", _UNLESS)), debugged]
 
     def when(self, name: str, kind: str = _IF) -> Call:
-        """Return the condition that a launch argument is true, or with another kind that it is
-        not.
-        """
+        """Return the condition that a launch argument is true, or, of another kind, not true."""
         return self.made(kind, predicate_expression=self.value(f"${name}"))
 
 

@@ -82,8 +82,9 @@ _Read = Iterator[GivenParameters | EvaluationSignal]
 def evaluate_parameters(
     call: Call, context: Context, location: Location
 ) -> tuple[Iterator[GivenParameters], EvaluationSignal | None]:
-    """Evaluate the parameters of a Node action up to the first error or doubt, at which launch_ros
-    stops.
+    """Evaluate the parameters of a Node action up to the first error or doubt.
+
+    There launch_ros stops.
 
     Returns:
         What each item gives the node: what follows the first error or doubt is evaluated when it is
@@ -127,7 +128,7 @@ def _read_item(item: Value, place: _Place) -> _Read:
         raise Undetermined("a parameter of this kind is not evaluated", item.at)
     elif isinstance(item, PurePosixPath):
         yield GivenParameters(place.location, str(item))
-    elif isinstance(item, set) and any(isinstance(it, FileText) for it in item):
+    elif isinstance(item, set) and any(isinstance(part, FileText) for part in item):
         yield GivenParameters(place.location, values={})  # launch_ros looks for a file of this name
     else:
         yield _make_file(resolve(item, place.context, place.at), place)
@@ -150,8 +151,9 @@ def _make_file(path: Resolved, place: _Place, *, is_plain: bool = True) -> Given
 
 
 def _read_table(table: dict[Any, Value], place: _Place) -> _Read:
-    """Yield the values in a dict, each unknown for itself; all are unknown if a name is. Raises
-    EvaluationSignal for names and for dicts in it.
+    """Yield the values in a dict, each unknown for itself; all are unknown if a name is.
+
+    Raises EvaluationSignal for names and for dicts in it.
     """
     context, at, location, is_named = place
     values: dict[str, ParameterValue] = {}
@@ -181,15 +183,16 @@ def _resolve_path(call: Call, context: Context) -> Resolved:
     if isinstance(given, PurePosixPath):
         return str(given)
     if not all(
-        isinstance(it, TEXT_PARTS) for it in (given if isinstance(given, list) else [given])
+        isinstance(part, TEXT_PARTS) for part in (given if isinstance(given, list) else [given])
     ):
         raise Undetermined("the path of a parameter file is not evaluated", call.at)
     return resolve(given, context, call.at)
 
 
 def _evaluate_dict(table: dict[Any, Value], context: Context, at: Position) -> dict[str, Any]:
-    """Return the values in a dict of parameters, those of dicts in it by dotted names. Raises
-    EvaluationSignal.
+    """Return the values in a dict of parameters, those of dicts in it by dotted names.
+
+    Raises EvaluationSignal.
     """
     values: dict[str, Any] = {}
     for key, value in table.items():
@@ -220,7 +223,7 @@ def _evaluate_value(name: str, value: Value, context: Context, at: Position) -> 
 def _evaluate_list(name: str, items: list[Value], context: Context, at: Position) -> Any:
     kinds = {type(item) for item in items if isinstance(item, SCALARS)}
     if any(isinstance(item, Call) for item in items) and all(
-        isinstance(it, TEXT_PARTS) for it in items
+        isinstance(element, TEXT_PARTS) for element in items
     ):
         return _read_as_yaml(name, items, context, at)
     if not items or not all(isinstance(item, SCALARS) for item in items):
@@ -237,7 +240,7 @@ def _evaluate_typed(call: Call, context: Context) -> Any:
     if isinstance(value, UnknownText):
         resolve(value, context, call.at)
     if isinstance(value, (*SCALARS, UnknownText)) or (
-        isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value)
+        isinstance(value, list | tuple) and not any(isinstance(element, Call) for element in value)
     ):
         return value
     try:
@@ -287,7 +290,7 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
         if len(text) > _MAX_YAML:
             raise Undetermined(f"the parameter {name!r} is too long to be read as YAML", at)
         if isinstance(resolved, Contents) and resolved.by == "xacro":
-            text = _COMMENT_OR_TAB.sub(lambda it: " " if it[0] == "\t" else it[0], text)
+            text = _COMMENT_OR_TAB.sub(lambda match: " " if match[0] == "\t" else match[0], text)
         return yaml_value(text) if text else text
     except ValueError:
         if isinstance(resolved, Contents) and resolved.by == "xacro" and not _is_never_yaml(text):
@@ -302,8 +305,9 @@ def _value_as_yaml(name: str, value: Value, context: Context, at: Position) -> A
 
 
 def _is_never_yaml(text: str) -> bool:
-    """Return whether a URDF is no YAML after xacro either, which keeps comments, texts and
-    values.
+    """Return whether a URDF is no YAML after xacro either.
+
+    The reason is that xacro keeps comments, texts and values.
     """
     if "xacro:" in text or "${" in text or "$(" in text:
         return False
@@ -327,8 +331,9 @@ _OpenFile = Callable[
 def set_for_all(
     name: Value, value: Value, context: Context, at: Position, location: Location
 ) -> GivenParameters:
-    """Return what SetParameter gives to all nodes; unknown where its name is not known. Raises
-    EvaluationSignal for its value.
+    """Return what SetParameter gives to all nodes; unknown where its name is not known.
+
+    Raises EvaluationSignal for its value.
     """
     evaluated = _evaluate_dict({"": value}, context, at)
     try:
@@ -422,8 +427,8 @@ def _read_value(node: YamlNode) -> Any:
 def _scalar(text: str) -> "bool | int | float | str":
     if text in _TRUE or text in _FALSE:
         return text in _TRUE
-    if found := _INTEGER.fullmatch(text):
-        sign, digits = found.groups()
+    if match := _INTEGER.fullmatch(text):
+        sign, digits = match.groups()
         if digits[:2].lower() == "0x":
             base = 16
         elif digits[0] == "0":
@@ -439,8 +444,9 @@ def _scalar(text: str) -> "bool | int | float | str":
 
 
 class NodeParameters(NamedTuple):
-    """The parameters that a node is given, by their names. If something is `unknown`, there may be
-    more of them.
+    """The parameters that a node is given, by their names.
+
+    If something is `unknown`, there may be more of them.
 
     The value of one is Unknown where it is not evaluated, or may be replaced by what is unknown.
     """
@@ -521,7 +527,9 @@ def parameters_of(
             reasons.append(str(error))
             doubt = Unknown(str(error), START)
             for before in by_key.values():
-                before.update({it: row._replace(value=doubt) for it, row in before.items()})
+                before.update(
+                    {parameter: row._replace(value=doubt) for parameter, row in before.items()}
+                )
             continue
         for table in tables:
             reasons += [unknown.reason for unknown in table.opened.values()]
@@ -536,8 +544,8 @@ def _forget_below(
     """Make the values unknown that parameters in a table that is not known may replace."""
     for name, doubt in tables.items():
         for values in by_key.values():
-            below = [it for it in values if not name or f"{it}.".startswith(f"{name}.")]
-            values.update((it, values[it]._replace(value=doubt)) for it in below)
+            below = [other for other in values if not name or f"{other}.".startswith(f"{name}.")]
+            values.update((other, values[other]._replace(value=doubt)) for other in below)
 
 
 def _full_name(node: StartedNode, name: str) -> str | None:
@@ -554,6 +562,7 @@ def _read_tables(
     given: GivenParameters, open_file: _OpenFile, full_name: str | None, read: _ReadFile
 ) -> Sequence[_Table]:
     """Return the parameters by keys of nodes; `full_name` is the one that the launch file gives.
+
     Raises Undetermined.
     """
     if given.unknown:
@@ -566,15 +575,16 @@ def _read_tables(
         raise Undetermined(
             f"the file {path.removeprefix(PREFIX)} is not read: the submission does not install it"
         )
-    found = read(*file, given.is_plain)
-    if found.fault:
-        raise Undetermined(found.fault)
-    return found.tables
+    parsed = read(*file, given.is_plain)
+    if parsed.fault:
+        raise Undetermined(parsed.fault)
+    return parsed.tables
 
 
 def _find_key(given: GivenParameters, full_name: str | None) -> str | None:
-    """Return for which nodes the parameters of a launch file are; None for the node itself, whose
-    name is not known.
+    """Return for which nodes the parameters of a launch file are.
+
+    Returns None for the node itself, whose name is not known.
     """
     if given.is_named:
         return full_name
@@ -592,9 +602,9 @@ def _sections(
     for name, value in node.pairs:
         if name == _KEY:
             values: dict[str, ParameterValue] = {}
-            for parameter, own, named_at in _flat(value, "", None, 0, visits):
-                if isinstance(own.value, str | list):
-                    given = value_in_file(own, is_plain=is_plain)
+            for parameter, row, named_at in _flat(value, "", None, 0, visits):
+                if isinstance(row.value, str | list):
+                    given = value_in_file(row, is_plain=is_plain)
                     values[parameter] = given._replace(named_at=named_at)
             yield key, values
         else:
@@ -614,8 +624,9 @@ def _flat(
 
 
 def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:
-    """Return the value that a parameter file has for a parameter; of a file that is not plain,
-    launch replaces `$(`.
+    """Return the value that a parameter file has for a parameter.
+
+    In a file that is not plain, launch replaces `$(`.
     """
     if not is_plain and _SUBSTITUTION in str(node.text):
         return ParameterValue(
@@ -627,8 +638,9 @@ def value_in_file(node: YamlNode, *, is_plain: bool = True) -> ParameterValue:
 def _select_values(
     by_key: Mapping[str | None, Mapping[str, ParameterValue]], full: str | None
 ) -> dict[str, ParameterValue]:
-    """Return the values that count for a node, of all sections in the order in which their keys are
-    met first.
+    """Return the values that count for a node.
+
+    They are of all sections in the order in which their keys are met first.
     """
     if full is None:
         return _select_for_any_name(by_key)
@@ -638,8 +650,9 @@ def _select_values(
 def _select_for_any_name(
     by_key: Mapping[str | None, Mapping[str, ParameterValue]],
 ) -> dict[str, ParameterValue]:
-    """Return the values of sections for every node; those that another section may replace are
-    unknown.
+    """Return the values of sections for every node.
+
+    Those that another section may replace are unknown.
     """
     doubt = Unknown("the name of the node is not known", START)
     known = _merge(values for key, values in by_key.items() if key in (_EVERY_NODE, None))
@@ -655,8 +668,10 @@ def _merge(tables: Iterable[Mapping[str, ParameterValue]]) -> dict[str, Paramete
 
 
 def is_key_of(key: str | None, full: str) -> bool:
-    """Return whether the key of a section names a node by its full name: `*` stands for one name,
-    `**` for any number of them. The keys of what a launch file gives are None.
+    """Return whether the key of a section names a node by its full name.
+
+    `*` stands for one name, `**` for any number of them. The keys of what a launch file gives are
+    None.
     """
     if key is None or "*" not in key:
         return key == full
@@ -665,7 +680,9 @@ def is_key_of(key: str | None, full: str) -> bool:
 
 @lru_cache(maxsize=256)
 def _pattern_of(key: str) -> re.Pattern[str]:
-    pattern = re.sub(r"/\\\*(\\\*)?", lambda it: r"(/\w+)*" if it[1] else r"(/\w+)", re.escape(key))
+    pattern = re.sub(
+        r"/\\\*(\\\*)?", lambda match: r"(/\w+)*" if match[1] else r"(/\w+)", re.escape(key)
+    )
     return re.compile(pattern)
 
 
@@ -675,8 +692,9 @@ def remap_rules(words: Sequence[str]) -> list[tuple[str, str, str]]:
 
 
 def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
-    """Return the controllers that a spawner starts, as nodes with the files and remappings that it
-    gives them.
+    """Return the controllers that a spawner starts, as nodes.
+
+    The nodes have the files and remappings that it gives them.
 
     None if not all are known. A controller has the namespace of its controller manager, in whose
     process it runs: what that is given applies to it as well, and what the spawner gives counts
@@ -685,34 +703,40 @@ def controllers_of(spawner: StartedNode) -> tuple[StartedNode, ...] | None:
     words = spawner.arguments
     if words is None or None in words or spawner.namespace is None:
         return None
-    known = [
-        word
-        for word in (words[: words.index("--ros-args")] if "--ros-args" in words else words)
-        if word
-    ]
+    names, given = _read_spawner_words([word for word in words if word])
+    files = [path for option in _PARAM_FILES for path in given.get(option, ())]
+    parameters = tuple(GivenParameters(spawner.location, path) for path in files)
+    rules = remap_rules(" ".join(given.get("--controller-ros-args", ())).split())
+    started = spawner._replace(
+        namespace=_namespace_of_manager(given, spawner.namespace),
+        parameters=parameters,
+        arguments=(),
+        remaps=tuple((name, to) for name, _, to in rules),
+    )
+    return tuple(started._replace(node_name=name) for name in names)
+
+
+def _read_spawner_words(words: Sequence[str]) -> tuple[list[str], dict[str, list[str]]]:
+    """Return the names of controllers in a spawner's command line, and its options."""
     names: list[str] = []
     given: dict[str, list[str]] = {}
     options = program_row("controller_manager", "spawner").valued_options
-    rest = iter(known)
+    if "--ros-args" in words:
+        words = words[: words.index("--ros-args")]
+    rest = iter(words)
     for word in rest:
         option, is_joined, value = word.partition("=")
         if option in options:
             given.setdefault(option, []).append(value if is_joined else next(rest, ""))
         elif not word.startswith("-"):
             names.append(word)
-    files = [path for option in _PARAM_FILES for path in given.get(option, ())]
-    manager = [*given.get("-c", ()), *given.get("--controller-manager", ())][-1:] or [
-        "controller_manager"
-    ]
-    if manager[0].startswith("/"):
-        full = manager[0]
-    else:
-        full = f"/{spawner.namespace.strip('/')}/{manager[0]}"
-    namespace = full.replace("//", "/").rpartition("/")[0] or "/"
-    parameters = tuple(GivenParameters(spawner.location, path) for path in files)
-    rules = remap_rules(" ".join(given.get("--controller-ros-args", ())).split())
-    remaps = tuple((name, to) for name, _, to in rules)
-    started = spawner._replace(
-        namespace=namespace, parameters=parameters, arguments=(), remaps=remaps
-    )
-    return tuple(started._replace(node_name=name) for name in names)
+    return names, given
+
+
+def _namespace_of_manager(given: Mapping[str, Sequence[str]], namespace: str) -> str:
+    """Return the namespace of the controller manager that the options of a spawner name."""
+    managers = [*given.get("-c", ()), *given.get("--controller-manager", ())]
+    manager = managers[-1] if managers else "controller_manager"
+    if not manager.startswith("/"):
+        manager = f"/{namespace.strip('/')}/{manager}"
+    return manager.replace("//", "/").rpartition("/")[0] or "/"

@@ -1,5 +1,6 @@
-"""The nodes that a launch file starts, as launch_ros does: their names, and the files that they are
-given.
+"""The nodes that a launch file starts, as launch_ros does.
+
+They have their names, and the files that they are given.
 
 These files are the robot and the configuration of RViz. The files in `ros/known/packages` list the
 nodes that launch files of well-known packages start, which workspaces include but do not contain.
@@ -93,30 +94,48 @@ def start_node(
     when: bool | None,
     parameters: Iterable[GivenParameters] = (),
 ) -> None:
-    """Add the node that a Node action starts, and the files that it is given. `parameters` are
-    those that the action has for it.
+    """Add the node that a Node action starts, and the files that it is given.
+
+    `parameters` are those that the action has for it.
     """
     package, executable = (
         _text_if_known(call.kwargs.get(name), context, call.at)
         for name in ("package", "executable")
     )
     if not isinstance(package, str) or not isinstance(executable, str):
-        unknown = next((it.reason for it in (package, executable) if isinstance(it, Unknown)), "")
-        findings.add_unknown(
-            f"the program of a node is not evaluated: {unknown}".removesuffix(": "), call.at
-        )
+        _add_unknown_program((package, executable), findings, call)
         return
     prefix = _frame_prefix(call, context) if executable == STATE_PUBLISHER else ""
     node = StartedNode(package, executable, when, findings.locate(call.at), prefix)
     started = _add_names(node, call, context, findings, parameters)
     findings.nodes.append(started)
-    for controller in (controllers_of(started) if executable == "spawner" else ()) or ():
+    if executable == "spawner":
+        _refer_controllers(started, findings, call)
+    if when is False:
+        return
+    if executable == STATE_PUBLISHER:
+        _find_description(findings, call, context)
+    elif executable == _RVIZ:
+        _find_configuration(findings, call, context)
+
+
+def _add_unknown_program(
+    program: Iterable[str | Contents | Unknown], findings: Findings, call: Call
+) -> None:
+    """Add why the program of a node is not known."""
+    message = "the program of a node is not evaluated"
+    for part in program:
+        if isinstance(part, Unknown):
+            message += f": {part.reason}"
+            break
+    findings.add_unknown(message.removesuffix(": "), call.at)
+
+
+def _refer_controllers(spawner: StartedNode, findings: Findings, call: Call) -> None:
+    """Add the files of parameters that the controllers of a spawner are given."""
+    for controller in controllers_of(spawner) or ():
         for given in controller.parameters or ():
             findings.refer("parameters", given.path, call)
-    if when is not False and executable == STATE_PUBLISHER:
-        _find_description(findings, call, context)
-    elif when is not False and executable == _RVIZ:
-        _find_configuration(findings, call, context)
 
 
 def _add_names(
@@ -124,10 +143,11 @@ def _add_names(
     call: Call,
     context: Context,
     findings: Findings,
-    own: Iterable[GivenParameters],
+    own_parameters: Iterable[GivenParameters],
 ) -> StartedNode:
-    """Return a node with its name, arguments, parameters and remappings, and whether it is given
-    the robot itself.
+    """Return a node with its name, arguments, parameters and remappings.
+
+    Also returns whether it is given the robot itself.
     """
     words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
     ros_words: list[str] = []
@@ -143,7 +163,7 @@ def _add_names(
     parameters = (
         *parameters_in_words(ros_words, node.location),
         *context.to_all.get(TO_ALL, ()),
-        *own,
+        *own_parameters,
     )
     for given in parameters:
         if given.path:
@@ -165,18 +185,16 @@ def _add_remaps(
     call: Call,
     context: Context,
 ) -> StartedNode:
-    """Return a node with its namespace and remappings; `rules` are those among the words of its
-    command line.
+    """Return a node with its namespace and remappings.
+
+    `rules` are those among the words of its command line.
     """
     remaps: list[tuple[str, ...] | None] = [(name, to) for name, _, to in rules]
     remaps += context.to_all.get(REMAPS, ())
     try:
         below = call.kwargs.get("namespace") or ""
         namespace: str | None = namespace_below(below, context, call.at)
-        for rule in items_in(call.kwargs.get("remappings") or ()) or ():
-            remaps.append(
-                tuple(known_text(name, context, call.at) for name in items_in(rule) or ())
-            )
+        remaps += _evaluate_remaps(call, context)
     except EvaluationSignal:
         return node._replace(namespace=None, remaps=None)
     for name, _, value in reversed(rules):
@@ -188,14 +206,23 @@ def _add_remaps(
     return node._replace(namespace=namespace, remaps=known)
 
 
+def _evaluate_remaps(call: Call, context: Context) -> list[tuple[str, ...]]:
+    """Return the remappings that a Node action has. Raises EvaluationSignal."""
+    remaps = []
+    for rule in items_in(call.kwargs.get("remappings") or ()) or ():
+        names = items_in(rule) or ()
+        remaps.append(tuple(known_text(name, context, call.at) for name in names))
+    return remaps
+
+
 def _given_name(rules: Iterable[tuple[str, str, str]], call: Call, context: Context) -> str | None:
     """Return the name that a node is given; None where it is not known."""
     for name, _, value in rules:
         if name == "__node":
             return None if PART_UNKNOWN in value else value
     given = call.kwargs.get("name")
-    found = _text_if_known(given, context, call.at) if given is not None else ""
-    return found if isinstance(found, str) else None
+    text = _text_if_known(given, context, call.at) if given is not None else ""
+    return text if isinstance(text, str) else None
 
 
 def start_process(findings: Findings, call: Call, context: Context, when: bool | None) -> None:
@@ -249,13 +276,14 @@ def _has_none_of(words: Sequence[str], options: Sequence[str]) -> bool:
 
 
 def _node_of_command(words: list[str], call: Call) -> Call | None:
-    """Return the Node action that does the same as a command; None for a command that is not
-    known.
+    """Return the Node action that does the same as a command.
+
+    Returns None for a command that is not known.
     """
     is_run = (
         words[:2] == ["ros2", "run"]
         and len(words) > 3
-        and not any(it.startswith("-") for it in words[2:4])
+        and not any(word.startswith("-") for word in words[2:4])
     )
     if not is_run and words[:1] != [_RVIZ]:
         return None
@@ -268,8 +296,9 @@ def _node_of_command(words: list[str], call: Call) -> Call | None:
 
 
 def evaluate_node(call: Call, context: Context) -> None:
-    """Evaluate what launch_ros does with the arguments of a node besides their texts. Raises
-    EvaluationSignal.
+    """Evaluate what launch_ros does with the arguments of a node besides their texts.
+
+    Raises EvaluationSignal.
     """
     evaluate_process(call, context)
     name, namespace = call.kwargs.get("name"), call.kwargs.get("namespace")
@@ -286,8 +315,9 @@ def evaluate_node(call: Call, context: Context) -> None:
 
 
 def evaluate_process(call: Call, context: Context) -> None:
-    """Evaluate what launch does with the arguments of a process besides their texts. Raises
-    EvaluationSignal.
+    """Evaluate what launch does with the arguments of a process besides their texts.
+
+    Raises EvaluationSignal.
     """
     if "cmd" in call.kwargs:
         if not items_in(call.kwargs["cmd"]):
@@ -337,9 +367,9 @@ def _frame_prefix(call: Call, context: Context) -> str | None:
     ]
     words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
     given += [word.partition(":=")[2] for word in words if word.startswith("frame_prefix:=")]
-    found = _text_if_known(_inner_value(given[-1]), context, call.at) if given else ""
-    if isinstance(found, str) and PART_UNKNOWN not in found:
-        return found
+    prefix = _text_if_known(_inner_value(given[-1]), context, call.at) if given else ""
+    if isinstance(prefix, str) and PART_UNKNOWN not in prefix:
+        return prefix
     return None
 
 
@@ -350,29 +380,51 @@ def _find_description(findings: Findings, call: Call, context: Context) -> None:
     if tables:
         _refer_description(findings, tables[-1]["robot_description"], call, context)
         return
-    unknown = next((it for it in parameters if isinstance(it, Unknown)), None)
-    is_clear = all(map(_is_flat, parameters))
-    words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
-    end = words.index("--ros-args") if "--ros-args" in words else len(words)
-    files = [word for word in words[:end] if not word.startswith("-")]
-    if unknown is not None:
-        findings.refer("urdf", unknown, call)
-    elif files and files[0] != PART_UNKNOWN:
-        findings.refer("urdf", files[0], call)
-    elif words or not is_clear or "ros_arguments" in call.kwargs or findings.sets_parameters:
-        findings.refer("urdf", Unknown("its parameters are known only at run time", call.at), call)
+    given = _description_besides(parameters, findings, call, context)
+    if given is not None:
+        findings.refer("urdf", given, call)
+        return
+    message = "robot_state_publisher is started without robot_description"
+    if any(isinstance(parameter, set) for parameter in parameters):
+        message += ": { , } is a set, and a table has a colon: {'robot_description': ...}"
     else:
-        message = "robot_state_publisher is started without robot_description"
-        if any(isinstance(it, set) for it in parameters):
-            message += ": { , } is a set, and a table has a colon: {'robot_description': ...}"
-        else:
-            message += ": it has no robot to publish"
-        findings.refer("urdf", None, call, wrong=message)
+        message += ": it has no robot to publish"
+    findings.refer("urdf", None, call, wrong=message)
+
+
+def _description_besides(
+    parameters: Sequence[Value], findings: Findings, call: Call, context: Context
+) -> str | Unknown | None:
+    """Return where robot_state_publisher gets the robot from, if no table has it.
+
+    Returns Unknown where that is not known, None if it gets none.
+    """
+    words = _resolve_words(call.kwargs.get("arguments"), context, call.at)
+    for parameter in parameters:
+        if isinstance(parameter, Unknown):
+            return parameter
+    file = _first_file(words)
+    if file is not None and file != PART_UNKNOWN:
+        return file
+    is_clear = all(map(_is_flat, parameters))
+    if words or not is_clear or "ros_arguments" in call.kwargs or findings.sets_parameters:
+        return Unknown("its parameters are known only at run time", call.at)
+    return None
+
+
+def _first_file(words: Sequence[str]) -> str | None:
+    """Return the first word of a command line before --ros-args that is no option."""
+    for word in words:
+        if word == "--ros-args":
+            return None
+        if not word.startswith("-"):
+            return word
+    return None
 
 
 def _is_flat(parameter: Value) -> bool:
     """Return whether parameters are a dict that contains no other, or no table at all."""
-    if isinstance(parameter, set) and any(isinstance(it, FileText) for it in parameter):
+    if isinstance(parameter, set) and any(isinstance(part, FileText) for part in parameter):
         return True
     if not isinstance(parameter, dict):
         return False
@@ -386,11 +438,11 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
             "urdf", None, call, value, wrong=f"robot_description is given {OPENED[value.name]}"
         )
         return
-    if isinstance(value, list | tuple) and not any(isinstance(it, Call) for it in value):
+    if isinstance(value, list | tuple) and not any(isinstance(element, Call) for element in value):
         findings.add_doubt("a robot_description that is a list is not evaluated", call.at)
         findings.refer("urdf", Unknown("robot_description is a list", call.at), call)
         return
-    match found := _text_if_known(value, context, call.at):
+    match text := _text_if_known(value, context, call.at):
         case Contents(path=path, by=by) if (
             by != "xacro" and path.endswith(".xacro") and context.text_of(path) is None
         ):
@@ -401,7 +453,7 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
             findings.references.append(
                 NamedFile("urdf", path, findings.locate(call.at), message, is_certain=False, by=by)
             )
-        case str() if "<robot" in found or not found.strip():
+        case str() if "<robot" in text or not text.strip():
             reason = "a robot that the launch file contains is not evaluated"
             findings.refer("urdf", Unknown(reason, call.at), call, value)
         case str():
@@ -409,14 +461,14 @@ def _refer_description(findings: Findings, value: Value, call: Call, context: Co
                 "robot_description is given the path of the URDF, not its contents: read the "
                 "file first"
             )
-            if re.fullmatch(r"\w+", found):
+            if re.fullmatch(r"\w+", text):
                 message = (
-                    f"robot_description is given the text {found[:40]!r}: write the variable "
+                    f"robot_description is given the text {text[:40]!r}: write the variable "
                     "without quotes"
                 )
             findings.refer("urdf", None, call, value, wrong=message)
         case _:
-            findings.refer("urdf", found, call, value)
+            findings.refer("urdf", text, call, value)
 
 
 def _find_configuration(findings: Findings, call: Call, context: Context) -> None:
@@ -441,21 +493,24 @@ def _find_configuration(findings: Findings, call: Call, context: Context) -> Non
         )
         findings.refer("rviz", None, call, wrong=message)
     elif path is None or PART_UNKNOWN in path:
-        pieces = arguments if isinstance(arguments, list | tuple) else []
-        found = (_text_if_known(piece, context, call.at) for piece in pieces)
-        unnamed = Unknown("which file rviz2 opens is not evaluated", call.at)
-        findings.refer("rviz", next((it for it in found if isinstance(it, Unknown)), unnamed), call)
+        findings.refer("rviz", _unknown_configuration(arguments, call, context), call)
     elif path != path.lstrip():
-        findings.refer(
-            "rviz",
-            None,
-            call,
-            wrong="'-d' and the path have to be two items of arguments: ['-d', path]",
-        )
+        message = "'-d' and the path have to be two items of arguments: ['-d', path]"
+        findings.refer("rviz", None, call, wrong=message)
     elif path:
         findings.refer("rviz", path, call)
     else:
         findings.refer("rviz", None, call, wrong="rviz2 is given -d without the path of a file")
+
+
+def _unknown_configuration(arguments: Value, call: Call, context: Context) -> Unknown:
+    """Return why it is not known which file RViz opens: the first reason in its arguments."""
+    if isinstance(arguments, list | tuple):
+        for piece in arguments:
+            text = _text_if_known(piece, context, call.at)
+            if isinstance(text, Unknown):
+                return text
+    return Unknown("which file rviz2 opens is not evaluated", call.at)
 
 
 def _display_config(words: list[str]) -> str | None:
@@ -511,8 +566,9 @@ def is_of_ros(package: str) -> bool:
 
 
 def start_known_file(findings: Findings, path: str, call: Call, context: Context) -> bool:
-    """Add what an included launch file of a well-known package starts; return whether the path is
-    that of one.
+    """Add what an included launch file of a well-known package starts.
+
+    Returns whether the path is that of one.
     """
     prefix, _, name = path.rpartition("/share/")
     package, _, file = name.partition("/launch/")

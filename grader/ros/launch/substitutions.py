@@ -41,8 +41,9 @@ _PROGRAMS = frozenset({"xacro", "cat", "ros2", "python3", "bash", "sh", "echo", 
 
 
 def resolve(value: Value, context: Context, at: Position, depth: int = 0) -> Resolved:
-    """Return the text of a value, or the contents of a file; Unknown where it certainly is a text,
-    but not known.
+    """Return the text of a value, or the contents of a file.
+
+    Returns Unknown where it certainly is a text, but not known.
 
     Raises EvaluationFails where launch certainly raises an error, Undetermined where it may.
     """
@@ -86,10 +87,10 @@ def _joined_text(parts: list[Resolved], at: Position) -> Resolved:
 
 def known_text(value: Value, context: Context, at: Position) -> str:
     """Return the text of a value. Raises Undetermined where it is not known."""
-    found = resolve(value, context, at)
-    if isinstance(found, str):
-        return found
-    raise not_a_text(found, at)
+    text = resolve(value, context, at)
+    if isinstance(text, str):
+        return text
+    raise not_a_text(text, at)
 
 
 def not_a_text(value: Contents | Unknown, at: Position) -> Undetermined:
@@ -100,16 +101,17 @@ def not_a_text(value: Contents | Unknown, at: Position) -> Undetermined:
 
 
 def boolean(text: str, at: Position) -> bool:
-    """Return the value of a text as launch reads it where it wants a boolean, by the rules of
-    YAML.
+    """Return the value of a text as launch reads it where it wants a boolean.
+
+    It reads it by the rules of YAML.
     """
-    found: object = _BOOLEANS[text] if text in ("0", "1") else None
-    if found is None and len(text) < 20:
+    truth: object = _BOOLEANS[text] if text in ("0", "1") else None
+    if truth is None and len(text) < 20:
         with suppress(ValueError):
-            found = yaml_value(text)
-    if not isinstance(found, bool):
+            truth = yaml_value(text)
+    if not isinstance(truth, bool):
         raise EvaluationFails(f"{text[:40]!r} is neither true nor false", at)
-    return found
+    return truth
 
 
 def condition_holds(given: Call, context: Context) -> bool:
@@ -123,16 +125,16 @@ def condition_holds(given: Call, context: Context) -> bool:
         return holds == (kind == "IfCondition")
     name, wanted = given.kwargs["launch_configuration_name"], given.kwargs["expected_value"]
     expected = known_text(wanted, context, given.at) if wanted is not None else None
-    found = (
+    argument = (
         context.arguments.get(name) if isinstance(name, str) else None
     )  # no other object is the key of one
     if (
         isinstance(name, Unknown)
-        or (found is None and context.has_others)
-        or not isinstance(found, str | None)
+        or (argument is None and context.has_others)
+        or not isinstance(argument, str | None)
     ):
         raise Undetermined("the launch configuration of this condition is not evaluated", given.at)
-    return (found == expected) == (kind == "LaunchConfigurationEquals")
+    return (argument == expected) == (kind == "LaunchConfigurationEquals")
 
 
 @dataclass(slots=True)
@@ -162,10 +164,10 @@ class _Substitution:
 
     def texts(self, *values: Value) -> list[str] | Unknown:
         """Return the texts of some values; Unknown if one of them is."""
-        found = [self.resolve(value) for value in values]
-        unknown = next((it for it in found if isinstance(it, Unknown)), None)
-        texts = [it for it in found if isinstance(it, str)]
-        if len(texts) == len(found):
+        results = [self.resolve(value) for value in values]
+        unknown = next((result for result in results if isinstance(result, Unknown)), None)
+        texts = [result for result in results if isinstance(result, str)]
+        if len(texts) == len(results):
             return texts
         return unknown or Unknown("the content of a file is used", self.at)
 
@@ -302,7 +304,7 @@ class _Substitution:
         elif isinstance(value, int | float):
             value = str(value)
         elif not all(
-            isinstance(it, TEXT_PARTS) for it in (value if isinstance(value, list) else [value])
+            isinstance(part, TEXT_PARTS) for part in (value if isinstance(value, list) else [value])
         ):
             raise Undetermined("the text of a list in this substitution is not evaluated", self.at)
         return known_text(value, self.context, self.at)
@@ -325,8 +327,9 @@ def no_package(name: str, meant: str) -> str:
 
 
 def check_program(package: str, name: str, context: Context, at: Position) -> None:
-    """Raise EvaluationFails if a package certainly has no such program, Undetermined if this is not
-    known.
+    """Raise EvaluationFails if a package certainly has no such program.
+
+    Raises Undetermined if this is not known.
     """
     if not context.machine.has_package(package):
         raise Undetermined(f"whether the package {package!r} is installed is not evaluated", at)
@@ -353,7 +356,7 @@ CONDITIONS = (
 )
 # The substitutions that are evaluated.
 PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
-    "TextSubstitution": lambda it: it.argument("text"),
+    "TextSubstitution": lambda substitution: substitution.argument("text"),
     "LaunchConfiguration": _Substitution.configuration,
     "PathJoinSubstitution": _Substitution.path,
     "PathSubstitution": _Substitution.path,
@@ -364,15 +367,17 @@ PERFORMS: Mapping[str, Callable[[_Substitution], Resolved]] = {
     "FindPackagePrefix": _Substitution.package_prefix,
     "FindExecutable": _Substitution.program,
     "EnvironmentVariable": _Substitution.variable,
-    "ThisLaunchFileDir": lambda it: posixpath.dirname(it.context.path),
-    "ThisLaunchFile": lambda it: it.context.path,
+    "ThisLaunchFileDir": lambda substitution: posixpath.dirname(substitution.context.path),
+    "ThisLaunchFile": lambda substitution: substitution.context.path,
     "AndSubstitution": _Substitution.both,
     "OrSubstitution": _Substitution.either,
-    "NotSubstitution": lambda it: str(not it.is_true("value")).lower(),
+    "NotSubstitution": lambda substitution: str(not substitution.is_true("value")).lower(),
     "IfElseSubstitution": _Substitution.choice,
     "EqualsSubstitution": _Substitution.equals,
     "FileContent": _Substitution.file_content,
-    "NotEqualsSubstitution": lambda it: "false" if it.equals() == "true" else "true",
+    "NotEqualsSubstitution": lambda substitution: (
+        "false" if substitution.equals() == "true" else "true"
+    ),
     "ExecutableInPackage": _Substitution.executable,
 }
 
@@ -401,22 +406,12 @@ def _find_name(name: str) -> Value:
 
 
 def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr: bool) -> Contents:
-    """Return the contents of the file that a command prints, whose parts have these texts. Raises
-    EvaluationSignal.
+    """Return the contents of the file that a command prints, whose parts have these texts.
+
+    Raises EvaluationSignal.
     """
-    command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()[
-        :MAX_TEXT
-    ]
-    if glued := re.match(r"(xacro|cat)(?=/)", command):
-        raise EvaluationFails(
-            f"a space is missing between {glued[1]} and the path: write '{glued[1]} '", at
-        )
-    try:
-        words = shlex.split(command)
-    except ValueError:
-        raise EvaluationFails("the quotes in this command are not closed", at) from None
-    if not words:
-        raise EvaluationFails("this command is empty", at)
+    command = "".join(text if isinstance(text, str) else PART_UNKNOWN for text in texts).strip()
+    words = _split_command(command[:MAX_TEXT], at)
     if words[:3] == ["ros2", "run", "xacro"]:
         words = words[3:]
     check_xacro_words(words, at)
@@ -433,45 +428,73 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
     )
 
 
+def _split_command(command: str, at: Position) -> list[str]:
+    """Return the words of a command line, of which there is one. Raises EvaluationFails."""
+    if glued := re.match(r"(xacro|cat)(?=/)", command):
+        raise EvaluationFails(
+            f"a space is missing between {glued[1]} and the path: write '{glued[1]} '", at
+        )
+    try:
+        words = shlex.split(command)
+    except ValueError:
+        raise EvaluationFails("the quotes in this command are not closed", at) from None
+    if not words:
+        raise EvaluationFails("this command is empty", at)
+    return words
+
+
 def check_xacro_words(words: Sequence[str], at: Position) -> None:
-    """Raise EvaluationFails for a command of xacro that certainly has not one file, or an argument
-    that is none.
+    """Raise EvaluationFails for a wrong command of xacro.
+
+    Such a command certainly has not one file, or an argument that is none.
     """
     program = posixpath.basename(words[0]).removesuffix(".py") if words else ""
     if program != "xacro" or any(word.startswith("-") for word in words):
         return
-    for word in words[1:]:
-        name, _, value = word.partition(":=")
-        path = re.match(r".*/.*\.(?:xacro|urdf)", name) if ":=" in word else None
-        if path is not None:
-            before, after = posixpath.basename(path[0]), f"{name[path.end() :]}:="
-            raise EvaluationFails(f"a space is missing between {before} and {after}", at)
-        if ":=" in value:
-            raise EvaluationFails(f"a space is missing between the arguments in {word[:60]!r}", at)
+    _check_spaces(words[1:], at)
     if any(PART_UNKNOWN in word for word in words):
         return
     files = [word for word in words[1:] if ":=" not in word]
     if not files:
         raise EvaluationFails("xacro is given no file", at)
     if len(files) > 1:
-        raise EvaluationFails(
-            f"xacro takes one file, and is given {enumerated([*map(posixpath.basename, files)])}",
-            at,
-        )
+        named = enumerated([*map(posixpath.basename, files)])
+        raise EvaluationFails(f"xacro takes one file, and is given {named}", at)
+
+
+def _check_spaces(words: Sequence[str], at: Position) -> None:
+    """Raise EvaluationFails for a word that is several, because a space is missing."""
+    for word in words:
+        name, is_given, value = word.partition(":=")
+        path = re.match(r".*/.*\.(?:xacro|urdf)", name) if is_given else None
+        if path is not None:
+            before, after = posixpath.basename(path[0]), f"{name[path.end() :]}:="
+            raise EvaluationFails(f"a space is missing between {before} and {after}", at)
+        if ":=" in value:
+            raise EvaluationFails(f"a space is missing between the arguments in {word[:60]!r}", at)
 
 
 def printed_file(words: list[str]) -> Contents | None:
     """Return the contents of the one file that xacro or cat prints; None for any other command."""
     program = words[0].rpartition("/")[2].removesuffix(".py") if words else ""
-    files = [word for word in words[1:] if not word.startswith("-") and ":=" not in word]
-    is_known = len(files) == 1 and files[0] and PART_UNKNOWN not in files[0]
-    if program not in ("xacro", "cat") or "-o" in words or not is_known:
+    file = _only_file(words[1:])
+    if file is None or "-o" in words:
         return None
+    if program == "cat" and words[1:] == [file]:
+        return Contents(file, "cat")
     if program != "xacro":
-        if words[1:] == files:
-            return Contents(files[0], "cat")
         return None
-    given = (word.split(":=", 1) for word in words[1:] if ":=" in word)
-    return Contents(
-        files[0], "xacro", tuple((name, None if PART_UNKNOWN in it else it) for name, it in given)
-    )
+    arguments: list[tuple[str, str | None]] = []
+    for word in words[1:]:
+        name, is_given, text = word.partition(":=")
+        if is_given:
+            arguments.append((name, None if PART_UNKNOWN in text else text))
+    return Contents(file, "xacro", tuple(arguments))
+
+
+def _only_file(words: list[str]) -> str | None:
+    """Return the one file among words; None if there are others, or a part is unknown."""
+    files = [word for word in words if not word.startswith("-") and ":=" not in word]
+    if len(files) != 1 or not files[0] or PART_UNKNOWN in files[0]:
+        return None
+    return files[0]

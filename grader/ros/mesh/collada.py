@@ -117,14 +117,15 @@ class _Scene:
         return self._geometries[element]
 
     def _surface(self, surface: Element) -> Any:
-        """Return the corners of the triangles of a primitive: those of the first input that names
-        points.
+        """Return the corners of the triangles of a primitive.
+
+        These are those of the first input that names points.
         """
         inputs = surface.findall("{*}input")
-        vertices = [it for it in inputs if it.get("semantic") == "VERTEX"]
+        vertices = [source for source in inputs if source.get("semantic") == "VERTEX"]
         if not vertices:
             return np.empty((0, 3, 3))
-        offsets = [_whole(it.get("offset", "0")) for it in inputs]
+        offsets = [_whole(source.get("offset", "0")) for source in inputs]
         stride, offset = max(offsets) + 1, _whole(vertices[0].get("offset", "0"))
         rows = []
         for element in surface.iterfind("{*}p"):
@@ -158,8 +159,9 @@ class _Scene:
 
 
 def _triangles(surface: Element, lengths: list[int]) -> Any:
-    """Return the positions of the corners of triangles, shape (n, 3), in the corners of a primitive
-    whose lists of corners have these lengths.
+    """Return the positions of the corners of triangles, shape (n, 3), in those of a primitive.
+
+    The primitive's lists of corners have these lengths.
     """
     kind, total = _kind(surface), sum(lengths)
     if kind == "triangles":

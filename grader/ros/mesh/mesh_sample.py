@@ -14,8 +14,9 @@ _VERTEX = re.compile(rb"^[ \t]*(?:v|vertex)[ \t]+([^\n]*)\n", re.MULTILINE | re.
 
 
 def sample_size(start: bytes, size: int) -> Vector | None:
-    """Return the edges of the box around some points of an STL or OBJ file, before <mesh scale>;
-    None where there are none.
+    """Return the edges of the box around some points of an STL or OBJ file, before <mesh scale>.
+
+    Returns None where there are none.
 
     Args:
         start: The first bytes of the file.

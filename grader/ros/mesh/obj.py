@@ -44,8 +44,9 @@ def _joined_lines(data: bytes) -> list[bytes]:
 
 
 def _read_face(words: Sequence[bytes], count: int, line: int) -> list[int]:
-    """Return the points of a face, from 0; a negative number counts back from the last of the
-    `count` points above.
+    """Return the points of a face, from 0.
+
+    A negative number counts back from the last of the `count` points above.
     """
     corners = []
     for word in words:

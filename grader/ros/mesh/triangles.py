@@ -65,9 +65,11 @@ class Triangles:
         return Triangles(reduced)
 
     def packed(self, bounds: tuple[Vector, Vector], mirrored: Sequence[bool]) -> bytes:
-        """Return the triangles within bounds, for a page: of each corner x, y and z as unsigned
-        16-bit numbers, little-endian, from 0 at the least coordinate to 65535 at the largest;
-        `mirrored` says for each axis whether it is the other way round.
+        """Return the triangles within bounds, for a page.
+
+        The result has x, y and z of each corner as unsigned 16-bit numbers, little-endian, from 0
+        at the least coordinate to 65535 at the largest; `mirrored` says for each axis whether it is
+        the other way round.
         """
         low, high = map(np.array, bounds)
         size = np.where(high > low, high - low, 1.0)
@@ -81,8 +83,9 @@ class Triangles:
 
 
 def read_triangles(data: bytes, path: str) -> Triangles | str:
-    """Return the triangles of a mesh file, whose format the ending of its path says; else why it
-    cannot be shown, as the end of a sentence: `has no triangles`.
+    """Return the triangles of a mesh file, or why it cannot be shown.
+
+    The ending of its path says its format. The reason is the end of a sentence: `has no triangles`.
     """
     ending = posixpath.splitext(path)[1].lower()
     if ending not in _READERS:
@@ -104,8 +107,10 @@ def read_triangles(data: bytes, path: str) -> Triangles | str:
 
 
 def _clustered(corners: Any, cells: int) -> Any:
-    """Return triangles whose corners are the means of those in one cell, of a grid with `cells`
-    cells along the longest side; without triangles that get flat, and each once.
+    """Return triangles whose corners are the means of those in one cell of a grid.
+
+    The grid has `cells` cells along the longest side. Triangles that get flat are omitted, and each
+    is there once.
     """
     points = corners.reshape(-1, 3).astype(np.float64)
     _, cell_of = np.unique(_number_cells(points, cells), return_inverse=True)
@@ -126,7 +131,8 @@ def _number_cells(points: Any, cells: int) -> Any:
 
 
 def _different_triangles(triangles: Any, count: int) -> Any:
-    """Return the triangles, as the numbers of their corners, that are not flat, and each once;
+    """Return the triangles that are not flat, each once, as the numbers of their corners.
+
     `count` is how many corners there are.
     """
     a, b, c = np.sort(triangles, axis=1).T

@@ -1,7 +1,7 @@
 """What CMakeLists.txt does not do with the C++ files of a package: compile them, install them."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from grader.base.problems import Problem
 from grader.ros.installation import package_problems as kinds
@@ -21,19 +21,28 @@ _OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|_test\.")
 
 
 def cmake_problems(package: Package, setup: Installation) -> Iterator[Problem]:
-    """Yield programs that no target compiles, targets that no install() names, and packages that a
-    target needs; nothing where a part of CMakeLists.txt is not known.
+    """Yield programs, targets and packages that CMakeLists.txt forgets.
+
+    These are programs that no target compiles, targets that no install() names, and packages that a
+    target needs. Yields nothing where a part of CMakeLists.txt is not known.
     """
     is_known = setup.doubt is None and not setup.unknown and not setup.stops
     if not is_known or not all(target.is_certain for target in setup.targets):
         return
     for target in setup.targets:
-        is_of_tests = any(_OF_TESTS.search(path) for path in target.sources)
-        if not target.is_installed and target.sources and not is_of_tests:
-            yield from _not_installed(package, setup, target)
-        if not target.links and not is_of_tests:
-            yield from _not_linked(package, setup, target)
+        yield from _target_problems(package, setup, target)
     yield from _not_compiled(package, setup)
+
+
+def _target_problems(
+    package: Package, setup: Installation, target: CmakeTarget
+) -> Iterator[Problem]:
+    """Yield that a target is not installed, and the packages that it needs."""
+    is_of_tests = any(_OF_TESTS.search(path) for path in target.sources)
+    if not target.is_installed and target.sources and not is_of_tests:
+        yield from _not_installed(package, setup, target)
+    if not target.links and not is_of_tests:
+        yield from _not_linked(package, setup, target)
 
 
 def _not_installed(package: Package, setup: Installation, target: CmakeTarget) -> Iterator[Problem]:
@@ -47,31 +56,39 @@ def _not_installed(package: Package, setup: Installation, target: CmakeTarget) -
 
 
 def _not_linked(package: Package, setup: Installation, target: CmakeTarget) -> Iterator[Problem]:
-    """Yield packages whose headers a target includes, and that neither ament_target_dependencies()
-    names nor what it names exports.
+    """Yield packages whose headers a target includes and that it does not depend on.
+
+    Neither ament_target_dependencies() names them nor what it names exports them.
     """
     exports = cmake_words().exports
     if any(word in setup.source.text for word in _OTHER_WAYS):
         return
     if not target.packages or not {*target.packages} <= exports.keys():
         return
-    pending, reached = [*target.packages], set[str]()
-    while pending:
-        name = pending.pop()
-        if name not in reached:
-            reached.add(name)
-            pending += exports.get(name, "").split()
+    reached = _reachable_packages(target.packages, exports)
     included: dict[str, str] = {}
     for path in target.sources[:_MAX_FILES]:
         for name in _INCLUDE.findall(_text_of(package, path)):
             included.setdefault(name, path)
+    others = (exports.keys() & included.keys()) - reached - {package.name}
     for name, path in included.items():
-        if name in exports and name not in reached and name != package.name:
+        if name in others:
             message = (
                 f"{path} includes headers of {name}, but the target {target.name!r} does not "
                 f"depend on it: see ament_target_dependencies()"
             )
             yield Problem(kinds.NOT_LINKED, message, setup.location(target.at))
+
+
+def _reachable_packages(packages: Iterable[str], exports: Mapping[str, str]) -> set[str]:
+    """Return packages with those that they export, directly or not."""
+    pending, reached = [*packages], set[str]()
+    while pending:
+        name = pending.pop()
+        if name not in reached:
+            reached.add(name)
+            pending += exports.get(name, "").split()
+    return reached
 
 
 def _not_compiled(package: Package, setup: Installation) -> Iterator[Problem]:

@@ -1,5 +1,6 @@
-"""The programs of a Python package: the entry points that its setup.py names, and whether their
-functions exist.
+"""The entry points that a package's setup.py names, and whether their functions exist.
+
+They are the programs of a Python package.
 """
 
 import ast
@@ -38,8 +39,9 @@ class _EntryPoint(NamedTuple):
 
 
 class _EntryFault(NamedTuple):
-    """Why a program certainly does not start, where setup.py names it, and the word in it that
-    may mean another one.
+    """Why a program certainly does not start, and where setup.py names it.
+
+    It has the word there that may mean another one.
     """
 
     message: str
@@ -50,8 +52,9 @@ class _EntryFault(NamedTuple):
 
 @lru_cache(maxsize=4)
 def entry_points(package: Package) -> Sequence[_EntryPoint]:
-    """Return the entry points that are known: those of console_scripts in setup.py that are
-    written as texts.
+    """Return the entry points that are known.
+
+    These are those of console_scripts in setup.py that are written as texts.
     """
     setup = package.installation
     scripts = setup.console_scripts if setup is not None else None
@@ -77,8 +80,9 @@ def _places_of_names(package: Package) -> dict[str, int]:
 
 
 def _locate_name(package: Package, name: str, places: Mapping[str, int]) -> Location:
-    """Return where setup.py writes an entry point; where it calls setup() if the text is
-    computed.
+    """Return where setup.py writes an entry point.
+
+    Returns where it calls setup() if the text is computed.
     """
     setup = package.installation
     assert setup is not None
@@ -109,28 +113,27 @@ def entry_fault(package: Package, name: str) -> _EntryFault | None:
         return None
     [entry] = named
     path = module_path(package, entry.module)
-    if path is None:
-        if _lacks_module(package, entry.module):
-            return _missing_module(package, entry)
-        return _misspelt_package(package, entry)
+    if path is not None:
+        return _missing_function(package, entry, path)
+    if _lacks_module(package, entry.module):
+        return _missing_module(package, entry)
+    return _misspelt_package(package, entry)
+
+
+def _missing_function(package: Package, entry: _EntryPoint, path: str) -> _EntryFault | None:
+    """Return that a module lacks the function of an entry point; None if it may have it."""
     code, names = _names_of_module(package, path)
     if not entry.function or names is None or entry.function in names:
         return None
-    if code:
-        parts = [
-            node for node in code.tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)
-        ]
-    else:
-        parts = []
-    functions = [node.name for node in parts if isinstance(node, ast.FunctionDef)]
+    known: list[str] = []
+    functions: list[str] = []
+    for node in code.tree.body if code else ():
+        if isinstance(node, ast.FunctionDef | ast.ClassDef):
+            known.append(node.name)
+        if isinstance(node, ast.FunctionDef):
+            functions.append(node.name)
     only = functions[0] if len(functions) == 1 else ""
-    return _fault(
-        entry,
-        f"{path} has no {entry.function!r}",
-        entry.function,
-        [node.name for node in parts],
-        only,
-    )
+    return _fault(entry, f"{path} has no {entry.function!r}", entry.function, known, only)
 
 
 @lru_cache(maxsize=4)
@@ -171,26 +174,30 @@ def module_path(package: Package, module: str) -> str | None:
 
 
 def _lacks_module(package: Package, module: str) -> bool:
-    """Return whether importing a module certainly fails: its parent packages are here, and none of
-    them has it.
+    """Return whether importing a module certainly fails.
+
+    Then its parent packages are here, and none of them has it.
     """
     top, stem = module.partition(".")[0], module.replace(".", "/")
     tree = package.tree
     paths = dict.fromkeys((*tree.files, *tree.folders, *tree.unseen))
-    homes = [
-        path
-        for path in paths
-        if path.rpartition("/")[2] == top and not path.startswith("resource/")
-    ]
+    homes = []
+    for path in paths:
+        if path.rpartition("/")[2] == top and not path.startswith("resource/"):
+            homes.append(path)
     if not homes:  # no other package of ROS 2 installs a Python package of this name
         single = (f"{top}.py", f"{top}.so")
         is_single = any(path.rpartition("/")[2].startswith(single) for path in paths)
         return top == package.name and not is_single
-    if homes != [top] or any(
-        path == stem or path.startswith((f"{stem}.", f"{stem}/")) for path in paths
-    ):
+    module_or_folder = (f"{stem}.", f"{stem}/")
+    if homes != [top] or any(f"{path}/".startswith(module_or_folder) for path in paths):
         return False
-    for path in tree.files:
+    return _are_names_certain(package, stem)
+
+
+def _are_names_certain(package: Package, stem: str) -> bool:
+    """Return whether it is known what the packages above a module bind."""
+    for path in package.tree.files:
         if path.endswith("/__init__.py") and stem.startswith(path.removesuffix("__init__.py")):
             code = read_module(package, path)
             if code is None or _certain_names(code) is None:
@@ -199,8 +206,9 @@ def _lacks_module(package: Package, module: str) -> bool:
 
 
 def _misspelt_package(package: Package, entry: _EntryPoint) -> _EntryFault | None:
-    """Return that the top package of an entry point is not one that setup.py installs, but like
-    one; None where another package may have it.
+    """Return that the top package of an entry point is not one that setup.py installs.
+
+    It is like one that it installs. Returns None where another package may have it.
     """
     setup, top = package.installation, entry.module.partition(".")[0]
     names = setup.packages if setup is not None else ()
@@ -223,23 +231,28 @@ def _missing_module(package: Package, entry: _EntryPoint) -> _EntryFault:
         and path.endswith(".py")
         and not path.endswith("__init__.py")
     ]
-    own = entry.name if entry.name in others else ""
+    same_name = entry.name if entry.name in others else ""
     return _fault(
-        entry, f"there is no module {entry.module}", entry.module.rpartition(".")[2], others, own
+        entry,
+        f"there is no module {entry.module}",
+        entry.module.rpartition(".")[2],
+        others,
+        same_name,
     )
 
 
 def _fault(
-    entry: _EntryPoint, message: str, written: str, known: list[str], own: str = ""
+    entry: _EntryPoint, message: str, written: str, known: list[str], fallback: str = ""
 ) -> _EntryFault:
-    """Return the fault of an entry point, with the name that may be meant, else the names that
-    there are.
+    """Return the fault of an entry point, with the name that may be meant.
+
+    If none may be, it has the names that there are.
     """
-    meant = closest(written, known) or own or None
+    meant = closest(written, known) or fallback or None
     if meant is not None:
         message += f"; did you mean {meant!r}?"
     elif known:
-        message += f"; there is {enumerated([repr(it) for it in known[:MAX_NAMED]])}"
+        message += f"; there is {enumerated([repr(module) for module in known[:MAX_NAMED]])}"
     return _EntryFault(message, entry.location, written, meant)
 
 

@@ -42,8 +42,9 @@ _ENDINGS = {
 
 
 class FilePlace(NamedTuple):
-    """Where a launch file looks for a file: found there, or why it is not. `missing`: a build does
-    not install it.
+    """Where a launch file looks for a file, or why it is not there.
+
+    `missing`: a build does not install it.
 
     `mistake` is the text without what differs between students, `cause` one of those of the check
     `launch_finds_files`.
@@ -76,8 +77,9 @@ class FilePlace(NamedTuple):
         return self.file.purpose in ("read", "include") or self.file.by != ""
 
     def is_in_misnamed(self, package: Package) -> bool:
-        """Return whether the file is looked for below a wrong name of the package, which is not on
-        the machine.
+        """Return whether the file is looked for below a wrong name of the package.
+
+        No package of this name is on the machine.
         """
         owner, _ = share_parts(self.file.path or "")
         return self.state == "wrong" and bool(owner) and package.find(owner) is None
@@ -109,27 +111,29 @@ class FilePlace(NamedTuple):
 def find_places(
     package: Package, launch: "Launch", *purposes: "Purpose", built: bool
 ) -> list[FilePlace]:
-    """Return where a launch file looks for files. Raises MissingElement for one that a build does
-    not install.
+    """Return where a launch file looks for files.
+
+    Raises MissingElement for one that a build does not install.
     """
     places = [_place_of(package, file, built=built) for file in launch.named(*purposes)]
     present = {
-        posixpath.basename(path) for it in package.packages.values() for path in it.tree.files
+        posixpath.basename(path) for other in package.packages.values() for path in other.tree.files
     }
-    for it in places:
-        is_needed = built or posixpath.basename(it.file.path or "") not in present
+    for place in places:
+        is_needed = built or posixpath.basename(place.file.path or "") not in present
         if (
-            it.state == "missing"
+            place.state == "missing"
             and is_needed
             and not any(wrong.state == "wrong" for wrong in places)
         ):
-            raise _missing_file(package, it)
+            raise _missing_file(package, place)
     return places
 
 
 def _missing_file(package: Package, place: FilePlace) -> MissingElement:
-    """Return what the package is missing for a named file, by the kinds and names that the checks
-    of packages use.
+    """Return what the package is missing for a named file.
+
+    It has the kinds and names that the checks of packages use.
     """
     setup, purpose, name = package.installation, place.file.purpose, package.folder
     if setup is not None and setup.misspelt is not None:
@@ -183,8 +187,9 @@ def _place_of(package: Package, file: "NamedFile", *, built: bool) -> FilePlace:
 
 
 def _fault_of_path(package: Package, path: str) -> str:
-    """Return a path that is not below a share folder, with why no file is there; empty where that
-    is not known.
+    """Return a path that is not below a share folder, with why no file is there.
+
+    It is empty where that is not known.
     """
     if is_of_one_machine(path):
         return f"{path.replace(HOME, '~')}, which exists on one machine only"
@@ -201,8 +206,9 @@ def _fault_of_path(package: Package, path: str) -> str:
 
 
 def _place_in_unknown(package: Package, owner: str, rest: str, file: "NamedFile") -> FilePlace:
-    """Return what is known of a path in the share folder of a package that is not part of the
-    workspace.
+    """Return what is known of a path in the share folder of an unknown package.
+
+    The package is not part of the workspace.
 
     Raises MissingElement if it should be.
     """
@@ -220,8 +226,9 @@ def _place_in_unknown(package: Package, owner: str, rest: str, file: "NamedFile"
 
 
 def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
-    """Return how the name of a package that is not part of the workspace is wrong; empty where
-    that is not known.
+    """Return how the name of a package that is not part of the workspace is wrong.
+
+    It is empty where that is not known.
     """
     # A path may lack a slash after the package's name: get_package_share_directory(...) +
     # 'my_robot.urdf'.
@@ -246,26 +253,27 @@ def _fault_of_owner(package: Package, owner: str, rest: str, what: str) -> str:
 
 def _place_in_package(owner: Package, target: str, file: "NamedFile") -> FilePlace:
     """Return whether a build of a package installs a file at the path where it is looked for."""
-    found, setup, what = look_up(owner, target), owner.installation, _WORDS[file.purpose]
-    match found.state:
+    lookup, setup, what = look_up(owner, target), owner.installation, _WORDS[file.purpose]
+    match lookup.state:
         case "unknown":
             return FilePlace(
                 file, "unknown", f"cannot determine statically whether a build installs {target}"
             )
         case "no build":
-            return FilePlace(file, "missing", f"a build installs no {what}: {found.text}")
+            return FilePlace(file, "missing", f"a build installs no {what}: {lookup.text}")
         case "installed" if setup is not None and setup.misspelt is not None:
             return FilePlace(
                 file, "missing", f"a build does not install the {what}: {setup.misspelt.message}"
             )
         case "installed":
-            return _place_not_utf8(owner, found.path, file) or FilePlace(file, "found", target)
-    return _place_not_there(owner, target, found, file)
+            return _place_not_utf8(owner, lookup.path, file) or FilePlace(file, "found", target)
+    return _place_not_there(owner, target, lookup, file)
 
 
 def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> FilePlace | None:
-    """Return where reading a file stops the launch file, because its text is not UTF-8; None where
-    it does not.
+    """Return where reading a file stops the launch file, because its text is not UTF-8.
+
+    Returns None where it does not.
     """
     try:
         if file.by in BY_UTF8:
@@ -283,16 +291,16 @@ def _place_not_utf8(owner: Package, path: str, file: "NamedFile") -> FilePlace |
     return None
 
 
-def _place_not_there(owner: Package, target: str, found: Lookup, file: "NamedFile") -> FilePlace:
+def _place_not_there(owner: Package, target: str, lookup: Lookup, file: "NamedFile") -> FilePlace:
     """Return where else a build installs a file, or what the package has instead of it."""
-    message = f"the launch file looks for the {_WORDS[file.purpose]} at {target}, but {found.text}"
-    if found.state == "elsewhere":
+    message = f"the launch file looks for the {_WORDS[file.purpose]} at {target}, but {lookup.text}"
+    if lookup.state == "elsewhere":
         # Outside of the package's folder, at the path where the launch file looks in it: that is
         # the fault of setup.py.
-        is_at_path = f"/{found.path}".endswith(f"/{target.removeprefix(owner.share)}")
-        is_of_setup = is_at_path and not found.path.startswith(owner.share)
+        is_at_path = f"/{lookup.path}".endswith(f"/{target.removeprefix(owner.share)}")
+        is_of_setup = is_at_path and not lookup.path.startswith(owner.share)
         return FilePlace(file, "missing" if is_of_setup else "wrong", message)
-    if found.state == "not installed":
+    if lookup.state == "not installed":
         return FilePlace(file, "missing", message)
     names = {*map(posixpath.basename, owner.tree.files)}
     names.discard(posixpath.basename(file.location.path))
@@ -300,9 +308,15 @@ def _place_not_there(owner: Package, target: str, found: Lookup, file: "NamedFil
     is_include = file.purpose == "include"
     if not alike and not is_include:
         return FilePlace(file, "missing", message)
-    similar = closest(posixpath.basename(target), alike)
-    if similar is None and len(alike) == 1 and not is_include:
-        similar = alike[0]
+    similar = _similar_file(target, alike, is_include=is_include)
     if similar is not None:
         message += f"; there is {similar!r}"
     return FilePlace(file, "wrong", message, cause="name")
+
+
+def _similar_file(target: str, alike: list[str], *, is_include: bool) -> str | None:
+    """Return the file that is meant: of a similar name, else the only one of its kind."""
+    similar = closest(posixpath.basename(target), alike)
+    if similar is None and len(alike) == 1 and not is_include:
+        return alike[0]
+    return similar

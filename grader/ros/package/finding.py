@@ -58,15 +58,17 @@ _WORDS = frozenset(
 
 
 def is_backup(path: str) -> bool:
-    """Return whether a file or folder is named like a backup: old_ws, my_robot - Copy,
-    my_robot.urdf.bak.
+    """Return whether a file or folder is named like a backup.
+
+    Examples are old_ws, my_robot - Copy, my_robot.urdf.bak.
     """
     return not _WORDS.isdisjoint(_WORD.findall(_CAMEL.sub(" ", path).casefold()))
 
 
 def find_packages(tree: Tree, names: Sequence[str], most: int = _MAX_PACKAGES) -> list[str]:
-    """Return the folders of packages: those with a package.xml, and those of these names with only
-    a setup.py.
+    """Return the folders of packages.
+
+    These are those with a package.xml, and those of these names with only a setup.py.
     """
     with_manifest, with_setup = [], []
     for path in tree.files:
@@ -142,11 +144,11 @@ def read_packages(
         )
         packages.append(package)
     packages.sort(
-        key=lambda it: (
-            min(_name_distance(it, one) for one in wanted),
-            is_backup(it.folder),
-            missing_files(it, urdf),
-            _depth(it.folder),
+        key=lambda candidate: (
+            min(_name_distance(candidate, one) for one in wanted),
+            is_backup(candidate.folder),
+            missing_files(candidate, urdf),
+            _depth(candidate.folder),
         )
     )
     for package in packages:
@@ -165,8 +167,9 @@ def _depth(folder: str) -> tuple[int, str]:
 
 
 def missing_files(package: Package, urdf: str) -> tuple[int, bool]:
-    """Return how many of its usual files a package lacks, and whether it lacks the URDF at its
-    path.
+    """Return how many of its usual files a package lacks.
+
+    Also returns whether it lacks the URDF at its path.
     """
     files = package.tree.files
     has_urdf = urdf in files and files[urdf].size > 0
@@ -175,8 +178,9 @@ def missing_files(package: Package, urdf: str) -> tuple[int, bool]:
 
 
 def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
-    """Return the package that has this name, or is in a folder of this name; any if the name is
-    empty.
+    """Return the package that has this name, or is in a folder of this name.
+
+    Returns any package if the name is empty.
     """
     if packages and (not name or _name_distance(packages[0], name) <= _IN_NAMED_FOLDER):
         return packages[0]
@@ -184,8 +188,9 @@ def best_named(packages: tuple[Package, ...], name: str) -> Package | None:
 
 
 def packages_named(packages: Sequence[Package], names: Sequence[str]) -> dict[str, Package]:
-    """Return the package that each name means: that of the name, else in a folder of it, else of a
-    similar name.
+    """Return the package that each name means.
+
+    This is that of the name, else in a folder of it, else of a similar name.
     """
     chosen: dict[str, Package] = {}
     for distance, name in product((_NAMED, _IN_NAMED_FOLDER, _SIMILAR), names):
@@ -203,9 +208,9 @@ def _name_distance(package: Package, name: str) -> int:
     """Return how well a package has a name; the smallest is best."""
     if package.manifest is not None and package.manifest.name == name:
         return _NAMED
-    own = package.manifest.name if package.manifest is not None else package.name
+    package_name = package.manifest.name if package.manifest is not None else package.name
     if package.folder.rpartition("/")[2] == name or (
-        own is not None and folded(own) == folded(name)
+        package_name is not None and folded(package_name) == folded(name)
     ):
         return _IN_NAMED_FOLDER
     if package.manifest is not None and closest(package.name, [name]):
@@ -260,17 +265,20 @@ def launched_paths(
     launched: set[str] = set()
     for package in (*packages, *launch_folders(tree, packages, loose)):
         for reference in {named.path or "" for named in package.robot_references()}:
-            owner_name = reference.removeprefix(f"{SHARE}/").partition("/")[0]
-            owner = package
-            if owner_name not in package.names:
-                owner = package.find(owner_name) or package
-            source = owner.source_of(reference)
-            if source:
-                launched.add(owner.path(source))
-                continue
-            # Where the build is not understood, the name of the file has to do.
-            file_name = reference.rpartition("/")[2]
-            for robot in robots:
-                if robot.name == file_name and owner.holds(robot.path):
-                    launched.add(robot.path)
+            launched |= _paths_of_reference(reference, package, robots)
     return launched
+
+
+def _paths_of_reference(reference: str, package: Package, robots: Sequence[RobotFile]) -> set[str]:
+    """Return the paths of the robots that a launch file of a package may mean."""
+    owner_name = reference.removeprefix(f"{SHARE}/").partition("/")[0]
+    owner = package
+    if owner_name not in package.names:
+        owner = package.find(owner_name) or package
+    source = owner.source_of(reference)
+    if source:
+        return {owner.path(source)}
+    # Where the build is not understood, the name of the file has to do.
+    file_name = reference.rpartition("/")[2]
+    alike = [robot.path for robot in robots if robot.name == file_name]
+    return {path for path in alike if owner.holds(path)}

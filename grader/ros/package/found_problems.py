@@ -1,5 +1,6 @@
-"""The problems of a package's files, whatever they are graded on, with their codes and
-locations.
+"""The problems of a package's files, with their codes and locations.
+
+They are the same whatever the files are graded on.
 """
 
 from collections.abc import Collection, Iterable, Iterator
@@ -22,26 +23,27 @@ _MAX_FILES_NAMED = 3  # in a message
 
 
 def package_problems(package: Package) -> tuple[Problem, ...]:
-    """Return the problems of package.xml, setup.py, launch files and RViz files, each file's sorted
-    by location.
+    """Return the problems of package.xml, setup.py, launch files and RViz files.
+
+    Those of each file are sorted by location.
     """
-    found = build_problems(package)
+    problems = build_problems(package)
     for path in package.launch_files[:_MAX_FILES]:
-        found += launch_problems(package.launch(path))
+        problems += launch_problems(package.launch(path))
     for path in package.rviz_files[:_MAX_FILES]:
-        found += sorted_problems(package.rviz(path).problems)
-    return tuple(found)
+        problems += sorted_problems(package.rviz(path).problems)
+    return tuple(problems)
 
 
 def build_problems(package: Package, releases: Collection[Release] = ()) -> list[Problem]:
     """Return the problems of package.xml, and of setup.py or CMakeLists.txt, in some releases."""
-    found: list[Problem] = []
+    problems: list[Problem] = []
     if package.manifest is not None:
-        found += sorted_problems(package.manifest.problems)
+        problems += sorted_problems(package.manifest.problems)
     if package.installation is not None:
         setup = package.installation.in_releases(releases)
-        found += sorted_problems(_setup_problems(package, setup))
-    return found
+        problems += sorted_problems(_setup_problems(package, setup))
+    return problems
 
 
 def launch_problems(launch: Launch) -> list[Problem]:
@@ -52,7 +54,13 @@ def launch_problems(launch: Launch) -> list[Problem]:
 def sorted_problems(problems: Iterable[Problem]) -> list[Problem]:
     """Return the problems of one file in the order of their places."""
     return sorted(
-        problems, key=lambda it: (it.location.line, it.location.column, it.code, it.message)
+        problems,
+        key=lambda problem: (
+            problem.location.line,
+            problem.location.column,
+            problem.code,
+            problem.message,
+        ),
     )
 
 
@@ -91,16 +99,23 @@ def _setup_problems(package: Package, setup: Installation) -> Iterator[Problem]:
 
 
 def _naming_problems(package: Package, setup: Installation) -> Iterator[Problem]:
-    """Yield what is wrong with the package's name in setup.py, and with the entries that register
-    the package.
+    """Yield what is wrong with the package's name in setup.py.
+
+    Also yields what is wrong with the entries that register the package.
     """
-    start, targets = setup.location(setup.called_at), setup.installed()
+    start = setup.location(setup.called_at)
     declared = package.manifest.name if package.manifest is not None else None
     is_known = not (setup.unknown or setup.stops)
     if declared is not None and setup.name is not None and setup.name != declared:
         message = f"package.xml names the package {declared!r}, setup.py names it {setup.name!r}"
         yield Problem(kinds.OTHER_NAME, message, start)
         is_known = False  # the entries are missing under one of the two names in any case
+    yield from _entry_problems(package, setup, is_known=is_known)
+
+
+def _entry_problems(package: Package, setup: Installation, *, is_known: bool) -> Iterator[Problem]:
+    """Yield which entries that register the package are missing in setup.py."""
+    start, targets = setup.location(setup.called_at), setup.installed()
     if is_known and RESOURCE_INDEX + package.name not in targets:
         message = (
             f"data_files has no entry for the resource index: resource/{package.name} is not "
@@ -151,8 +166,9 @@ def syntax_fixes(source: Source) -> Fixes:
 
 
 def why_no_match(package: Package, pattern: str) -> str:
-    """Return the end of a message on a pattern of setup.py that matches no file: why, or which
-    files there are.
+    """Return the end of a message on a pattern of setup.py that matches no file.
+
+    It says why, or which files there are.
     """
     if "\\" in pattern:
         return ": separate the parts of a path with /, not with \\"

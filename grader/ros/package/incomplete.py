@@ -1,5 +1,6 @@
-"""The problems of a robot, which may not be read completely: what may be in the rest is not
-missing.
+"""The problems of a robot, which may not be read completely.
+
+What may be in the rest is not missing.
 """
 
 import re
@@ -35,8 +36,12 @@ def problems_of_robot(
 ) -> tuple[Problem, ...]:
     """Return the problems of a robot and of its meshes, in the order of their places."""
     meshes = mesh_problems(robot, packages, tree)
-    own = [it for it in _listed(robot.loaded.problems) if not _is_chosen(it, robot, tree)]
-    return in_order((*own, *meshes))
+    robot_problems = [
+        problem
+        for problem in _listed(robot.loaded.problems)
+        if not _is_chosen(problem, robot, tree)
+    ]
+    return in_order((*robot_problems, *meshes))
 
 
 def _is_chosen(problem: Problem, robot: Read, tree: Tree) -> bool:
@@ -48,8 +53,9 @@ def _is_chosen(problem: Problem, robot: Read, tree: Tree) -> bool:
 
 
 def _listed(problems: Sequence[Problem]) -> Iterator[Problem]:
-    """Yield the problems, those for which something cannot be determined as one, and none that the
-    part that is not read may undo.
+    """Yield the problems of a robot, but those that the unread part may undo.
+
+    Those for which something cannot be determined are one problem.
     """
     unknown = [problem for problem in problems if problem.kind.effect == "undetermined"]
     is_cut = any(problem.kind.is_before_ros for problem in problems)

@@ -12,8 +12,9 @@ _MAX_CMAKE, _MAX_FILE = 128 * 1024, 512 * 1024  # bytes
 
 
 class Lookup(NamedTuple):
-    """What a build installs at a path where a file is looked for, or why nothing, as the end of a
-    sentence.
+    """What a build installs at a path where a file is looked for, or why nothing.
+
+    The reason is the end of a sentence.
     """
 
     state: Literal["installed", "unknown", "no build", "elsewhere", "not installed", "absent"]
@@ -23,8 +24,9 @@ class Lookup(NamedTuple):
 
 
 def look_up(owner: Package, target: str) -> Lookup:
-    """Return what a build of a package installs at a path below the prefix, or what the package has
-    instead.
+    """Return what a build of a package installs at a path below the prefix.
+
+    If it installs nothing there, returns what the package has instead.
     """
     setup = owner.installation
     if setup is None:
@@ -62,18 +64,24 @@ def _instead(owner: Package, target: str) -> Lookup:
 
 
 def _meant_by(owner: Package, target: str) -> list[str]:
-    """Return the file of a package that is at the same place in its folder, else all with the same
-    name.
+    """Return the file of a package that is at the same place in its folder.
+
+    If there is none, returns all with the same name.
     """
     inside, name = target.removeprefix(owner.share), posixpath.basename(target)
     if inside in owner.tree.files:
         return [inside]
-    return [it for it in owner.tree.files if posixpath.basename(it) == name]
+    return [
+        path_in_package
+        for path_in_package in owner.tree.files
+        if posixpath.basename(path_in_package) == name
+    ]
 
 
 def is_surely_absent(package: Package, target: str) -> bool:
-    """Return whether a file that the package does not have is surely not installed at a path below
-    the prefix.
+    """Return whether a file is surely not installed at a path below the prefix.
+
+    The package does not have the file.
 
     What a program writes is in a folder of its own, and like no other, or a folder itself.
     """
@@ -98,15 +106,16 @@ def are_installs_known(package: Package) -> bool:
 def open_meant(
     package: Package, path: str, *, absent_are_empty: bool = False
 ) -> tuple[bytes, str] | None:
-    """Return what builds install at a path below the prefix, else the only file of its name in the
-    package of the path.
+    """Return what builds install at a path below the prefix.
+
+    If they install nothing, returns the only file of its name in the package of the path.
 
     With `absent_are_empty`, a file that surely is not there is empty.
     """
-    found, parts = package.open_installed(path), path.split("/")
-    owner = package.find(parts[1]) if found is None and len(parts) > 2 else None
+    opened, parts = package.open_installed(path), path.split("/")
+    owner = package.find(parts[1]) if opened is None and len(parts) > 2 else None
     if owner is None:
-        return found
+        return opened
     named = _meant_by(owner, path)
     if (
         not named
@@ -122,8 +131,9 @@ def open_meant(
 
 
 def _installs_for_tests(package: Package) -> bool:
-    """Return whether CMakeLists.txt installs something only if BUILD_TESTING is on, as it is by
-    default.
+    """Return whether CMakeLists.txt installs something only if BUILD_TESTING is on.
+
+    By default it is on.
     """
     if package.is_cmake:
         text = package.tree.files[CMAKE].read(_MAX_CMAKE).decode("utf-8", "replace")

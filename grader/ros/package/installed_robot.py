@@ -1,5 +1,6 @@
-"""What xacro and RViz find of a robot once its packages are built: the files that it includes, and
-its meshes.
+"""What xacro and RViz find of a robot once its packages are built.
+
+This is the files that it includes, and its meshes.
 
 The file is read again from what builds install, so that the ordinary readers say what is not there.
 """
@@ -36,12 +37,17 @@ class _InstalledFiles:
     is_part = False
 
     def __init__(self, package: Package) -> None:
-        self.owners = [package, *(it for it in package.packages.values() if it is not package)]
+        self.owners = [
+            package,
+            *(other for other in package.packages.values() if other is not package),
+        ]
         self.budget = (
             Budget()
         )  # its own: what is read again says nothing about how long reading the package takes
         self.files = {
-            path: (it, source) for it in self.owners for path, source in it.installed.items()
+            path: (owner, source)
+            for owner in self.owners
+            for path, source in owner.installed.items()
         }
         self.missing: dict[str, None] = {}
 
@@ -53,8 +59,8 @@ class _InstalledFiles:
     @property
     def is_known(self) -> bool:
         """Whether it is known what builds install."""
-        setups = [it.installation for it in self.owners]
-        return all(it is not None and not it.unknown for it in setups)
+        setups = [owner.installation for owner in self.owners]
+        return all(setup is not None and not setup.unknown for setup in setups)
 
     def read(self, path: str) -> bytes:
         """Return the bytes of a file. Raises InputError."""
@@ -68,7 +74,7 @@ class _InstalledFiles:
         """Note a file that the workspace has, but does not install."""
         name = posixpath.basename(path)
         if any(
-            posixpath.basename(own) == name for owner in self.owners for own in owner.tree.files
+            posixpath.basename(inner) == name for owner in self.owners for inner in owner.tree.files
         ):
             self.missing[path] = None
 

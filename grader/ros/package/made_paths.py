@@ -22,8 +22,9 @@ class MadePath(NamedTuple):
     pieces: tuple[str, ...]
 
     def matches(self, path: str) -> bool:
-        """Return whether a whole path may end so: the pieces stand in it one after the other, from
-        the start of a name to the end.
+        """Return whether a whole path may end so.
+
+        The pieces stand in it one after the other, from the start of a name to the end.
         """
         first, *middle, last = self.pieces
         at = 0 if path.startswith(first) else path.find(f"/{first}") + 1

@@ -16,8 +16,9 @@ _BEGINS_WITH = {".glb": b"glTF", ".ply": b"ply"}
 
 
 def content_fault(file: File, path: str) -> str:
-    """Return what is wrong with the content of a mesh file; empty if it may be of the format that
-    its path says.
+    """Return what is wrong with the content of a mesh file.
+
+    It is empty if it may be of the format that its path says.
 
     The path is that at which a build installs it, perhaps with another ending.
 

@@ -1,5 +1,6 @@
-"""What the name of a mesh means to ROS 2, and whether a build puts the file there. No mesh is
-loaded.
+"""What the name of a mesh means to ROS 2, and whether a build puts the file there.
+
+No mesh is loaded.
 """
 
 import posixpath
@@ -34,8 +35,9 @@ _MAX_WARNED = 20  # meshes of one file
 
 
 class MeshFile(NamedTuple):
-    """The file name of a <mesh>: the package that it names and the path in it, and why ROS 2 does
-    not find such a name.
+    """The file name of a <mesh>, or why ROS 2 does not find such a name.
+
+    It has the package that the name gives and the path in it.
 
     `doubt` says why it cannot be determined whether it does. `written` is the name as the student
     wrote it.
@@ -65,8 +67,9 @@ class MeshFile(NamedTuple):
         return f"the mesh {quoted_end(self.written)} of {quoted(link)} {fault}"
 
     def why_not_found(self, packages: Sequence[Package], tree: Tree) -> str:
-        """Return why ROS 2 does not find a package's file after a build; empty if it does, or if
-        there is no package.
+        """Return why ROS 2 does not find a package's file after a build.
+
+        It is empty if it does, or if there is no package.
 
         Raises NotDecided where that cannot be determined statically.
         """
@@ -88,8 +91,9 @@ class MeshFile(NamedTuple):
         return _fault_in_package(package, f"share/{self.package}/{path}", tree)
 
     def content_fault(self, packages: Sequence[Package]) -> str:
-        """Return what is wrong with the content of its file in the workspace; empty if
-        nothing is, or there is no such file. Raises NotDecided.
+        """Return what is wrong with the content of its file in the workspace.
+
+        It is empty if nothing is, or there is no such file. Raises NotDecided.
         """
         file = self.file_in(packages)
         return content_fault(file, self.path) if file is not None else ""
@@ -100,49 +104,67 @@ class MeshFile(NamedTuple):
         if package is None:
             return None
         path = posixpath.normpath(self.path)
-        found = look_up(package, f"share/{self.package}/{path}")
-        return package.tree.files.get(found.path if found.state == "installed" else path)
+        lookup = look_up(package, f"share/{self.package}/{path}")
+        return package.tree.files.get(lookup.path if lookup.state == "installed" else path)
 
 
 def mesh_file(filename: str, *, is_expanded: bool = False) -> MeshFile:
-    """Return what the file name of a <mesh> means; `is_expanded` says whether xacro has been
-    expanded in it.
+    """Return what the file name of a <mesh> means.
+
+    `is_expanded` says whether xacro has been expanded in it.
     """
-    found = _SCHEME.fullmatch(filename)
-    scheme, slashes, rest = found.groups() if found is not None else ("", "", filename)
+    match = _SCHEME.fullmatch(filename)
+    scheme, slashes, rest = match.groups() if match is not None else ("", "", filename)
     fault = _BACKSLASH if "\\" in filename else ""
-    shared = _path_from_xacro(rest) if is_expanded and scheme in ("", "file") else None
+    shared = _file_from_xacro(scheme, rest, fault) if is_expanded else None
     if shared is not None:
-        written = f"{scheme}{'://' if scheme else ''}$(find {shared[0]})/{shared[1]}"
-        return MeshFile(
-            written, shared[1], shared[0], fault if scheme else "needs file:// before $(find ...)"
-        )
+        return shared
     if scheme == "package" and slashes:
         package, _, path = rest.partition("/")
         return MeshFile(filename, path, package, fault)
-    doubt = ""
-    if not scheme:
-        is_absolute = _ABSOLUTE.match(filename) is not None
-        fault = f"is at an absolute path, which {_ONE_MACHINE}" if is_absolute else fault
-    elif scheme == "file":
-        fault = f"is at a file:// path, which {_ONE_MACHINE}"
-    elif scheme.lower() in ("package", "file") or not slashes:
-        fault = f"begins with {scheme}:{slashes or ''}; use package://"
-    else:
-        fault, doubt = "", f"it is at a {scheme}:// path, which not every program finds"
+    if not scheme and _ABSOLUTE.match(filename) is None:
+        return MeshFile(filename, rest, "", fault)
+    fault, doubt = _fault_of_scheme(scheme, slashes or "")
     return MeshFile(filename, rest, "", fault, doubt)
 
 
+def _file_from_xacro(scheme: str, rest: str, fault: str) -> MeshFile | None:
+    """Return the file for which xacro wrote a path; None for another path."""
+    shared = _path_from_xacro(rest) if scheme in ("", "file") else None
+    if shared is None:
+        return None
+    package, path = shared
+    written = f"$(find {package})/{path}"
+    if scheme:
+        return MeshFile(f"{scheme}://{written}", path, package, fault)
+    return MeshFile(written, path, package, "needs file:// before $(find ...)")
+
+
+def _fault_of_scheme(scheme: str, slashes: str) -> tuple[str, str]:
+    """Return what is wrong with a file name that names no package, and what may be wrong.
+
+    Without a scheme it is an absolute path.
+    """
+    if not scheme:
+        return f"is at an absolute path, which {_ONE_MACHINE}", ""
+    if scheme == "file":
+        return f"is at a file:// path, which {_ONE_MACHINE}", ""
+    if scheme.lower() in ("package", "file") or not slashes:
+        return f"begins with {scheme}:{slashes}; use package://", ""
+    return "", f"it is at a {scheme}:// path, which not every program finds"
+
+
 def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterator[Problem]:
-    """Yield a warning for each mesh that RViz certainly does not find on another machine, or after
-    a build.
+    """Yield a warning for each mesh that RViz certainly does not find.
+
+    It is not found on another machine, or after a build.
 
     A file of a package outside the workspace may be installed, and so may a file:// path outside
     of home folders.
     """
     robot = urdf.loaded.robot
-    found = meshes_of(robot) if robot is not None else {}
-    for name, (link, mesh) in islice(found.items(), _MAX_WARNED):
+    meshes = meshes_of(robot) if robot is not None else {}
+    for name, (link, mesh) in islice(meshes.items(), _MAX_WARNED):
         file = mesh_file(name, is_expanded=urdf.is_expanded)
         fault = _sure_fault(file, packages, tree)
         if fault and mesh.location is not None and "$" not in name:
@@ -152,8 +174,10 @@ def mesh_problems(urdf: Read, packages: Sequence[Package], tree: Tree) -> Iterat
 
 def meshes_of(robot: Robot) -> dict[str, tuple[str, Mesh]]:
     """Return the meshes of a robot by the names of their files, each with a link that has it."""
-    shapes = [(link.name, it.geometry) for link in robot.links for it in link.visuals]
-    shapes += [(link.name, it.geometry) for link in robot.links for it in link.collisions]
+    shapes = [(link.name, visual.geometry) for link in robot.links for visual in link.visuals]
+    shapes += [
+        (link.name, collision.geometry) for link in robot.links for collision in link.collisions
+    ]
     return {mesh.filename: (link, mesh) for link, mesh in shapes if isinstance(mesh, Mesh)}
 
 
@@ -172,17 +196,18 @@ def _sure_fault(file: MeshFile, packages: Sequence[Package], tree: Tree) -> str:
 
 
 def _fault_in_package(package: Package, target: str, tree: Tree) -> str:
-    """Return what is wrong with the file that a build installs at a path, or why it installs none
-    there.
+    """Return what is wrong with the file that a build installs at a path.
+
+    If it installs none there, returns why.
     """
-    found, name = look_up(package, target), posixpath.basename(target)
-    file = package.tree.files.get(found.path) if found.state == "installed" else None
+    lookup, name = look_up(package, target), posixpath.basename(target)
+    file = package.tree.files.get(lookup.path) if lookup.state == "installed" else None
     if file is not None:
         return content_fault(file, target)
-    if found.state == "unknown" or any(
+    if lookup.state == "unknown" or any(
         posixpath.basename(path) == name for path in package.tree.files
     ):
-        return _why_not_installed(package, target, found)
+        return _why_not_installed(package, target, lookup)
     if tree.unopened:
         raise NotDecided(
             f"{name} may be in an archive that could not be opened",
@@ -199,15 +224,16 @@ def _path_from_xacro(path: str) -> tuple[str, str] | None:
     """Return the package and the path in it where $(find ...) has given a path."""
     from grader.ros.xacro.texts import INSTALLED  # late: most URDFs are no xacro
 
-    found = re.fullmatch(rf"/*{INSTALLED}/([^/]+)/share/\1/+(.*)", path, re.DOTALL)
-    if found is not None:
-        return (found[1], found[2])
+    match = re.fullmatch(rf"/*{INSTALLED}/([^/]+)/share/\1/+(.*)", path, re.DOTALL)
+    if match is not None:
+        return (match[1], match[2])
     return None
 
 
 def _without_package(name: str, path: str, packages: Sequence[Package], tree: Tree) -> str:
-    """Return that no package of the workspace has a name; raise NotDecided if one may be in an
-    archive that is closed.
+    """Return that no package of the workspace has a name.
+
+    Raises NotDecided if one may be in an archive that is closed.
     """
     if tree.unopened:
         reason = "an archive could not be opened"
@@ -223,13 +249,15 @@ def _without_package(name: str, path: str, packages: Sequence[Package], tree: Tr
     return f"names the package {quoted(name)}{hint}"
 
 
-def _why_not_installed(package: Package, target: str, found: Lookup) -> str:
+def _why_not_installed(package: Package, target: str, lookup: Lookup) -> str:
     """Return why a build does not install a file of a package at a path, by what it has instead."""
     setup = package.installation
-    if found.state == "unknown":
-        raise NotDecided(found.text, found.text)
-    if found.state == "elsewhere":
-        return f"is looked for at {target}, but {found.text}"
-    if setup is None or found.state == "no build":
-        return f"is not installed: {found.text}"
-    return f"is not installed: add {found.path} to {setup.entries}, for {posixpath.dirname(target)}"
+    if lookup.state == "unknown":
+        raise NotDecided(lookup.text, lookup.text)
+    if lookup.state == "elsewhere":
+        return f"is looked for at {target}, but {lookup.text}"
+    if setup is None or lookup.state == "no build":
+        return f"is not installed: {lookup.text}"
+    return (
+        f"is not installed: add {lookup.path} to {setup.entries}, for {posixpath.dirname(target)}"
+    )

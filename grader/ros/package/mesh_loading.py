@@ -1,5 +1,6 @@
-"""The meshes of a robot as triangles, for pictures; each file is where a build of its package puts
-it.
+"""The meshes of a robot as triangles, for pictures.
+
+Each file is where a build of its package puts it.
 """
 
 import posixpath
@@ -45,8 +46,9 @@ class MeshLoader:
         self._free_size, self._free_triangles = _MAX_SIZE, _MAX_TRIANGLES
 
     def load(self, mesh: Mesh) -> "Triangles | str":
-        """Return the triangles of a mesh, before it is scaled; else why it cannot be shown, as the
-        end of a sentence that begins with its name.
+        """Return the triangles of a mesh, before it is scaled, or why it cannot be shown.
+
+        The reason is the end of a sentence that begins with its name.
         """
         if mesh.filename not in self._loaded:
             named = mesh_file(mesh.filename, is_expanded=self._robot.is_expanded)
@@ -72,16 +74,20 @@ class MeshLoader:
             return _find_in_package(named, package, path, tree)
         # RViz needs a package.xml; a folder with the package's name surely has the mesh.
         end = f"/{named.package}/{path}"
-        found = [it for it in tree.files if f"/{tree.name}/{it}".endswith(end)]
-        if found:
-            return tree.files[min(found, key=len)]
+        paths = [
+            path_in_tree
+            for path_in_tree in tree.files
+            if f"/{tree.name}/{path_in_tree}".endswith(end)
+        ]
+        if paths:
+            return tree.files[min(paths, key=len)]
         return f"is looked for at share{end}, but no package {quoted(named.package)} is here"
 
     def _name_packages(self) -> set[str]:
         """Return the names of the packages that the robot's meshes are in."""
         robot = self._robot.loaded.robot
         meshes = meshes_of(robot) if robot is not None else {}
-        files = [mesh_file(it, is_expanded=self._robot.is_expanded) for it in meshes]
+        files = [mesh_file(filename, is_expanded=self._robot.is_expanded) for filename in meshes]
         return {file.package for file in files if file.package}
 
     def _read(self, file: File, path: str) -> "Triangles | str":
@@ -110,8 +116,9 @@ class MeshLoader:
 
 
 def _find_in_package(named: MeshFile, package: Package, path: str, tree: Tree) -> File | str:
-    """Return the file of a package that a build installs where a mesh is looked for, or may
-    install; else why it does not.
+    """Return the file of a package that a build installs where a mesh is looked for.
+
+    It may also be one that a build may install there. If there is none, returns why.
     """
     target = f"share/{named.package}/{path}"
     place = look_up(package, target)

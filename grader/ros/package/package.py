@@ -1,5 +1,6 @@
-"""A ROS 2 package of a workspace: its files are read one by one when they are needed, each
-once, and never run.
+"""A ROS 2 package of a workspace.
+
+Its files are read one by one when they are needed, each once, and never run.
 """
 
 from contextlib import suppress
@@ -102,15 +103,17 @@ class Package:
         return path.startswith(self.path(""))
 
     def under(self, arguments: "Mapping[str, str]") -> "Package":
-        """Return the package with its launch files under these arguments; the rest is not read
-        again.
+        """Return the package with its launch files under these arguments.
+
+        The rest is not read again.
         """
         return replace(self, arguments=arguments, _original=self._original or self)
 
     @property
     def name(self) -> str:
-        """The name that ROS 2 finds it by; without a package.xml, that of setup.py or of the
-        folder.
+        """The name that ROS 2 finds it by.
+
+        Without a package.xml, it is that of setup.py or of the folder.
         """
         if self.manifest is not None and self.manifest.name is not None:
             return self.manifest.name
@@ -119,8 +122,9 @@ class Package:
         ).name
 
     def find(self, name: str) -> "Package | None":
-        """Return the package of the workspace that ROS 2 finds by a name: this one, if it has
-        the name.
+        """Return the package of the workspace that ROS 2 finds by a name.
+
+        It is this one, if it has the name.
         """
         if name == self.name:
             return self
@@ -142,8 +146,9 @@ class Package:
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The names that ROS 2 finds it by: its own, and those that setup.py installs in the
-        resource index.
+        """The names that ROS 2 finds it by.
+
+        These are its own, and those that setup.py installs in the resource index.
         """
         return tuple(dict.fromkeys([self.name, *self.registered]))
 
@@ -158,8 +163,9 @@ class Package:
 
     @cached_property
     def share(self) -> str:
-        """The folder below the prefix where ros2 looks for its files: by the wanted name
-        if it has it, else its own.
+        """The folder below the prefix where ros2 looks for its files.
+
+        It is that of the wanted name if the package has it, else that of its own.
         """
         return f"share/{self.wanted_name if self.wanted_name in self.names else self.name}/"
 
@@ -172,16 +178,18 @@ class Package:
 
     @property
     def build_file(self) -> str:
-        """Return the file that should install the package, by its package.xml: setup.py or
-        CMakeLists.txt.
+        """Return the file that should install the package, by its package.xml.
+
+        This is setup.py or CMakeLists.txt.
         """
         if self._build_type in ("ament_python", ""):
             return SETUP
         return CMAKE
 
     def needed_manifest(self) -> "Manifest":
-        """Return its package.xml, also of one that is broken if its build type can be
-        read.
+        """Return its package.xml.
+
+        A broken one is returned too if its build type can be read.
         """
         manifest = self.manifest
         if manifest is not None and manifest.unread:
@@ -219,8 +227,9 @@ class Package:
 
     @property
     def missing_build_file(self) -> str:
-        """What a package without a build file lacks, in words: that of its build type, or
-        either.
+        """What a package without a build file lacks, in words.
+
+        It is that of its build type, or either.
         """
         if self._build_type in ("catkin", ""):
             return f"{SETUP} or {CMAKE}"
@@ -279,8 +288,9 @@ class Package:
 
     @cached_property
     def shadows_ros(self) -> str:
-        """The name of a Python package that a build installs and that ros2 launch imports in place
-        of its own.
+        """The name of a Python package that ros2 launch imports in place of its own.
+
+        A build installs this package.
         """
         from grader.ros.known.ros_machine import ros_machine  # late: a URDF needs no table
 
@@ -291,8 +301,9 @@ class Package:
 
     @cached_property
     def launch_files(self) -> tuple[str, ...]:
-        """The paths of its launch files: by their names, or because they are in a folder named
-        launch.
+        """The paths of its launch files.
+
+        They are known by their names, or because they are in a folder named launch.
         """
         return tuple(filter(is_launch_file, self.tree.files))
 
@@ -302,8 +313,9 @@ class Package:
         return tuple(path for path in self.tree.files if path.lower().endswith(".rviz"))
 
     def built(self, kind: str, name: str = "") -> str:
-        """Return the end of a message on a missing file if a build has one of that kind, or the one
-        of that name.
+        """Return the end of a message on a missing file, if a build has one.
+
+        The build has one of that kind, or the one of that name.
         """
         shares = [f"/{folder}/{self.name}/" for folder in ("build", "install", "share")]
         endings = (f"/{name}",) if name else _KINDS[kind][1]
@@ -314,8 +326,9 @@ class Package:
         return ""
 
     def missing(self, kind: str, name: str = "") -> MissingElement | NotDecided:
-        """Return the error for a package without a file of a kind: urdf, launch or rviz. `name` is
-        that of the file that is wanted.
+        """Return the error for a package without a file of a kind: urdf, launch or rviz.
+
+        `name` is that of the file that is wanted.
         """
         word, endings = _KINDS[kind]
         if self.tree.links:
@@ -336,8 +349,9 @@ class Package:
         )
 
     def without_data_files(self, message: str) -> MissingElement:
-        """Return the error for a setup.py that gives setup() no data_files, because of this
-        mistake.
+        """Return the error for a setup.py that gives setup() no data_files.
+
+        This mistake is the cause.
         """
         setup = self.installation
         at = setup.location(setup.called_at) if setup is not None else None
@@ -351,8 +365,9 @@ class Package:
         )
 
     def launch_file(self, name: str) -> str | None:
-        """Return the launch file of this name, if need be in another language; else the closest
-        name's; else any.
+        """Return the launch file of this name, if need be in another language.
+
+        If there is none, returns that of the closest name, else any.
         """
         files = sorted(
             self.launch_files,
@@ -394,8 +409,9 @@ class Package:
         return launch
 
     def _installed_path(self, path: str) -> str:
-        """Return where a build installs a file, below the prefix. A launch file that it does not
-        install is read as if it did: that is another mistake.
+        """Return where a build installs a file, below the prefix.
+
+        A launch file that it does not install is read as if it did: that is another mistake.
         """
         for target, source in self.installed.items():
             if source == path:
@@ -443,10 +459,11 @@ class Package:
         )
 
     def owner_of_opened(self, launch: "Launch") -> "Package":
-        """Return the package of the workspace whose RViz file a launch file opens; without one,
-        the package itself.
+        """Return the package of the workspace whose RViz file a launch file opens.
+
+        Without such a file, it is the package itself.
         """
-        paths = [it.path for it in launch.named("rviz") if it.path is not None]
+        paths = [reference.path for reference in launch.named("rviz") if reference.path is not None]
         owners = [self, *(self.find(share_parts(path)[0]) for path in paths)]
         for owner in owners:
             if owner is not None and owner.rviz_opened(launch) is not None:
@@ -454,8 +471,9 @@ class Package:
         return self
 
     def rviz_opened(self, launch: "Launch") -> str | None:
-        """Return the RViz file that a launch file opens, also by a wrong folder: that is another
-        error.
+        """Return the RViz file that a launch file opens, also by a wrong folder.
+
+        A wrong folder is another error.
         """
         paths = [reference.path for reference in launch.named("rviz") if reference.path is not None]
         for path in paths:
@@ -469,8 +487,9 @@ class Package:
         return None
 
     def source_of(self, path: str) -> str | None:
-        """Return the file of the package that a build installs at a path, which begins with the
-        prefix's stand-in.
+        """Return the file of the package that a build installs at a path.
+
+        The path begins with the prefix's stand-in.
         """
         shares = tuple(f"{SHARE}/{name}/" for name in self.names)
         if path.startswith(shares):
@@ -482,8 +501,9 @@ class Package:
         return self, *self.packages.values()
 
     def has_package(self, name: str) -> bool:
-        """Return whether a package certainly is on the machine: in the workspace, declared as
-        needed, installed besides, or part of ROS 2.
+        """Return whether a package certainly is on the machine.
+
+        It is in the workspace, declared as needed, installed besides, or part of ROS 2.
         """
         from grader.ros.launch.started_nodes import (
             is_of_ros,  # late: as the readers of launch files
@@ -492,14 +512,15 @@ class Package:
         # rosdep installs what any package of a workspace needs.
         return (
             self.find(name) is not None
-            or any(it.depends_on(name) for it in self._all)
+            or any(package.depends_on(name) for package in self._all)
             or name in self.installed_besides
             or is_of_ros(name)
         )
 
     def misspelt_package(self, name: str) -> str | None:
-        """Return the package of the workspace that the name of one that certainly is not on the
-        machine stands for, if there is one.
+        """Return the package of the workspace that a name stands for, if there is one.
+
+        The name is that of a package that certainly is not on the machine.
         """
         from grader.ros.known.package_rows import is_known_package  # late: as above
 
@@ -509,8 +530,9 @@ class Package:
         return near(name, [package.name for package in self._all])
 
     def has_program(self, package: str, name: str) -> bool | None:
-        """Return whether a package has a program, as far as its setup.py tells; one that is not
-        known has it.
+        """Return whether a package has a program, as far as its setup.py tells.
+
+        A package that is not known has it.
         """
         from grader.ros.known.package_rows import lacks_program  # late: as above
 
@@ -522,8 +544,9 @@ class Package:
         return None
 
     def files_in(self, folder: str) -> "Sequence[str] | None":
-        """Return the names of the files that builds install in a folder below the prefix; None if
-        not all are known.
+        """Return the names of the files that builds install in a folder below the prefix.
+
+        Returns None if not all are known.
         """
         owner = self.find(folder.removeprefix("share/").partition("/")[0])
         if (
@@ -538,8 +561,9 @@ class Package:
         )
 
     def open_installed(self, path: str) -> tuple[bytes, str] | None:
-        """Return what a build of any of its packages installs at a path below the prefix, with
-        the file's path.
+        """Return what a build of any of its packages installs at a path below the prefix.
+
+        Also returns the file's path.
         """
         for package in self.packages.values():
             if path in package.installed:

@@ -1,7 +1,7 @@
 """The messages, services and actions that a package of a workspace generates code for."""
 
 import posixpath
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import NamedTuple
 
@@ -42,11 +42,46 @@ def read_interfaces(package: Package) -> PackageInterfaces:
     if setup is None or setup.fault is not None:
         return PackageInterfaces(is_complete=False)
     files = _interface_files(package)
-    is_complete = setup.doubt is None and len(files) <= _MAX_FILES
+    calls = setup.interfaces
+    paths = [*chain.from_iterable(call.files[:_MAX_FILES] for call in calls)]
+    types, are_all_read = _read_types(package, paths)
+    dependencies = frozenset(chain.from_iterable(call.dependencies for call in calls))
+    return PackageInterfaces(
+        types,
+        _name_others(package, files, paths, types),
+        dependencies,
+        setup.location(calls[0].at) if calls else None,
+        needs_group=any(call.needs_group and call.is_certain for call in calls),
+        is_complete=are_all_read and _are_files_certain(package, files),
+    )
+
+
+def _name_others(
+    package: Package, files: Iterable[str], listed: Iterable[str], types: Collection[str]
+) -> dict[str, str]:
+    """Return the files that no call lists, by the names of interfaces that are not read."""
+    known = set(listed)
+    others = {}
+    for path in files:
+        name = _name_of(path)
+        if path not in known and name not in types:
+            others[name] = package.path(path)
+    return others
+
+
+def _are_files_certain(package: Package, files: Collection[str]) -> bool:
+    """Return whether all interfaces of a package are certainly made of these files."""
+    setup = package.installation
+    if setup is None or setup.doubt is not None or len(files) > _MAX_FILES:
+        return False
+    return all(call.is_certain for call in setup.interfaces) and not _has_modules(package)
+
+
+def _read_types(package: Package, paths: Iterable[str]) -> tuple[dict[str, _OwnInterface], bool]:
+    """Return the interfaces in files of a package by their names, and whether all are read."""
     types: dict[str, _OwnInterface] = {}
-    listed: set[str] = set()
-    for path in chain.from_iterable(call.files[:_MAX_FILES] for call in setup.interfaces):
-        listed.add(path)
+    is_complete = True
+    for path in paths:
         if not path.endswith(INTERFACE_ENDINGS):
             is_complete = False  # .idl is not read
             continue
@@ -56,19 +91,7 @@ def read_interfaces(package: Package) -> PackageInterfaces:
             continue
         interface = read_interface(data, package.path(path), package.name)
         types[_name_of(path)] = _OwnInterface(interface, package.path(path))
-    is_complete = is_complete and all(call.is_certain for call in setup.interfaces)
-    unlisted = {_name_of(path): package.path(path) for path in files if path not in listed}
-    calls = setup.interfaces
-    dependencies = {name for call in calls for name in call.dependencies}
-    other_types = {name: path for name, path in unlisted.items() if name not in types}
-    return PackageInterfaces(
-        types,
-        other_types,
-        frozenset(dependencies),
-        setup.location(calls[0].at) if calls else None,
-        needs_group=any(call.needs_group and call.is_certain for call in calls),
-        is_complete=is_complete and not _has_modules(package),
-    )
+    return types, is_complete
 
 
 def _interface_files(package: Package) -> Sequence[str]:

@@ -13,8 +13,9 @@ _T = TypeVar("_T")
 
 
 class RecordedFiles:
-    """Files around a URDF whose answers are recorded. With the same answers, xacro expands it
-    alike.
+    """Files around a URDF whose answers are recorded.
+
+    With the same answers, xacro expands it alike.
     """
 
     def __init__(self, answers: Answers[SurroundingFiles], budget: Budget) -> None:

@@ -1,5 +1,6 @@
-"""A URDF that was looked for, as one of three states, and what ROS 2 makes of it with the files
-around.
+"""A URDF that was looked for, and what ROS 2 makes of it with the files around.
+
+It has one of three states.
 """
 
 import posixpath
@@ -65,8 +66,9 @@ class Unreadable(NamedTuple):
 
 
 class Read(NamedTuple):
-    """The URDF was read, even if ROS 2 rejects it; `reading` is of the expanded text if it is
-    xacro.
+    """The URDF was read, even if ROS 2 rejects it.
+
+    `reading` is of the expanded text if it is xacro.
 
     Of xacro that is loaded without xacro, `as_it_stands` is what ROS 2 makes of the text: whether
     it loads, and the verdict. The robot is that of `reading`, so that everything else is graded as
@@ -94,8 +96,9 @@ class Read(NamedTuple):
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """Every problem of the file; of xacro that is loaded without xacro, those of the expanded
-        text.
+        """Every problem of the file.
+
+        For xacro that is loaded without xacro, these are the problems of the expanded text.
         """
         if self.as_it_stands is None:
             return self.reading.problems
@@ -126,8 +129,9 @@ Urdf = Absent | Unreadable | Read
 
 
 class Surroundings(NamedTuple):
-    """The files and packages around a URDF, as launch files and xacro find them: the Workspace of
-    xacro.
+    """The files and packages around a URDF, as launch files and xacro find them.
+
+    This is the Workspace of xacro.
     """
 
     budget: Budget  # of what is expanded and evaluated
@@ -147,19 +151,21 @@ class Surroundings(NamedTuple):
     releases: Collection[Release] = ()  # of ROS 2 that read the robot; Jazzy without any
 
     def robot_references(self, path: str) -> "list[NamedFile]":
-        """Return where launch files of the graded package, else of others, read a URDF; or those in
-        a folder around.
+        """Return where launch files of the graded package, else of others, read a URDF.
+
+        If none does, returns those in a folder around.
         """
         around = self._launched_packages(path)
         return [
-            found
+            reference
             for package in around
-            for found in package.robot_references(path.rpartition("/")[2])
+            for reference in package.robot_references(path.rpartition("/")[2])
         ]
 
     def runs_xacro_beside(self, path: str) -> bool:
-        """Return whether a launch file runs xacro on a file of the same folder, or names xacro and
-        makes a path of variables that may be this one.
+        """Return whether a launch file runs xacro on a file of the same folder.
+
+        It may also name xacro and make a path of variables that may be this one.
         """
         from grader.ros.package.made_paths import made_paths  # late: few robots need it
 
@@ -175,8 +181,9 @@ class Surroundings(NamedTuple):
         return False
 
     def other_arguments(self, path: str, references: "Sequence[NamedFile]") -> "OtherArguments":
-        """Return what is known of arguments of xacro that neither the user nor the launch file
-        gives.
+        """Return what is known of arguments of xacro that nobody gives.
+
+        Neither the user nor the launch file gives them.
         """
         launches = [
             launch for package in self._launched_packages(path) for launch in package.launches
@@ -188,16 +195,17 @@ class Surroundings(NamedTuple):
         return "none" if references and not self.arguments else "default"
 
     def expanded(self, data: bytes, path: str) -> "ExpandedSource":
-        """Return a file as xacro; raise NotDecided or MissingElement where it cannot be expanded at
-        all.
+        """Return a file as xacro.
+
+        Raises NotDecided or MissingElement where it cannot be expanded at all.
         """
         from grader.ros.xacro.expansion import ExpandedSource, expand  # late: most are no xacro
 
         expansion = expand(data, path, self, self.arguments)
         if isinstance(expansion.source, ExpandedSource):
             return expansion.source
-        for found in expansion.undetermined:
-            raise NotDecided(found.reason)
+        for part in expansion.undetermined:
+            raise NotDecided(part.reason)
         first = expansion.problems[0]
         raise MissingElement(
             "xacro", path, message=first.message, location=first.location, problem=first.message
@@ -206,18 +214,22 @@ class Surroundings(NamedTuple):
     def _launched_packages(self, path: str) -> list[Package]:
         if self.graded is None:
             loose = launch_folders(self.tree, self.packages, [path] if not self.is_single else [])
-            return [it.under(self.launch_arguments) for it in loose]
+            return [reference.under(self.launch_arguments) for reference in loose]
         name = path.rpartition("/")[2]
         if self.graded.robot_references(name):
             return [self.graded]
-        own = next((it for it in self.packages if it.holds(path)), self.graded)
-        others = [it for it in self.packages if it is own or it.name != own.name]
+        owner = next((package for package in self.packages if package.holds(path)), self.graded)
+        return self._packages_that_read(name, owner) or [self.graded]
+
+    def _packages_that_read(self, name: str, owner: Package) -> list[Package]:
+        """Return the packages whose launch files read a file of this name of its package."""
         launched = []
-        for package in others:
-            references = package.robot_references(name)
-            if any(own.source_of(reference.path or "") for reference in references):
-                launched.append(package)
-        return launched or [self.graded]
+        for package in self.packages:
+            if package is owner or package.name != owner.name:
+                references = package.robot_references(name)
+                if any(owner.source_of(reference.path or "") for reference in references):
+                    launched.append(package)
+        return launched
 
     @property
     def paths(self) -> Collection[str]:
@@ -236,66 +248,74 @@ class Surroundings(NamedTuple):
     def _named(self, name: str) -> list[Package]:
         """Return the packages of a name, of several that of the URDF first."""
         return sorted(
-            (it for it in self.packages if it.name == name), key=lambda it: it is not self.graded
+            (candidate for candidate in self.packages if candidate.name == name),
+            key=lambda candidate: candidate is not self.graded,
         )
 
     def read(self, path: str) -> bytes:
         """Return the bytes of a file. Raises InputError, NotDecided."""
         file = self.tree.files.get(path)
-        ignored = next((other for other in self.tree.ignored if other.path == path), None)
-        if file is None and ignored is not None:
-            raise NotDecided(str(ignored))
-        if file is None and not self.tree.files:
-            raise NotDecided(
-                f"the included file {path} is not read with a single file: give the folder "
-                "with both"
-            )
-        if file is None and self.is_single and not self.packages:
-            raise NotDecided(
-                f"there is no file {path} in the folder of this single file: give the "
-                "folder with both"
-            )
         if file is None:
-            raise InputError(f"there is no file {path} in the submission")
+            raise self._error_of_missing(path)
         try:
             return file.read(URDF_LIMIT)
         except InputError as error:
             raise NotDecided(str(error)) from None
 
+    def _error_of_missing(self, path: str) -> Exception:
+        """Return why a file is not there: NotDecided if it may only not be submitted."""
+        ignored = next((other for other in self.tree.ignored if other.path == path), None)
+        if ignored is not None:
+            return NotDecided(str(ignored))
+        if not self.tree.files:
+            return NotDecided(
+                f"the included file {path} is not read with a single file: give the folder "
+                "with both"
+            )
+        if self.is_single and not self.packages:
+            return NotDecided(
+                f"there is no file {path} in the folder of this single file: give the "
+                "folder with both"
+            )
+        return InputError(f"there is no file {path} in the submission")
+
     def installed(self, package: str, inside: str) -> str | None:
-        """Return the file at a path in a package once it is built; without any package, the most
-        similar path.
+        """Return the file at a path in a package once it is built.
+
+        Without any package, returns the most similar path.
         """
-        for own in self._named(package):
-            if self.assumes_defaults and inside in own.tree.files:
-                return own.path(inside)
-            similar = any(f"/{path}".endswith(f"/{inside}") for path in own.tree.files)
-            source, setup = own.installed.get(f"share/{package}/{inside}"), own.installation
-            if (
-                source is None
-                and similar
-                and setup is not None
-                and setup.is_cmake
-                and setup.unknown
-            ):
-                raise Undetermined(
-                    f"cannot determine statically whether CMakeLists.txt installs {inside}"
-                )
-            return own.path(source) if source is not None else None
+        owners = [*self._named(package)]
+        if owners:
+            return self._installed_by(owners[0], package, inside)
         if self.packages:
             return None
         steps = inside.split("/")
         for count in range(len(steps), 0, -1):
             end = "/" + "/".join(steps[-count:])
-            found = [path for path in self.tree.files if f"/{path}".endswith(end)]
-            if len(found) == 1:
-                return found[0]
+            matches = [path for path in self.tree.files if f"/{path}".endswith(end)]
+            if len(matches) == 1:
+                return matches[0]
+        return None
+
+    def _installed_by(self, owner: Package, package: str, inside: str) -> str | None:
+        """Return the file that a build of a package installs at a path in the share folder."""
+        if self.assumes_defaults and inside in owner.tree.files:
+            return owner.path(inside)
+        source, setup = owner.installed.get(f"share/{package}/{inside}"), owner.installation
+        if source is not None:
+            return owner.path(source)
+        is_similar = any(f"/{path}".endswith(f"/{inside}") for path in owner.tree.files)
+        if is_similar and setup is not None and setup.is_cmake and setup.unknown:
+            raise Undetermined(
+                f"cannot determine statically whether CMakeLists.txt installs {inside}"
+            )
         return None
 
 
 def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]) -> list[Package]:
-    """Return the nearest folders around these files that have launch files outside of packages, as
-    packages.
+    """Return the nearest folders around these files with launch files, as packages.
+
+    These launch files are outside of packages.
     """
     packaged = tuple(package.path("") for package in packages)
     loose = tree.only(lambda path: not path.startswith(packaged)) if packaged else tree
@@ -303,7 +323,7 @@ def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]
     folders = {folder for path in files for folder in (*parents(path), "")}
     around = set()
     for path in paths:
-        nearest = next((it for it in (*parents(path), "") if it in folders), None)
+        nearest = next((folder for folder in (*parents(path), "") if folder in folders), None)
         if nearest is not None:
             around.add(nearest)
     return [
@@ -312,8 +332,9 @@ def launch_folders(tree: Tree, packages: Sequence[Package], paths: Iterable[str]
 
 
 def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None) -> Read:
-    """Read a URDF as ROS 2 gets it: expanded if a launch file runs xacro on it, or else if its name
-    says xacro.
+    """Read a URDF as ROS 2 gets it.
+
+    It is expanded if a launch file runs xacro on it, or else if its name says xacro.
 
     Other xacro is loaded as it stands; unless that makes no difference, everything but that is
     graded on its expansion.
@@ -324,22 +345,10 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
         reading = read_urdf(data, path, releases)
         if not any(problem.kind in (DOCTYPE, NOT_WELL_FORMED) for problem in reading.problems):
             return Read(path, data, reading)
-    name = path.rpartition("/")[2].lower()
     launched = surroundings.robot_references(path)
-    programs = {reference.by for reference in launched}
-    # Nothing loads a file of another name as a URDF; standard input is one.
-    says_xacro = ".xacro" in name or (".urdf" not in name and name != "-")
-    is_xacro = programs == {"xacro"} if programs else says_xacro
-    if not programs and surroundings.assumes_defaults:
-        is_xacro = is_xacro or surroundings.runs_xacro_beside(path)
-    if is_xacro:
-        return Read(
-            path,
-            data,
-            _expanded(data, path, surroundings, launched),
-            is_expanded=True,
-            has_xacro=True,
-        )
+    if _is_run_by_xacro(path, surroundings, launched):
+        expanded = _expanded(data, path, surroundings, launched)
+        return Read(path, data, expanded, is_expanded=True, has_xacro=True)
     reading = read_urdf(data, path, releases)
     if reading.raw_xacro is None:
         return Read(path, data, reading, has_xacro=True)
@@ -349,10 +358,23 @@ def read_as_ros(data: bytes, path: str, surroundings: Surroundings | None = None
     if reading.verdict == "clean":
         if _loaded_model(reading) == _loaded_model(expanded):
             return Read(path, data, reading, has_xacro=True)
-        reading = reading._replace(
-            verdict="degraded"
-        )  # ROS 2 ignores the tags of xacro, and what they stand for
+        # ROS 2 ignores the tags of xacro, and what they stand for.
+        reading = reading._replace(verdict="degraded")
     return Read(path, data, expanded, is_expanded=True, has_xacro=True, as_it_stands=reading)
+
+
+def _is_run_by_xacro(
+    path: str, surroundings: Surroundings, launched: "Iterable[NamedFile]"
+) -> bool:
+    """Return whether ROS 2 gets a file from xacro: launch files say so, else its name."""
+    programs = {reference.by for reference in launched}
+    if programs:
+        return programs == {"xacro"}
+    name = path.rpartition("/")[2].lower()
+    # Nothing loads a file of another name as a URDF; standard input is one.
+    if ".xacro" in name or (".urdf" not in name and name != "-"):
+        return True
+    return surroundings.assumes_defaults and surroundings.runs_xacro_beside(path)
 
 
 def _loaded_model(reading: Reading) -> tuple[object, ...]:
@@ -374,8 +396,9 @@ def _needs_xacro(data: bytes) -> bool:
 def _expanded(
     data: bytes, path: str, surroundings: Surroundings, references: "Sequence[NamedFile]"
 ) -> Reading:
-    """Return the robot that xacro makes of a file; where it fails under arguments that are assumed,
-    that without them.
+    """Return the robot that xacro makes of a file.
+
+    Where it fails under arguments that are assumed, returns the robot without them.
     """
     reading = _expand_xacro(data, path, surroundings, references)
     fails = any(problem.kind.is_before_ros for problem in reading.problems)
@@ -387,8 +410,9 @@ def _expanded(
 def _expand_xacro(
     data: bytes, path: str, surroundings: Surroundings, references: "Sequence[NamedFile]"
 ) -> Reading:
-    """Return the robot that xacro makes of a file; where it cannot be expanded at all, what can be
-    read of the text.
+    """Return the robot that xacro makes of a file.
+
+    Where it cannot be expanded at all, returns what can be read of the text.
 
     The folder that a build installs a package in is called differently in launch files and in
     xacro. A file that the launch file names there and that no build certainly installs stays as it
@@ -455,8 +479,8 @@ def _read_expanded(
     if expansion.meant is None:
         return reading
     meant = _read_document(expansion.meant.document, newest)
-    found = dict.fromkeys([*causes(reading.problems), *expansion.assumed, *meant.problems])
-    return meant._replace(verdict="rejected", problems=in_order(found))
+    distinct = dict.fromkeys([*causes(reading.problems), *expansion.assumed, *meant.problems])
+    return meant._replace(verdict="rejected", problems=in_order(distinct))
 
 
 def _read_document(document: XmlDocument, newest: UrdfVersion) -> Reading:

@@ -1,9 +1,10 @@
-"""Files that hold a robot: recognised by their content, whatever they are called. Nothing is
-parsed.
+"""Files that hold a robot: recognised by their content, whatever they are called.
+
+Nothing is parsed.
 """
 
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from grader.base.errors import InputError
@@ -112,38 +113,43 @@ class RobotFile(NamedTuple):
 def find_robots(
     tree: Tree, urdf_name: str = "", max_size: int = URDF_LIMIT
 ) -> tuple[RobotFile, ...]:
-    """Return the files of a tree that may be the URDF; one called `urdf_name` is whatever it
-    contains.
+    """Return the files of a tree that may be the URDF.
+
+    A file called `urdf_name` is among them whatever it contains.
 
     Of other files only those of at most `max_size` bytes are read, and of these the first bytes.
     """
-    found: list[RobotFile] = []
+    robots: list[RobotFile] = []
     by_content = read = 0
-    files: Iterable[File] = tree.files.values()
-    if len(tree.files) > _MAX_READ:
-        files = sorted(files, key=lambda file: not _LIKELY.search(file.name.lower()))
-    for file in files:
+    for file in _list_candidates(tree):
         is_urdf = file.suffix == ".urdf" or file.name == urdf_name
         is_read = read < _MAX_READ and by_content < _MAX_ROBOTS
-        if ".srdf" in file.name:  # MoveIt's description of groups, which is a <robot> as well
-            continue
         if not is_urdf and (not is_read or file.suffix in _BINARY or not 0 < file.size <= max_size):
             continue
         read += 1
         start = _robot_start(file) if is_read else None
-        if start is not None or is_urdf:
+        if start:
             by_content += not is_urdf
-            found.append(
-                RobotFile(
-                    file.path, file.size, is_urdf, *(_name_and_includes(start) if start else ())
-                )
-            )
-    return tuple(sorted(found))
+            name_and_includes = _name_and_includes(start)
+            robots.append(RobotFile(file.path, file.size, is_urdf, *name_and_includes))
+        elif is_urdf:
+            robots.append(RobotFile(file.path, file.size, is_urdf))
+    return tuple(sorted(robots))
+
+
+def _list_candidates(tree: Tree) -> list[File]:
+    """Return the files that may be a URDF, the likely ones first if there are very many."""
+    # An SRDF is MoveIt's description of groups, which is a <robot> as well.
+    files = [file for file in tree.files.values() if ".srdf" not in file.name]
+    if len(tree.files) > _MAX_READ:
+        files.sort(key=lambda file: not _LIKELY.search(file.name.lower()))
+    return files
 
 
 def is_robot(read: Callable[[int], bytes]) -> bool:
-    """Return whether a file is a robot: its first element is <robot>. `read` reads its first
-    bytes.
+    """Return whether a file is a robot: its first element is <robot>.
+
+    `read` reads its first bytes.
     """
     data = read(_START)
     return _ROBOT.match(data, _end_of_prolog(data)) is not None
@@ -163,8 +169,9 @@ def parts_of(robots: Sequence[RobotFile]) -> frozenset[str]:
 
 
 def _robot_start(file: File) -> bytes | None:
-    """Return the beginning of a file from its <robot> on, a longer one of xacro; None if another
-    element is first.
+    """Return the beginning of a file from its <robot> on, a longer one of xacro.
+
+    Returns None if another element is first.
     """
     if not file.size:
         return None
@@ -185,15 +192,15 @@ def _robot_start(file: File) -> bytes | None:
 
 
 def _end_of_prolog(data: bytes) -> int:
-    found = _PROLOG.match(data)
-    return found.end() if found is not None else 0
+    match = _PROLOG.match(data)
+    return match.end() if match is not None else 0
 
 
 def _name_and_includes(start: bytes) -> tuple[str, frozenset[str]]:
     tag = _ROBOT.match(start)
     name = _NAME.search(tag[1]) if tag is not None else None
     includes = (
-        found.decode("utf-8", "replace") for found in _INCLUDE.findall(_COMMENT.sub(b"", start))
+        include.decode("utf-8", "replace") for include in _INCLUDE.findall(_COMMENT.sub(b"", start))
     )
     return name[1].decode("utf-8", "replace").strip() if name is not None else "", frozenset(
         includes

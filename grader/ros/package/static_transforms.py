@@ -1,15 +1,16 @@
-"""The frames that static_transform_publisher adds to a robot's tree, as the launch files of a
-package start it.
+"""The frames that static_transform_publisher adds to a robot's tree.
+
+It is started as the launch files of a package start it.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
 from math import atan2, hypot, isfinite
 from typing import NamedTuple
 
 from grader.base.source import LazyLocation, Source
 from grader.base.transforms import Transform, Vector, rotation_about
-from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
 from grader.ros.urdf.link_tree import parent_joints
 from grader.ros.urdf.model import Joint, Link, Origin, Robot, UnresolvedPart
@@ -30,8 +31,9 @@ _NORM_TOLERANCE = 10e-3  # of a quaternion; tf2 ignores others
 
 
 class _StaticFrame(NamedTuple):
-    """A frame that a launch file places. It is `open`, for a reason, where it is not known whether
-    and where.
+    """A frame that a launch file places.
+
+    It is `open`, for a reason, where it is not known whether and where.
     """
 
     parent: str
@@ -47,8 +49,9 @@ def with_transforms(
     paths: Sequence[str],
     source_of: Callable[[str], Source | None],
 ) -> Robot:
-    """Return a robot with the frames that launch files of a package publish, as links at
-    fixed joints.
+    """Return a robot with the frames that launch files of a package publish.
+
+    The frames are links at fixed joints.
 
     tf2 has one parent of each frame, the one that it was told of last: a frame with two is open.
     What places the root of the robot in the world is left out.
@@ -62,29 +65,46 @@ def with_transforms(
     roots = {link.known.name for link in robot.links} - parent_joints(robot).keys()
     for path in paths:
         name = package.launch_file(path)
-        launch = package.launch(name) if name is not None else None
-        if launch is None or launch.syntax is not None or launch.faults:
-            continue  # nothing is published
-        frames = [_read_frame(node, source_of) for node in launch.nodes if _publishes_frame(node)]
-        for frame in frames:
-            if frame is not None and frame.child not in roots:
-                robot = _add_frame(robot, frame)
-        reason = launch.unread
-        if not reason and launch.unknown:
-            reason = launch.unknown[0].message
-        if not reason and None in frames:
-            reason = "the name of a frame is not evaluated"
-        if reason:
-            robot = replace(
-                robot,
-                incomplete=f"cannot determine statically which frames {name} publishes: {reason}",
-            )
-    if any(it.frames_of("") != ("",) for it in package.launches):
+        if name is not None:
+            robot = _with_frames(robot, package.launch(name), name, roots, source_of)
+    if any(started.frames_of("") != ("",) for started in package.launches):
         robot = replace(
             robot,
             incomplete=robot.incomplete or "robot_state_publisher gives the frames other names",
         )
     return robot
+
+
+def _with_frames(
+    robot: Robot,
+    launch: Launch,
+    name: str,
+    roots: Collection[str],
+    source_of: Callable[[str], Source | None],
+) -> Robot:
+    """Return a robot with the frames that one launch file publishes."""
+    if launch.syntax is not None or launch.faults:
+        return robot  # nothing is published
+    frames = [_read_frame(node, source_of) for node in launch.nodes if _publishes_frame(node)]
+    for frame in frames:
+        if frame is not None and frame.child not in roots:
+            robot = _add_frame(robot, frame)
+    reason = _why_frames_unknown(launch, frames)
+    if not reason:
+        return robot
+    incomplete = f"cannot determine statically which frames {name} publishes: {reason}"
+    return replace(robot, incomplete=incomplete)
+
+
+def _why_frames_unknown(launch: Launch, frames: Sequence[_StaticFrame | None]) -> str:
+    """Return why a launch file may publish other frames than these; empty if it does not."""
+    if launch.unread:
+        return launch.unread
+    if launch.unknown:
+        return launch.unknown[0].message
+    if None in frames:
+        return "the name of a frame is not evaluated"
+    return ""
 
 
 def _publishes_frame(node: StartedNode) -> bool:
@@ -96,9 +116,9 @@ def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
     if not frame.child or frame.parent == frame.child:
         return robot  # the publisher ends with an error
     part = {"origin": UnresolvedPart(frame.open, frame.location)} if frame.open else {}
-    own = f"static transform of {frame.child}"
+    joint_name = f"static transform of {frame.child}"
     joint = Joint(
-        own,
+        joint_name,
         "fixed",
         frame.parent,
         frame.child,
@@ -106,7 +126,10 @@ def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
         location=frame.location,
         unresolved=part,
     )
-    before = next((it for it in robot.joints if it.known.child == frame.child), None)
+    before = next(
+        (robot_joint for robot_joint in robot.joints if robot_joint.known.child == frame.child),
+        None,
+    )
     if before is None and robot.has_link(frame.child):
         return robot
     if before is None:
@@ -125,14 +148,20 @@ def _add_frame(robot: Robot, frame: _StaticFrame) -> Robot:
         "origin": UnresolvedPart(f"{reason}, and the one that tf2 gets last counts", frame.location)
     }
     both = replace(before.known, origin=None, unresolved={**before.known.unresolved, **part})
-    return replace(robot, joints=tuple(both if it is before else it for it in robot.joints))
+    return replace(
+        robot,
+        joints=tuple(
+            both if robot_joint is before else robot_joint for robot_joint in robot.joints
+        ),
+    )
 
 
 def _read_frame(
     node: StartedNode, source_of: Callable[[str], Source | None]
 ) -> _StaticFrame | None:
-    """Return the frame that a static_transform_publisher publishes, its child empty for none; None
-    if it is unknown.
+    """Return the frame that a static_transform_publisher publishes, its child empty for none.
+
+    Returns None if it is unknown.
     """
     words = _select_words(node)
     parent, child = frames_named(node)
@@ -160,8 +189,9 @@ def _select_words(node: StartedNode) -> tuple[str | None, ...]:
 
 
 def frames_named(node: StartedNode) -> tuple[str, str]:
-    """Return the parent and the child that a static_transform_publisher is given, empty where they
-    are not known.
+    """Return the parent and the child that a static_transform_publisher is given.
+
+    They are empty where they are not known.
     """
     options = _read_options(_select_words(node))
     parent, child = ((options.get(option) or "").removeprefix("/") for option in _FRAMES)
@@ -169,8 +199,9 @@ def frames_named(node: StartedNode) -> tuple[str, str]:
 
 
 def static_pose(node: StartedNode) -> Transform | None:
-    """Return T_parent_child that a static_transform_publisher is given; None where it is not known
-    or not valid.
+    """Return T_parent_child that a static_transform_publisher is given.
+
+    Returns None where it is not known or not valid.
     """
     words = _select_words(node)
     if None in words:
@@ -192,31 +223,39 @@ def has_zero_rotation(node: StartedNode) -> bool:
 def _read_options(words: Sequence[str | None]) -> dict[str, str | None]:
     """Return the values by their options, also if they are given by their positions."""
     if words and words[0] is not None and words[0].startswith("--"):
-        return dict(zip(((it or "") for it in words[::2]), words[1::2], strict=False))
+        return dict(zip(((word or "") for word in words[::2]), words[1::2], strict=False))
     return dict(zip(_BY_POSITION.get(len(words), ()), words, strict=False))
 
 
 def _make_origin(options: Mapping[str, str], location: LazyLocation) -> Origin | None:
-    """Return where a frame is placed; None where the publisher ends with an error, or tf2 ignores
-    the transform.
+    """Return where a frame is placed.
+
+    Returns None where the publisher ends with an error, or tf2 ignores the transform.
     """
-    known = {*_PLACE, *_RPY, *_QUATERNION, *_FRAMES}
-    try:
-        values = {name: float(text) for name, text in options.items() if name not in _FRAMES}
-    except ValueError:
-        return None
-    turned = [name for name in (*_RPY, *_QUATERNION) if name in values]
-    is_mixed = not set(turned).issubset(_RPY) and not set(turned).issubset(_QUATERNION)
-    if not options.keys() <= known or is_mixed or not all(map(isfinite, values.values())):
+    values = _read_values(options)
+    if values is None:
         return None
     x, y, z = (values.get(name, 0.0) for name in _PLACE)
     roll, pitch, yaw = (values.get(name, 0.0) for name in _RPY)
-    if not set(turned) & {*_QUATERNION}:
+    if values.keys().isdisjoint(_QUATERNION):
         return Origin((x, y, z), (roll, pitch, yaw), location)
     rpy = _convert_quaternion(*(values.get(name, float(name == "--qw")) for name in _QUATERNION))
     if rpy is not None:
         return Origin((x, y, z), rpy, location)
     return None
+
+
+def _read_values(options: Mapping[str, str]) -> dict[str, float] | None:
+    """Return the numbers of options; None where the publisher ends with an error."""
+    try:
+        values = {name: float(text) for name, text in options.items() if name not in _FRAMES}
+    except ValueError:
+        return None
+    known = {*_PLACE, *_RPY, *_QUATERNION}
+    is_mixed = values.keys() & {*_RPY} and values.keys() & {*_QUATERNION}
+    if not values.keys() <= known or is_mixed or not all(map(isfinite, values.values())):
+        return None
+    return values
 
 
 def _convert_quaternion(x: float, y: float, z: float, w: float) -> Vector | None:

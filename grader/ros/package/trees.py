@@ -1,5 +1,6 @@
-"""One tree of names, values and places for the files of a package: YAML, and XML such as SDF, SRDF
-and package.xml.
+"""One tree of names, values and places for the files of a package.
+
+The files are YAML, and XML such as SDF, SRDF and package.xml.
 
 A path names entries in it. In YAML, dots separate keys, in XML slashes: `a.b`, `world/model/@name`.
 As in parameters of ROS 2, a key may itself have dots: `limits.joint1.max` is found nested, as one
@@ -35,8 +36,9 @@ _Place = Location | LazyLocation
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TreeEntry:
-    """An entry of a tree: an element, attribute, key or row, with its text, what it contains, and
-    its place.
+    """An entry of a tree: an element, attribute, key or row.
+
+    It has its text, what it contains, and its place.
 
     The name of an attribute begins with @, that of the root and of a row of YAML is empty.
     """
@@ -76,28 +78,37 @@ def is_path(text: str) -> bool:
 def steps_of(path: str, *, is_xml: bool) -> list[PathStep]:
     """Return the steps of a path; an empty path, or a dot, is the entry itself."""
     parts = re.split(r"/(?![^\[]*\])" if is_xml else r"\.(?![^\[]*\])", path)
-    found = []
+    steps = []
     for part in parts if path not in ("", ".") else ():
         match = _STEP.fullmatch(part)
         if match is not None and part not in ("", "."):
             conditions = []
             for key, quoted, double_quoted, plain in _CONDITION.findall(match[2]):
                 conditions.append((key, quoted or double_quoted or plain))
-            found.append(PathStep(match[1], tuple(conditions)))
-    return found
+            steps.append(PathStep(match[1], tuple(conditions)))
+    return steps
+
+
+def _key_lengths(entry: TreeEntry, steps: Sequence[PathStep]) -> Iterator[int]:
+    """Yield how many steps may be one key of an entry: in YAML, names with dots may be."""
+    for count in range(1, 2 if entry.is_xml else len(steps) + 1):
+        if not any(step.conditions for step in steps[: count - 1]):
+            yield count
 
 
 class Search:
-    """Finds entries by paths, with a limit on the entries that are looked at: those of YAML may
-    have many parents.
+    """Finds entries by paths, with a limit on the entries that are looked at.
+
+    Those of YAML may have many parents.
     """
 
     def __init__(self) -> None:
         self._budget = Budget(_MAX_LOOKED_AT)
 
     def find(self, entry: TreeEntry, steps: Sequence[PathStep]) -> list[TreeEntry]:
-        """Return the entries at a path in an entry, in the order of the file. Raises NotDecided for
-        too many.
+        """Return the entries at a path in an entry, in the order of the file.
+
+        Raises NotDecided for too many.
         """
         try:
             return [*self._find(entry, steps)]
@@ -108,25 +119,26 @@ class Search:
         """Return whether an entry contains the values of a step."""
         for key, value in step.conditions:
             inner = self.find(entry, steps_of(key, is_xml=entry.is_xml))
-            texts = [readable(it.text) for it in inner if it.text is not None]
+            texts = [readable(row.text) for row in inner if row.text is not None]
             if not any(matches_value(text, value, _EXACT) for text in texts):
                 return False
         return True
 
     def _find(self, entry: TreeEntry, steps: Sequence[PathStep]) -> Iterator[TreeEntry]:
-        children = entry.children if steps else []
-        self._budget.charge(1 + len(children))
         if not steps:
+            self._budget.charge(1)
             yield entry
-        elif entry.is_list and steps[0].name:
-            for row in (it for it in children if not it.is_list):
-                yield from self._find(row, steps)
-        for count in range(1, 2 if entry.is_xml else len(steps) + 1):
-            if steps and not any(step.conditions for step in steps[: count - 1]):
-                name = ".".join(step.name for step in steps[:count])
-                yield from self._find_below(
-                    [it for it in children if it.name == name], steps[count - 1 :]
-                )
+            return
+        children = entry.children
+        self._budget.charge(1 + len(children))
+        if entry.is_list and steps[0].name:
+            for child in children:
+                if not child.is_list:
+                    yield from self._find(child, steps)
+        for count in _key_lengths(entry, steps):
+            name = ".".join(step.name for step in steps[:count])
+            named = [child for child in children if child.name == name]
+            yield from self._find_below(named, steps[count - 1 :])
 
     def _find_below(
         self, named: Sequence[TreeEntry], steps: Sequence[PathStep]
@@ -134,7 +146,7 @@ class Search:
         """Yield the entries at the other steps in those that the first step names."""
         for entry in named:
             rows = entry.children if entry.is_list and steps[0].conditions else [entry]
-            for row in (it for it in rows if self.fits(it, steps[0])):
+            for row in (candidate for candidate in rows if self.fits(candidate, steps[0])):
                 yield from self._find(row, steps[1:])
 
 
@@ -190,22 +202,22 @@ def read_tree(package: Package, file: str) -> TreeEntry:
     """
     files = package.tree.files
     if file in files:
-        found = [file]
+        matches = [file]
     else:
-        found = [path for path in files if path.endswith(f"/{file.strip('/')}")]
-    if len(found) > 1:
+        matches = [path for path in files if path.endswith(f"/{file.strip('/')}")]
+    if len(matches) > 1:
         raise NotDecided(
-            f"several files are called {file}: {', '.join(found[:3])}",
+            f"several files are called {file}: {', '.join(matches[:3])}",
             "several files have the name",
         )
-    if not found:
+    if not matches:
         message, meant = f"the package has no file {file!r}", similar_there(file, files)
         raise MissingElement(
             "file", file, message=message, detail=meant, absent="" if meant else file
         )
     from grader.ros.config.yaml_nodes import YamlFault, read_yaml  # late: the robot needs no YAML
 
-    [path], own = found, package.path(found[0])
+    [path], package_path = matches, package.path(matches[0])
     try:
         data = files[path].read(_MAX_TREE)
     except InputError as error:
@@ -213,8 +225,8 @@ def read_tree(package: Package, file: str) -> TreeEntry:
     kind = "YAML" if path.lower().endswith(_YAML) else "XML"
     try:
         if kind == "YAML":
-            return _yaml_entry(read_yaml(data, own))
-        return _read_xml(data, own)
+            return _yaml_entry(read_yaml(data, package_path))
+        return _read_xml(data, package_path)
     except (YamlFault, XmlFault) as fault:
         message = f"{path} is not readable as {kind}: {fault}"
         raise MissingElement(

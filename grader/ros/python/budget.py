@@ -1,6 +1,4 @@
-"""The budget to which reading a workspace is charged: the work of documents, expressions and
-searches.
-"""
+"""The budget for reading a workspace: the work of documents, expressions and searches."""
 
 from collections.abc import Collection, Iterable
 from pathlib import PurePosixPath
@@ -22,9 +20,22 @@ class OutOfBudget(py.EvaluationSignal):
     """The budget of a workspace is spent: nothing more of it can be expanded or evaluated."""
 
 
+def _is_of_size_one(part: py.Value, kind: str) -> bool:
+    """Return whether a part counts as one, whatever it is, where values of a kind may be."""
+    if isinstance(part, py.PLAIN):
+        return True
+    # A plain function itself refuses the latter.
+    return (
+        (kind == "text" and py.is_object(part))
+        or (kind == "holds" and isinstance(part, (*py.OPAQUE, set)))
+        or isinstance(part, py.Items | py.Namespace | py.PlainFunction)
+    )
+
+
 class Budget:
-    """The parts of documents, expressions and values that may still be produced or looked at,
-    whatever comes of it.
+    """How many parts may still be produced or looked at, whatever comes of it.
+
+    They are parts of documents, expressions and values.
 
     They are charged before the work, and counted, so that a result is the same on every machine.
     `stand_ins` are the texts that stand for folders that are not known: no value may depend on
@@ -77,20 +88,22 @@ class Budget:
         return self.left, self.whole.left if self.whole is not None else 0
 
     def repeat(self, cost: tuple[int, int]) -> bool:
-        """Charge again what was charged for the same work, as two marks tell; return whether it was
-        left.
+        """Charge again what was charged for the same work, as two marks tell.
+
+        Returns whether it was left.
         """
-        own, of_whole = cost
-        if own > self.left or (self.whole is not None and of_whole > self.whole.left):
+        cost_here, of_whole = cost
+        if cost_here > self.left or (self.whole is not None and of_whole > self.whole.left):
             return False
-        self.left -= own
+        self.left -= cost_here
         if self.whole is not None:
             self.whole.left -= of_whole
         return True
 
     def measure(self, value: py.Value, kind: str = "plain") -> int:
-        """Charge a value and return its size: its parts, each as often as it occurs. Raises
-        Undetermined.
+        """Charge a value and return its size: its parts, each as often as it occurs.
+
+        Raises Undetermined.
 
         `kind` is that of the function that is given the value.
         """
@@ -111,8 +124,9 @@ class Budget:
         return size
 
     def checked(self, value: py.Value, kind: str = "holds") -> py.Value:
-        """Return a value that was produced, once it is charged. Raises Undetermined for one that
-        is too large.
+        """Return a value that was produced, once it is charged.
+
+        Raises Undetermined for one that is too large.
         """
         if type(value) not in (float, bool):
             self.measure(value, kind)
@@ -121,8 +135,9 @@ class Budget:
         return value
 
     def rooted(self, value: py.Value) -> py.Value:
-        """Return a text or path in which a stand-in is at most the beginning. Raises
-        Undetermined.
+        """Return a text or path in which a stand-in is at most the beginning.
+
+        Raises Undetermined.
         """
         for text in map(str, value if isinstance(value, tuple) else [value]):
             for stand_in in self.stand_ins:
@@ -134,36 +149,28 @@ class Budget:
         return value
 
     def _size_alone(self, part: py.Value, kind: str) -> int:
-        """Return the size of a part beyond one. Raises Undetermined for one that is too large, or
-        not known.
+        """Return the size of a part beyond one.
+
+        Raises Undetermined for one that is too large, or not known.
         """
         if isinstance(part, str):
-            if len(part) > py.MAX_TEXT:
-                too_large("text")
-            if (
-                self.stand_ins
-                and kind == "plain"
-                and any(stand_in in part for stand_in in self.stand_ins)
-            ):
-                raise py.Undetermined(_FOLDER)
-            return len(part) // CHARACTERS
+            return self._size_of_text(part, kind)
         if isinstance(part, int):
             if part.bit_length() > py.MAX_BITS:
                 too_large("number")
             return part.bit_length() // _BITS
         if isinstance(part, PurePosixPath):
-            return self._size_alone(str(part), kind)
-        if (
-            isinstance(part, py.PLAIN)
-            or (kind == "text" and py.is_object(part))
-            or (kind == "holds" and isinstance(part, (*py.OPAQUE, set)))
-        ):
-            return 0
-        if isinstance(
-            part, py.Items | py.Namespace | py.PlainFunction
-        ):  # a plain function itself refuses these
+            return self._size_of_text(str(part), kind)
+        if _is_of_size_one(part, kind):
             return 0
         return refuse(part, f"values of the type {type(part).__name__} are not supported")
+
+    def _size_of_text(self, text: str, kind: str) -> int:
+        if len(text) > py.MAX_TEXT:
+            too_large("text")
+        if kind == "plain" and any(stand_in in text for stand_in in self.stand_ins):
+            raise py.Undetermined(_FOLDER)
+        return len(text) // CHARACTERS
 
 
 def whole_budget(sizes: Iterable[int]) -> Budget:

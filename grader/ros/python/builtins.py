@@ -59,8 +59,9 @@ def call(
 def _wrong_arguments(
     function: py.PlainFunction, args: list[py.Value], kwargs: dict[str, py.Value]
 ) -> str:
-    """Return what is wrong with the arguments of Python's own function. Raises Undetermined if that
-    is not certain.
+    """Return what is wrong with the arguments of Python's own function.
+
+    Raises Undetermined if that is not certain.
     """
     from inspect import signature  # late: it takes long to import
 

@@ -1,12 +1,13 @@
-"""The constants of a Python module, which is not run: the values of names that a scope binds
-once.
+"""The constants of a Python module, which is not run.
+
+These are the values of names that a scope binds once.
 """
 
 import ast
 import builtins
 import sys
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import ClassVar
 
 from grader.ros.python.budget import Budget, OutOfBudget
@@ -44,15 +45,16 @@ _BINDS_UNSEEN = frozenset(
 def binds_unseen(nodes: Sequence[ast.AST]) -> bool:
     """Return whether a module with these nodes may bind names in ways that are not seen."""
     names = (
-        getattr(it, "id", None) or getattr(it, "attr", None) or getattr(it, "name", None)
-        for it in nodes
+        getattr(node, "id", None) or getattr(node, "attr", None) or getattr(node, "name", None)
+        for node in nodes
     )
     return any(name in _BINDS_UNSEEN for name in names)
 
 
 class Constants(Interpreter):
-    """Evaluates expressions of a module whose names are constants. What it cannot evaluate is
-    Unknown.
+    """Evaluates expressions of a module whose names are constants.
+
+    What it cannot evaluate is Unknown.
     """
 
     def __init__(
@@ -64,8 +66,9 @@ class Constants(Interpreter):
         *,
         is_package: bool,
     ) -> None:
-        """`nodes` are those of the module; of calls, those of the functions are evaluated. `work`
-        is the budget of all files of the workspace.
+        """`nodes` are those of the module; of calls, those of the functions are evaluated.
+
+        `work` is the budget of all files of the workspace.
         """
         super().__init__(functions, {}, budget=Budget(_MAX_STEPS, whole=work))
         self._full_name, self._is_package, self._is_open = name, is_package, binds_unseen(nodes)
@@ -85,8 +88,9 @@ class Constants(Interpreter):
             return Unknown(str(error), START)
 
     def evaluate(self, node: ast.expr, scope: Scope) -> Value:
-        """Return the value of an expression; Unknown where it cannot be determined: nothing else
-        depends on it.
+        """Return the value of an expression.
+
+        Returns Unknown where it cannot be determined: nothing else depends on it.
         """
         try:
             return self.value(node, scope)
@@ -100,16 +104,7 @@ class Constants(Interpreter):
         unknown = Unknown("it is not bound once", START)
         names = [name for name in counts if name.partition(".")[0] not in self._shared]
         scope.names |= dict.fromkeys(names, unknown)
-        last_star = 0  # the line of the last star import, which may bind what is assigned above it
-        for node in nodes:
-            if isinstance(node, ast.ImportFrom) and _replaces_names(node):
-                last_star = max(last_star, node.lineno)
-            if isinstance(node, ast.Import | ast.ImportFrom):
-                imported = self._imported_names(node)
-                self.imported.update(value.name for value in imported.values())
-                scope.names |= {
-                    name: value for name, value in imported.items() if counts[name] == 1
-                }
+        last_star = self._bind_imports(nodes, counts, scope)
         if self._is_open:
             return scope
         for name, expression in values.items():
@@ -118,6 +113,25 @@ class Constants(Interpreter):
                 # A list or a dictionary may be changed.
                 scope.names[name] = unknown if isinstance(value, list | dict) else value
         return scope
+
+    def _bind_imports(
+        self, nodes: Sequence[ast.AST], counts: Mapping[str, int], scope: Scope
+    ) -> int:
+        """Bind the names that are imported once; return the line of the last star import, or 0.
+
+        A star import may bind what is assigned above it.
+        """
+        last_star = 0
+        for node in nodes:
+            if isinstance(node, ast.ImportFrom) and _replaces_names(node):
+                last_star = max(last_star, node.lineno)
+            if isinstance(node, ast.Import | ast.ImportFrom):
+                imported = self._imported_names(node)
+                self.imported.update(value.name for value in imported.values())
+                for name, value in imported.items():
+                    if counts[name] == 1:
+                        scope.names[name] = value
+        return last_star
 
     def _imported_names(self, node: ast.Import | ast.ImportFrom) -> dict[str, QualifiedName]:
         """Return what an import binds."""
@@ -143,9 +157,9 @@ class Constants(Interpreter):
         )
 
     def _constant_attribute(self, node: ast.Attribute, scope: Scope) -> Value:
-        found = constant_in(scope, dotted(node), self)
-        if found is not self:
-            return found
+        constant = constant_in(scope, dotted(node), self)
+        if constant is not self:
+            return constant
         return Interpreter.KINDS[ast.Attribute](self, node, scope)
 
     KINDS: ClassVar = {
@@ -175,8 +189,9 @@ def dotted(node: ast.AST) -> str:
 
 
 def last_name(node: ast.AST) -> str:
-    """Return a name, or what is behind the last dot of an attribute; empty for any other
-    expression.
+    """Return a name, or what is behind the last dot of an attribute.
+
+    It is empty for any other expression.
     """
     match node:
         case ast.Attribute(attr=name) | ast.Name(id=name):
@@ -190,8 +205,9 @@ def offset_of(node: ast.AST) -> tuple[int, int]:
 
 
 def _replaces_names(node: ast.ImportFrom) -> bool:
-    """Return whether a star import may bind names of constants: those of messages and of Python
-    itself do not.
+    """Return whether a star import may bind names of constants.
+
+    Those of messages and of Python itself do not.
     """
     *_, last = (node.module or "").split(".")
     is_known = last in ("msg", "srv", "action") or last in sys.stdlib_module_names
@@ -199,8 +215,9 @@ def _replaces_names(node: ast.ImportFrom) -> bool:
 
 
 def _bindings(nodes: Sequence[ast.AST]) -> tuple[Counter[str], dict[str, ast.expr]]:
-    """Return how often statements bind or change each name with dots, and the expressions that are
-    assigned.
+    """Return how often statements bind or change each name with dots.
+
+    Also returns the expressions that are assigned.
     """
     counts, values = Counter[str](), dict[str, ast.expr]()
     for part in nodes:

@@ -1,5 +1,6 @@
-"""The state of the evaluation of a file, and the calls in it: of its own functions, of the table's,
-and of methods.
+"""The state of the evaluation of a file, and the calls in it.
+
+These are calls of its own functions, of the table's, and of methods.
 """
 
 import ast
@@ -21,8 +22,9 @@ from grader.ros.python.values import call_plain, iterate, known, reason_of
 
 
 class PythonError(NamedTuple):
-    """An error that certainly stops Python at this position: an undefined name, an import that
-    fails.
+    """An error that certainly stops Python at this position.
+
+    Examples are an undefined name, an import that fails.
     """
 
     message: str
@@ -67,8 +69,9 @@ class Evaluation(Expressions):
     def __init__(
         self, functions: py.FunctionTable, names: Mapping[str, py.Value], budget: Budget
     ) -> None:
-        """`functions` has every function that is evaluated; `names` are bound from the beginning,
-        such as __file__.
+        """`functions` has every function that is evaluated.
+
+        `names` are bound from the beginning, such as __file__.
         """
         super().__init__(self._builtin, budget)
         self.functions = functions
@@ -97,8 +100,9 @@ class Evaluation(Expressions):
         name: str = "",
         argument: str = "",
     ) -> None:
-        """Record once an error that certainly stops Python, such as an undefined name; raise it
-        where a try may catch it.
+        """Record once an error that certainly stops Python, such as an undefined name.
+
+        Raises it where a try may catch it.
         """
         if self.attempts:
             raise py.EvaluationFails(message, at, kind)
@@ -108,8 +112,9 @@ class Evaluation(Expressions):
             self.errors.append(PythonError(message, at, name, argument))
 
     def evaluate(self, node: ast.expr, scope: py.Scope) -> py.Value:
-        """Return the value of an expression; Unknown, with the reason, where it cannot be
-        determined.
+        """Return the value of an expression.
+
+        Returns Unknown, with the reason, where it cannot be determined.
 
         The evaluation stops if a part of the expression may have changed something and is not
         evaluated.
@@ -132,8 +137,9 @@ class Evaluation(Expressions):
             return py.unknown_after_error(position_of(node))
 
     def _name(self, node: ast.Name, scope: py.Scope) -> py.Value:
-        """Return the value of a name. An undefined name is an error; its value is the most likely
-        intended one.
+        """Return the value of a name.
+
+        An undefined name is an error; its value is the most likely intended one.
         """
         try:
             return scope.find(node.id)
@@ -158,8 +164,9 @@ class Evaluation(Expressions):
         return py.QualifiedName(full)
 
     def test(self, value: py.Value, branches: Collection[ast.expr]) -> bool:
-        """Return whether a condition holds; stop if that is unknown and a branch may change
-        something.
+        """Return whether a condition holds.
+
+        Stops if that is unknown and a branch may change something.
         """
         if isinstance(
             value, py.Unknown | py.Call | py.QualifiedName | py.BoundMethod
@@ -210,39 +217,40 @@ class Evaluation(Expressions):
     def call_value(self, function: py.Value, made: py.Call) -> py.Value:
         """Return the value of a call; the call gets its name here."""
         self.budget.charge(1 + len(made.args) + len(made.kwargs))
-        found: py.Value = None
+        result: py.Value = None
         match function:
             case py.Function():
-                found = self.call_function(function, made)
+                result = self.call_function(function, made)
             case py.QualifiedName(is_defined=False):
-                found = py.unknown_after_error(made.at)
+                result = py.unknown_after_error(made.at)
             case py.QualifiedName(name=name):
                 if name == "glob":
                     self.error(
                         "glob is a module here and cannot be called: write glob.glob(...)", made.at
                     )
                 made.name = "glob.glob" if name in ("glob", "?glob") else name
-                found = self._by_name(made)
+                result = self._by_name(made)
             case py.BoundMethod(owner=py.Call() as owner, name=name):
                 made.name, made.owner = f"{owner.name}.{name}", owner
-                found = self._by_name(made)
+                result = self._by_name(made)
             case py.BoundMethod(owner=owner, name=name):
-                found = self._method(owner, name, made)
+                result = self._method(owner, name, made)
             case py.PlainFunction():
-                found = self._plain(function, made)
+                result = self._plain(function, made)
             case py.Unknown(follows_error=True):
-                found = function
+                result = function
             case _ if isinstance(function, py.PLAIN):
                 kind = type(function).__name__
                 raise py.EvaluationFails(MISSING_COMMA.format(kind))
             case _:
                 reason = f"this call {NOT_EVALUATED}: {reason_of(function)}".rstrip(": ")
                 raise py.Undetermined(reason, made.at, is_final=True)
-        return found
+        return result
 
     def _plain(self, function: py.PlainFunction, made: py.Call) -> py.Value:
-        """Return the value of Python's own function; stop where it would call others, or use up an
-        iterator.
+        """Return the value of Python's own function.
+
+        Stops where it would call others, or use up an iterator.
         """
         try:
             return call(
@@ -271,8 +279,9 @@ class Evaluation(Expressions):
         return function(self, made)
 
     def _method(self, owner: py.Value, name: str, made: py.Call) -> py.Value:
-        """Return the value of a method. Of what is not known, only a method of texts is known to
-        change nothing.
+        """Return the value of a method.
+
+        Of what is not known, only a method of texts is known to change nothing.
         """
         if isinstance(owner, PurePosixPath) and f"pathlib.Path.{name}" in self.functions:
             made.name, made.args = f"pathlib.Path.{name}", [owner, *made.args]
@@ -281,9 +290,9 @@ class Evaluation(Expressions):
             isinstance(owner, kind) and name in names for kind, names in _CHANGING_METHODS.items()
         ):
             return self._change(owner, name, made)
-        found = method(owner, name, self.budget)
-        if found is not None:
-            return self.call_value(found, made)
+        bound_method = method(owner, name, self.budget)
+        if bound_method is not None:
+            return self.call_value(bound_method, made)
         if isinstance(owner, py.Unknown) and (name in _TEXT_METHODS or owner.follows_error):
             raise owner.as_signal(owner.at)
         raise py.Undetermined(
@@ -340,26 +349,17 @@ class Evaluation(Expressions):
         positional = [parameter.arg for parameter in (*parameters.posonlyargs, *parameters.args)]
         names = {*positional, *(parameter.arg for parameter in parameters.kwonlyargs)}
         given = dict(zip(positional, made.args, strict=False))
-        others = {
-            name: value for name, value in made.kwargs.items() if name not in names or name in given
-        }
-        missing = sorted(names - given.keys() - made.kwargs.keys() - function.defaults.keys())
-        if (
-            missing
-            or (len(made.args) > len(positional) and not parameters.vararg)
-            or (others and not parameters.kwarg)
-        ):
-            if missing:
-                what = f"the argument {missing[0]!r} is missing"
-            else:
-                what = "there is one argument too many"
-            self.error(f"{what} in this call", made.at)
-        bound = {
-            **dict.fromkeys(names, py.Unknown("an argument is missing", made.at)),
-            **function.defaults,
-            **given,
-        }
-        bound |= {name: value for name, value in made.kwargs.items() if name in names}
+        named = {name: value for name, value in made.kwargs.items() if name in names}
+        others = dict(made.kwargs)
+        for name in named.keys() - given.keys():
+            del others[name]
+        missing = sorted(names - given.keys() - named.keys() - function.defaults.keys())
+        if missing:
+            self.error(f"the argument {missing[0]!r} is missing in this call", made.at)
+        elif _are_too_many(made, parameters, others):
+            self.error("there is one argument too many in this call", made.at)
+        absent = dict.fromkeys(names, py.Unknown("an argument is missing", made.at))
+        bound: dict[str, py.Value] = {**absent, **function.defaults, **given, **named}
         if parameters.vararg:
             bound[parameters.vararg.arg] = tuple(made.args[len(positional) :])
         if parameters.kwarg:
@@ -367,8 +367,9 @@ class Evaluation(Expressions):
         return bound
 
     def _binary(self, node: ast.BinOp, scope: py.Scope) -> py.Value:
-        """Return the value of a binary operator; of an object in the table it is its method for
-        division.
+        """Return the value of a binary operator.
+
+        For an object in the table it is its method for division.
         """
         left, right = self.evaluate(node.left, scope), self.evaluate(node.right, scope)
         if (
@@ -384,11 +385,20 @@ class Evaluation(Expressions):
 
 
 def record(evaluation: Evaluation, made: py.Call) -> py.Call:
-    """Record a call that is not evaluated further, and return it as its result: a function for the
-    table.
+    """Record a call that is not evaluated further, and return it as its result.
+
+    The result is a function for the table.
     """
     if len(evaluation.calls) < _MAX_CALLS:
         evaluation.calls.append(made)
         if made.owner is not None:
             made.owner.method_calls.append(made)
     return made
+
+
+def _are_too_many(made: py.Call, parameters: ast.arguments, others: Mapping[str, py.Value]) -> bool:
+    """Return whether a call gives arguments that no parameter takes; `others` have a name."""
+    positional = [*parameters.posonlyargs, *parameters.args]
+    if len(made.args) > len(positional) and not parameters.vararg:
+        return True
+    return bool(others) and not parameters.kwarg

@@ -29,8 +29,9 @@ _OF_NODE = 2  # what evaluating a part of an expression is charged
 
 
 def evaluate(text: str, find: Callable[[str], Value], budget: Budget) -> Value:
-    """Return the value of an expression. `find` returns the value of a name, and raises as this
-    function does.
+    """Return the value of an expression.
+
+    `find` returns the value of a name, and raises as this function does.
 
     Raises EvaluationFails where Python raises an error, Undetermined where the value cannot be
     determined, OutOfBudget.
@@ -58,8 +59,9 @@ _MAKES_VALUES = frozenset(
 
 
 class Expressions:
-    """An evaluator of expressions; `find` returns the value of a name that no comprehension
-    binds.
+    """An evaluator of expressions.
+
+    `find` returns the value of a name that no comprehension binds.
     """
 
     def __init__(self, find: Callable[[str], Value], budget: Budget) -> None:
@@ -206,8 +208,9 @@ class Expressions:
         first: Iterator[Value] | None = None,
         depth: int = 0,
     ) -> Iterator[Scope]:
-        """Yield the scope once for each round of nested loops, charged by depth: each loop around
-        passes them on.
+        """Yield the scope once for each round of nested loops, charged by depth.
+
+        Each loop around passes them on.
 
         `first` are the items of the first loop, if they are evaluated already.
         """

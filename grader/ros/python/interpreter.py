@@ -1,5 +1,6 @@
-"""Evaluate a whole Python file without running it: its functions, branches, loops, assignments and
-imports.
+"""Evaluate a whole Python file without running it.
+
+This covers its functions, branches, loops, assignments and imports.
 
 A statement of any other kind, such as `try` or `while`, ends the evaluation: what follows is not
 known.
@@ -91,8 +92,9 @@ class Interpreter(Evaluation):
         exports: Mapping[str, Collection[str]] | None = None,
         local_modules: Collection[str] = (),
     ) -> None:
-        """`functions` may be called, by full name; `names` are bound from the beginning, such as
-        __file__.
+        """`functions` may be called, by full name.
+
+        `names` are bound from the beginning, such as __file__.
 
         `stand_ins` are texts that stand for folders that are not known; `exports` has the names of
         modules, besides those of Python itself; `local_modules` are beside the file, and imported
@@ -359,26 +361,15 @@ class Interpreter(Evaluation):
     def _attribute(self, node: ast.Attribute, scope: py.Scope) -> py.Value:
         owner, name = self.evaluate(node.value, scope), node.attr
         match owner:
-            case py.QualifiedName(
-                name="?glob"
-            ):  # used without an import: an attribute shows that the module is meant
+            # Used without an import: an attribute shows that the module is meant.
+            case py.QualifiedName(name="?glob"):
                 return py.QualifiedName(f"glob.{name}")
             case py.QualifiedName(name="glob.glob") if name in ("glob", "iglob"):
                 message = f"glob is a function here, so glob.{name} is not defined: write glob(...)"
                 self.error(message, position_of(node))
                 return owner
-            case py.QualifiedName(name=module):
-                full = f"{module}.{name}"
-                error = attribute_error(module, name) if full not in self.functions else None
-                if error is not None:
-                    meant = closest(
-                        full, (it for it in self.functions if it.rpartition(".")[0] == module)
-                    )
-                    if meant is None:
-                        raise py.EvaluationFails(error)
-                    self.error(error, position_of(node))
-                    full = meant
-                return CONSTANTS.get(full, py.QualifiedName(full, is_defined=owner.is_defined))
+            case py.QualifiedName():
+                return self._attribute_of_module(owner, node)
             case PurePosixPath() if name in _PARTS:
                 value = getattr(owner, name)
                 return self.budget.checked(list(value) if name == "parents" else value, "path")
@@ -387,6 +378,21 @@ class Interpreter(Evaluation):
         if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
             raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
         return py.BoundMethod(owner, name, node)
+
+    def _attribute_of_module(self, owner: py.QualifiedName, node: ast.Attribute) -> py.Value:
+        """Return what a name in a module stands for; a misspelt one is an error."""
+        module, full = owner.name, f"{owner.name}.{node.attr}"
+        error = attribute_error(module, node.attr) if full not in self.functions else None
+        if error is not None:
+            known = [
+                function for function in self.functions if function.rpartition(".")[0] == module
+            ]
+            meant = closest(full, known)
+            if meant is None:
+                raise py.EvaluationFails(error)
+            self.error(error, position_of(node))
+            full = meant
+        return CONSTANTS.get(full, py.QualifiedName(full, is_defined=owner.is_defined))
 
     def item(self, owner: py.Value, key: py.Value, node: ast.expr) -> py.Value:
         """Return the value of owner[key]; of something outside of the file, by the table."""
@@ -424,8 +430,9 @@ class Interpreter(Evaluation):
         return values
 
     def _separated(self, node: ast.expr) -> list[ast.expr]:
-        """Return an element; the two elements that a call of a tuple or list means, where a comma
-        is missing.
+        """Return an element, or the two elements that are meant where a comma is missing.
+
+        They are written as a call of a tuple or list.
         """
         match node:
             case ast.Call(
@@ -446,13 +453,13 @@ class Interpreter(Evaluation):
     def _dict(self, node: ast.Dict, scope: py.Scope) -> py.Value:
         table: dict[Any, py.Value] = {}
         for key, value in zip(node.keys, node.values, strict=True):
-            found = self.evaluate(value, scope)
+            evaluated = self.evaluate(value, scope)
             if key is not None:
-                call_plain(table.__setitem__, known(self.evaluate(key, scope)), found)
-            elif isinstance(found, dict):
-                table |= found
+                call_plain(table.__setitem__, known(self.evaluate(key, scope)), evaluated)
+            elif isinstance(evaluated, dict):
+                table |= evaluated
             else:
-                refuse(found, "this dict is not supported")
+                refuse(evaluated, "this dict is not supported")
         return table
 
     def _joinedstr(self, node: ast.JoinedStr, scope: py.Scope) -> py.Value:
@@ -472,8 +479,9 @@ class Interpreter(Evaluation):
         return value if is_text else str_of(value)
 
     def _generatorexp(self, node: ast.GeneratorExp, scope: py.Scope) -> py.Value:
-        """Return a generator: the items of its first loop are evaluated now, the rest when it is
-        iterated.
+        """Return a generator.
+
+        The items of its first loop are evaluated now, the rest when it is iterated.
         """
         first = iterate(self.evaluate(node.generators[0].iter, scope))
         rounds = self.rounds(node.generators, py.Scope({}, scope), first)

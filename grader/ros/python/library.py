@@ -1,5 +1,6 @@
-"""Python's library and ROS 2's modules: what an import binds, when it fails, and the functions that
-are evaluated.
+"""What imports of Python's library and ROS 2's modules bind, and when they fail.
+
+The functions of these that are evaluated are here too.
 
 None of the functions reads a file.
 """
@@ -233,38 +234,45 @@ def import_error(
 
 @lru_cache(maxsize=256)
 def _import_error(module: str, name: str) -> str | Uncertain | None:
-    top, full = (module or name).split(".")[0], module or name
+    top = (module or name).split(".")[0]
     if top in _REMOVED:
         return f"there is no module {top!r} in Python 3.12"
     if name != "*" and (module in _INSPECTED or module == "setuptools"):
         return _missing_name(module, name)
-    is_there = (
-        top in _INSTALLED_WITH_ROS
-        or full in ("setuptools", "distutils", *_INSPECTED)
-        or (module, name) == ("distutils.core", "setup")
-        or (top in sys.stdlib_module_names and full == top and not module)
-    )
-    if top != "psutil":
-        guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
-    else:
-        guess = None
-    if (
-        is_there
-        or not guess
-        or top.startswith(guess)
-        or top in sys.stdlib_module_names
-        or top == "setuptools"
-    ):
-        return None if is_there else Uncertain.IMPORT
+    if _is_there(top, module, name):
+        return None
+    guess = _misspelt_module(top)
+    if guess is None:
+        return Uncertain.IMPORT
     return f"there is no module {top!r}; did you mean {guess!r}?"
+
+
+def _is_there(top: str, module: str, name: str) -> bool:
+    """Return whether an import certainly finds its module; `top` is the first name of it."""
+    full = module or name
+    if top in _INSTALLED_WITH_ROS or full in ("setuptools", "distutils", *_INSPECTED):
+        return True
+    if (module, name) == ("distutils.core", "setup"):
+        return True
+    return top in sys.stdlib_module_names and full == top and not module
+
+
+def _misspelt_module(top: str) -> str | None:
+    """Return the common module that a name surely means; None for a name that may be right."""
+    if top in sys.stdlib_module_names or top in ("psutil", "setuptools"):
+        return None
+    guess = closest(top, ("os", "glob", "pathlib", "setuptools", "sys", "shutil"))
+    if not guess or top.startswith(guess):
+        return None
+    return guess
 
 
 def _missing_name(module: str, name: str) -> str | Uncertain | None:
     if module == "setuptools":
         missing, guess = name not in _SETUPTOOLS, did_you_mean(name, _SETUPTOOLS_PUBLIC[:3])
     else:
-        found = import_module(module)  # one of the few above, never a student's choice
-        missing, guess = not hasattr(found, name), did_you_mean(name, dir(found))
+        imported = import_module(module)  # one of the few above, never a student's choice
+        missing, guess = not hasattr(imported, name), did_you_mean(name, dir(imported))
     if name in _ADDED:
         return Uncertain.IMPORT
     if missing:
@@ -283,8 +291,9 @@ def attribute_error(module: str, name: str) -> str | None:
 def imported_names(
     module: str, alias: ast.alias, exports: Mapping[str, Collection[str]]
 ) -> dict[str, py.QualifiedName]:
-    """Return what `import name` or `from module import name` binds; the name * represents unknown
-    names.
+    """Return what `import name` or `from module import name` binds.
+
+    The name * represents unknown names.
     """
     if alias.name == "*":
         return {
@@ -300,8 +309,9 @@ def imported_names(
 
 @cache
 def standard_functions(working_folder: str) -> py.FunctionTable:
-    """Return the functions by full name; `working_folder` is where Python runs, as an absolute
-    path.
+    """Return the functions by full name.
+
+    `working_folder` is where Python runs, as an absolute path.
     """
 
     def absolute(path: py.Value) -> str:
@@ -310,7 +320,7 @@ def standard_functions(working_folder: str) -> py.FunctionTable:
     def relative(path: py.Value, start: py.Value = ".") -> str:
         return posixpath.relpath(absolute(path) if path else path, absolute(start))
 
-    own: dict[str, Callable[..., py.Value]] = {
+    path_functions: dict[str, Callable[..., py.Value]] = {
         "abspath": absolute,
         "realpath": absolute,
         "relpath": relative,
@@ -318,7 +328,7 @@ def standard_functions(working_folder: str) -> py.FunctionTable:
         **{name: getattr(posixpath, name) for name in _OWN},
     }
     of_paths: dict[str, Callable[..., py.Value]] = {
-        **{f"os.path.{name}": function for name, function in own.items()},
+        **{f"os.path.{name}": function for name, function in path_functions.items()},
         **{f"pathlib.{name}": _path for name in ("Path", "PurePath", "PosixPath", "PurePosixPath")},
         **{
             f"pathlib.Path.{name}": lambda path: PurePosixPath(absolute(path))

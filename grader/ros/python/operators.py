@@ -1,5 +1,6 @@
-"""Operators, subscripts, attributes and methods: Python's own, from an allow-list, on values of
-bounded size.
+"""Operators, subscripts, attributes and methods on values of bounded size.
+
+They are Python's own, from an allow-list.
 """
 
 import ast
@@ -20,8 +21,9 @@ _NUMBERS = (float, int)
 
 
 def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
-    """Return the value of an attribute: of a namespace, of a dict from YAML, or a method of a plain
-    value.
+    """Return the value of an attribute.
+
+    It is of a namespace, of a dict from YAML, or a method of a plain value.
     """
     if name.startswith("__"):
         raise py.EvaluationFails(f"names that begin with two underscores are not allowed: {name}")
@@ -29,9 +31,9 @@ def attribute(owner: py.Value, name: str, budget: Budget) -> py.Value:
         if hasattr(dict, name):  # a namespace of xacro is a dict
             raise py.Undetermined(f"the method {name} of a namespace is not supported")
         return owner.find(name)
-    found = method(owner, name, budget)
-    if found is not None:
-        return found
+    bound_method = method(owner, name, budget)
+    if bound_method is not None:
+        return bound_method
     if has_attribute(owner, name):
         raise py.Undetermined(f"the attribute {name} is not supported")
     if isinstance(owner, py.DottedDict) and name in owner:
@@ -49,8 +51,9 @@ def has_attribute(owner: py.Value, name: str) -> bool:
 
 
 def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | None:
-    """Return a method of a plain value that changes nothing, whose work is charged; None for any
-    other.
+    """Return a method of a plain value that changes nothing, whose work is charged.
+
+    Returns None for any other.
     """
     run = next(
         (table.get(name) for kind, table in _METHODS.items() if isinstance(owner, kind)), None
@@ -178,28 +181,9 @@ def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -
         kind = "plain"
     else:
         kind = _kind(op, left, right)
-        for value in (left, right):
-            if not isinstance(
-                value, (*py.PLAIN, py.Items)
-            ):  # an iterator has no operators, as Python says itself
-                refuse(value, "this operation is not supported")
-        size = budget.measure(left, kind) + budget.measure(right, kind)
-        made = 0
-        match op, left, right:
-            case ast.Mod(), str(), _:
-                operation, made = _percent_format, size * left.count("%")
-            case (ast.Mult(), str() as text, int() as times) | (
-                ast.Mult(),
-                int() as times,
-                str() as text,
-            ):
-                made = len(text) * times // CHARACTERS
-            case (ast.Mult(), list() | tuple(), int() as times) | (
-                ast.Mult(),
-                int() as times,
-                list() | tuple(),
-            ):
-                made = size * times
+        if isinstance(op, ast.Mod) and isinstance(left, str):
+            operation = _percent_format
+        made = _size_made(op, left, right, kind, budget)
         if made > py.MAX_PARTS:
             too_large("value")
         budget.charge(max(made, 0))
@@ -208,15 +192,40 @@ def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -
     return budget.checked(_run(operation, left, right), kind)
 
 
+def _size_made(op: ast.operator, left: py.Value, right: py.Value, kind: str, budget: Budget) -> int:
+    """Return the size of what an operator makes beyond its operands, which are charged."""
+    for value in (left, right):
+        # An iterator has no operators, as Python says itself.
+        if not isinstance(value, (*py.PLAIN, py.Items)):
+            refuse(value, "this operation is not supported")
+    size = budget.measure(left, kind) + budget.measure(right, kind)
+    match op, left, right:
+        case ast.Mod(), str(), _:
+            return size * left.count("%")
+        case (ast.Mult(), str() as text, int() as times) | (
+            ast.Mult(),
+            int() as times,
+            str() as text,
+        ):
+            return len(text) * times // CHARACTERS
+        case (ast.Mult(), list() | tuple(), int() as times) | (
+            ast.Mult(),
+            int() as times,
+            list() | tuple(),
+        ):
+            return size * times
+    return 0
+
+
 def _refuse_object(op: ast.operator, left: py.Value, right: py.Value) -> None:
     """Raise EvaluationFails for an operator of an object that has none, as Python does."""
-    found = next(filter(py.is_object, (left, right)), None)
-    other = right if found is left else left
-    if found is None or (isinstance(op, ast.Mod) and isinstance(left, str)):
+    refused = next(filter(py.is_object, (left, right)), None)
+    other = right if refused is left else left
+    if refused is None or (isinstance(op, ast.Mod) and isinstance(left, str)):
         return
     if isinstance(other, py.PLAIN) or py.is_object(other):
         raise py.EvaluationFails(
-            f"TypeError: {found.short}(...) is an object, not a text: use "
+            f"TypeError: {refused.short}(...) is an object, not a text: use "
             "PathJoinSubstitution([...])"
         )
 
@@ -253,6 +262,14 @@ def compare(op: ast.cmpop, left: py.Value, right: py.Value, budget: Budget) -> b
     are_plain = all(isinstance(value, py.PLAIN) or py.is_object(value) for value in (left, right))
     if are_plain and any(map(py.is_object, (left, right))) and isinstance(op, _OF_IDENTITY):
         return (left is right) == isinstance(op, ast.Eq | ast.Is)
+    _check_comparison(op, left, right)
+    if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
+        budget.charge(budget.measure(left) + budget.measure(right), _search_cost(right, left))
+    return bool(call_plain(_COMPARISONS[type(op)], left, right))
+
+
+def _check_comparison(op: ast.cmpop, left: py.Value, right: py.Value) -> None:
+    """Raise Undetermined for a comparison that is not supported."""
     if isinstance(op, ast.Is | ast.IsNot) and not any(
         value is None or isinstance(value, bool) for value in (left, right)
     ):
@@ -262,9 +279,6 @@ def compare(op: ast.cmpop, left: py.Value, right: py.Value, budget: Budget) -> b
             isinstance(value, py.Items) and isinstance(op, ast.Eq | ast.NotEq)
         ):
             refuse(value, "this comparison is not supported")
-    if type(left) not in _NUMBERS or type(right) not in _NUMBERS:
-        budget.charge(budget.measure(left) + budget.measure(right), _search_cost(right, left))
-    return bool(call_plain(_COMPARISONS[type(op)], left, right))
 
 
 def subscript(owner: py.Value, key: py.Value, budget: Budget) -> py.Value:

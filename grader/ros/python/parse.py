@@ -69,8 +69,9 @@ def every_node(tree: ast.Module) -> Sequence[ast.AST]:
 
 
 class SyntaxFault(NamedTuple):
-    """A file that Python cannot parse, with Python's message; `sure` is False where a newer
-    Python may parse it.
+    """A file that Python cannot parse, with Python's message.
+
+    `sure` is False where a newer Python may parse it.
     """
 
     source: Source
@@ -80,8 +81,9 @@ class SyntaxFault(NamedTuple):
 
 
 def location_in(source: Source, position: Position) -> Location:
-    """Return the location of a position that Python gives: it counts columns in bytes, a
-    location in characters.
+    """Return the location of a position that Python gives.
+
+    Python counts columns in bytes, a location in characters.
     """
     line = source.line(position.line)
     column = len(
@@ -91,17 +93,18 @@ def location_in(source: Source, position: Position) -> Location:
 
 
 def parse(data: bytes, path: str) -> Code | SyntaxFault:
-    """Parse the bytes of a Python file. Never raises: what Python refuses, also for its depth,
-    is a SyntaxFault.
+    """Parse the bytes of a Python file.
+
+    Never raises: what Python refuses, also for its depth, is a SyntaxFault.
     """
     resolved = resolve_conflicts(data)
     try:
-        found = _parse(resolved.data if resolved is not None else data, path)
+        parsed = _parse(resolved.data if resolved is not None else data, path)
         if resolved is None:
-            return found
-        if isinstance(found, Code):
-            return found._replace(conflict=(resolved.message, Position(resolved.line, 1)))
-        return found._replace(message=resolved.message, location=Location(path, resolved.line, 1))
+            return parsed
+        if isinstance(parsed, Code):
+            return parsed._replace(conflict=(resolved.message, Position(resolved.line, 1)))
+        return parsed._replace(message=resolved.message, location=Location(path, resolved.line, 1))
     except (RecursionError, MemoryError):  # these depend on the process, so they are not kept
         return SyntaxFault(
             Source(path, data.decode("utf-8", "replace")), _TOO_DEEP, Location(path, 1, 1)
@@ -165,8 +168,9 @@ def _is_of_newer_python(error: SyntaxError, text: str) -> bool:
 
 
 def parse_expression(text: str) -> ast.expr | str | None:
-    """Return an expression, or Python's message on why it is none; None if it is nested too
-    deeply.
+    """Return an expression, or Python's message on why it is none.
+
+    Returns None if it is nested too deeply.
     """
     try:
         with warnings.catch_warnings():
@@ -185,20 +189,21 @@ def parse_expression(text: str) -> ast.expr | str | None:
 
 
 def own_nodes(node: ast.AST) -> list[ast.AST]:
-    """Return the nodes of a function, class or statement, without those of the functions and
-    classes in it.
+    """Return the nodes of a function, class or statement itself.
+
+    Those of the functions and classes in it are not among them.
     """
-    found: list[ast.AST] = []
+    nodes: list[ast.AST] = []
     if isinstance(node, ast.FunctionDef | ast.ClassDef):
         pending = list(ast.iter_child_nodes(node))
     else:
         pending = [node]
     while pending:
         part = pending.pop()
-        found.append(part)
+        nodes.append(part)
         if not isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
             pending += ast.iter_child_nodes(part)
-    return found
+    return nodes
 
 
 def bound_in(node: ast.FunctionDef | ast.Module) -> frozenset[str]:

@@ -1,6 +1,4 @@
-"""The text of a Python file with its syntax tree and strings, for edits that change nothing
-else.
-"""
+"""A Python file with its syntax tree and strings, for edits that change nothing else."""
 
 import ast
 import re
@@ -39,8 +37,9 @@ class _Literal(NamedTuple):
 
 
 class PythonFile:
-    """A Python file; offsets are in the text as the file has it, which may have other line breaks
-    than Python sees.
+    """A Python file for edits.
+
+    Offsets are in the text as the file has it, which may have other line breaks than Python sees.
     """
 
     def __init__(self, source: Source) -> None:
@@ -104,14 +103,14 @@ class PythonFile:
     @cached_property
     def values(self) -> dict[str, ast.expr]:
         """The expressions that are bound to names."""
-        found: dict[str, ast.expr] = {}
+        by_name: dict[str, ast.expr] = {}
         for node in self.nodes:
             match node:
                 case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                    found[name] = value
+                    by_name[name] = value
                 case ast.withitem(context_expr=value, optional_vars=ast.Name(id=name)):
-                    found[name] = value
-        return found
+                    by_name[name] = value
+        return by_name
 
     @property
     def made(self) -> list[str]:
@@ -144,8 +143,9 @@ class PythonFile:
         return text
 
     def plain(self, node: ast.expr) -> str:
-        """Return the code of an expression without names for its parts and in one style, to compare
-        it.
+        """Return the code of an expression in one style, to compare it.
+
+        Its parts have no names in it.
         """
         if node not in self._plain:
             code = self.written(node)
@@ -157,28 +157,30 @@ class PythonFile:
         """Return the names in an expression."""
         tree = _expression(code)
         if tree:
-            return {it.id for it in ast.walk(tree) if isinstance(it, ast.Name)}
+            return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
         return set()
 
     @cached_property
     def bound(self) -> frozenset[str]:
         """The names that the file binds anywhere."""
-        found: set[str] = set()
+        names: set[str] = set()
         for node in self.nodes:
             match node:
                 case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
-                    found.add(name)
+                    names.add(name)
                 case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
-                    found.add(name)
+                    names.add(name)
                 case ast.alias(name=name, asname=other):
-                    found.add(other or name.split(".")[0])
-        return frozenset(found)
+                    names.add(other or name.split(".")[0])
+        return frozenset(names)
 
     @cached_property
     def used(self) -> frozenset[str]:
         """The names that the file reads anywhere."""
         return frozenset(
-            it.id for it in self.nodes if isinstance(it, ast.Name) and isinstance(it.ctx, ast.Load)
+            node.id
+            for node in self.nodes
+            if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load)
         )
 
     @cached_property
@@ -188,14 +190,15 @@ class PythonFile:
 
     def calls(self, name: str) -> list[ast.Call]:
         """Return the calls of a function or class of this name, in order."""
-        found = (
+        matching = (
             node for node in self.nodes if isinstance(node, ast.Call) and _called(node) == name
         )
-        return sorted(found, key=lambda node: (node.lineno, node.col_offset))
+        return sorted(matching, key=lambda node: (node.lineno, node.col_offset))
 
     def with_imports(self, names: Iterable[str]) -> list[Edit]:
-        """Return the edit that imports those of these names that have a usual meaning and are not
-        bound.
+        """Return the edit that imports those of these names that have a usual meaning.
+
+        Names that are bound are not imported.
         """
         missing = [name for name in dict.fromkeys(names) if name not in self.bound]
         lines = [self._import(name) for name in missing if name in USUAL_NAMES]
@@ -208,12 +211,12 @@ class PythonFile:
         return [self.source.edit(start, start, "".join(lines))]
 
     def _import(self, name: str) -> str:
-        module, _, own = USUAL_NAMES[name].rpartition(".")
-        if own == "?glob":
-            module, own = ("", "glob") if _USE.search(self.text) else ("glob", "glob")
+        module, _, attribute = USUAL_NAMES[name].rpartition(".")
+        if attribute == "?glob":
+            module, attribute = ("", "glob") if _USE.search(self.text) else ("glob", "glob")
         if module:
-            return f"from {module} import {own}{self.newline}"
-        return f"import {own}{self.newline}"
+            return f"from {module} import {attribute}{self.newline}"
+        return f"import {attribute}{self.newline}"
 
 
 def _expression(code: str) -> ast.Expression | None:
@@ -237,8 +240,8 @@ def argument(call: ast.Call, name: str) -> ast.keyword | None:
 
 def with_xacro(source: Source) -> Iterator[Edits]:
     """Yield the edits of a launch file that read the robot with xacro instead of open or cat."""
-    for found in _CAT.finditer(source.text):
-        yield (source.edit(found.start(), found.end(), "xacro"),)
+    for match in _CAT.finditer(source.text):
+        yield (source.edit(match.start(), match.end(), "xacro"),)
     if not source.path.endswith(".py"):
         return
     file = PythonFile(source)

@@ -1,10 +1,11 @@
-"""The slips for which Python cannot read a file: a comma, a colon, a bracket or a quote that is
-missing, a keyword that is misspelt.
+"""The slips for which Python cannot read a file.
+
+A comma, a colon, a bracket or a quote is missing, or a keyword is misspelt.
 """
 
 import ast
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
 from keyword import kwlist
 from typing import NamedTuple
@@ -41,24 +42,26 @@ class _Change(NamedTuple):
 
 
 def python_slips(data: bytes, path: str) -> list[Slip]:
-    """Return what Python refuses in a file, in the order in which it meets it, each with the change
-    of one line after which it reads on; nothing where a line may mean several things.
+    """Return what Python refuses in a file, each with the change of one line.
+
+    They are in the order in which Python meets them; after each change it reads on. Returns nothing
+    where a line may mean several things.
     """
     if len(data) > _MAX_BYTES:
         return []
     slips: list[Slip] = []
-    found = parse(data, path)
-    if not isinstance(found, SyntaxFault) or not found.is_certain:
+    parsed = parse(data, path)
+    if not isinstance(parsed, SyntaxFault) or not parsed.is_certain:
         return []
-    lines = found.source.text.split("\n")
-    while isinstance(found, SyntaxFault) and len(slips) < _MAX_SLIPS:
-        change = _meant(found, lines, path)
+    lines = parsed.source.text.split("\n")
+    while isinstance(parsed, SyntaxFault) and len(slips) < _MAX_SLIPS:
+        change = _meant(parsed, lines, path)
         if change is None:
             return []
-        slips.append(_slip(found, lines[change.line], change, path))
+        slips.append(_slip(parsed, lines[change.line], change, path))
         lines[change.line] = change.text
-        found = _parsed(lines, path)
-    if isinstance(found, SyntaxFault) or len({slip.location.line for slip in slips}) < len(slips):
+        parsed = _parsed(lines, path)
+    if isinstance(parsed, SyntaxFault) or len({slip.location.line for slip in slips}) < len(slips):
         return []
     return slips
 
@@ -83,21 +86,14 @@ def _parsed(lines: Sequence[str], path: str) -> Code | SyntaxFault:
 
 
 def _meant(fault: SyntaxFault, lines: list[str], path: str) -> _Change | None:
-    """Return the change of a line after which Python reads the file, or at least reads on; None if
-    different ones do.
+    """Return the change of a line after which Python reads the file, or at least reads on.
+
+    Returns None if different ones do.
     """
     for message, way in _WAYS:
         if message.search(fault.message) is None:
             continue
-        read: dict[str, _Change] = {}  # by what the file is then
-        for change in islice(way(fault, lines), _MAX_TRIED):
-            after = [*lines]
-            after[change.line] = change.text
-            found = _parsed(after, path)
-            if isinstance(found, Code):
-                read.setdefault(ast.dump(found.tree), change)
-            elif found.location.line > fault.location.line and found.message != fault.message:
-                read.setdefault("", change)
+        read = _readable_changes(fault, lines, path, islice(way(fault, lines), _MAX_TRIED))
         complete = [change for tree, change in read.items() if tree]
         if len(complete) == 1:
             return complete[0]
@@ -108,12 +104,31 @@ def _meant(fault: SyntaxFault, lines: list[str], path: str) -> _Change | None:
     return None
 
 
+def _readable_changes(
+    fault: SyntaxFault, lines: list[str], path: str, changes: Iterable[_Change]
+) -> dict[str, _Change]:
+    """Return the changes after which Python reads the file, by what it is then.
+
+    The key of one after which Python only reads on is empty.
+    """
+    read: dict[str, _Change] = {}
+    for change in changes:
+        after = [*lines]
+        after[change.line] = change.text
+        parsed = _parsed(after, path)
+        if isinstance(parsed, Code):
+            read.setdefault(ast.dump(parsed.tree), change)
+        elif parsed.location.line > fault.location.line and parsed.message != fault.message:
+            read.setdefault("", change)
+    return read
+
+
 def _code_and_rest(line: str) -> tuple[str, str]:
     """Return a line up to its comment, and the rest."""
-    found = _COMMENT.match(line)
-    if found is None or len(line) > _MAX_LENGTH:
+    match = _COMMENT.match(line)
+    if match is None or len(line) > _MAX_LENGTH:
         return line, ""
-    return found[1], found[2]
+    return match[1], match[2]
 
 
 def _with_plain_quotes(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
@@ -129,18 +144,19 @@ def _with_keyword(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
     line = lines[index]
     if len(line) > _MAX_LENGTH:
         return
-    for found in re.finditer(r"(?<![\w.'\"])[A-Za-z]{2,}(?![\w.'\"])", line):
-        word = found[0]
+    for match in re.finditer(r"(?<![\w.'\"])[A-Za-z]{2,}(?![\w.'\"])", line):
+        word = match[0]
         meant = None
         if word not in kwlist:
             meant = near(word, kwlist) or closest(word, kwlist, is_clear=True)
         if meant is not None:
-            yield _Change(index, line[: found.start()] + meant + line[found.end() :])
+            yield _Change(index, line[: match.start()] + meant + line[match.end() :])
 
 
 def _with_quote(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
-    """Yield the line with the quote that ends its text, before what follows a text, or with the one
-    that begins it.
+    """Yield the line with a quote that is missing.
+
+    The quote ends its text, before what follows a text, or begins it.
     """
     index, column = fault.location.line - 1, fault.location.column - 1
     line = lines[index]
@@ -166,8 +182,9 @@ def _with_colon(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
 
 
 def _with_comma(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
-    """Yield a comma at the end of the line or of the one before, or between two of its words; also
-    for a semicolon or a point.
+    """Yield a comma at the end of the line or of the one before, or between two of its words.
+
+    The comma may also stand for a semicolon or a point.
     """
     index = fault.location.line - 1
     for at in (index, index - 1):
@@ -183,15 +200,17 @@ def _with_comma(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
             yield _Change(at, f"{code},{rest}")
     line = lines[index]
     if len(line) <= _MAX_LENGTH:
-        for found in _TOKEN.finditer(line, max(fault.location.column - 1, 0)):
-            after = line[found.end() :]
+        for match in _TOKEN.finditer(line, max(fault.location.column - 1, 0)):
+            after = line[match.end() :]
             if after[:1] == " ":
-                yield _Change(index, f"{line[: found.end()]},{after}")
+                yield _Change(index, f"{line[: match.end()]},{after}")
 
 
 def _with_bracket_in_line(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
-    """Yield the line without a bracket that is too much, with the one that another one needs before
-    it, or with one of its own doubled.
+    """Yield the line with a bracket removed, inserted or doubled.
+
+    It is without a bracket that is too much, with the one that another one needs before it, or with
+    one of its own doubled.
     """
     index, column = fault.location.line - 1, fault.location.column - 1
     line = lines[index]
@@ -200,13 +219,14 @@ def _with_bracket_in_line(fault: SyntaxFault, lines: list[str]) -> Iterator[_Cha
     mismatched = re.search(r"does not match opening parenthesis '([(\[{])'", fault.message)
     if mismatched is not None:
         yield _Change(index, line[:column] + _CLOSING[mismatched[1]] + line[column:])
-    for found in re.finditer(r"[)\]}]", line[:_MAX_LENGTH]):
-        yield _Change(index, line[: found.end()] + found[0] + line[found.end() :])
+    for match in re.finditer(r"[)\]}]", line[:_MAX_LENGTH]):
+        yield _Change(index, line[: match.end()] + match[0] + line[match.end() :])
 
 
 def _with_bracket_at_end(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
-    """Yield a line with a bracket at its end: from the line where one is opened to the first that
-    ends what is indented below it.
+    """Yield a line with a bracket at its end.
+
+    The lines are from that where one is opened to the first that ends what is indented below it.
     """
     index = fault.location.line - 1
     first, last = max(index - 1, 0), index + 1
@@ -231,11 +251,11 @@ def _with_bracket_at_end(fault: SyntaxFault, lines: list[str]) -> Iterator[_Chan
 def _with_indentation(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
     """Yield the line with the indentation of the lines before that is nearest to its own."""
     index = fault.location.line - 1
-    own = _indentation(lines[index])
+    indentation = _indentation(lines[index])
     others = {_indentation(line) for line in lines[:index] if line.strip()} | {""}
     by_distance: dict[int, list[str]] = {}
     for other in others:
-        by_distance.setdefault(abs(len(other) - len(own)), []).append(other)
+        by_distance.setdefault(abs(len(other) - len(indentation)), []).append(other)
     nearest = by_distance[min(by_distance)]
     if len(nearest) == 1 and min(by_distance) <= _MAX_MOVED:
         yield _Change(index, nearest[0] + lines[index].lstrip())
@@ -251,9 +271,9 @@ def _with_pair(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:
     line = lines[index]
     if len(line) > _MAX_LENGTH:
         return
-    for found in re.finditer(r"""(?:(['"])\s*=\s*|(?<=\{)(['"]\w+['"])\s+(?=\w))""", line):
-        key = found[1] or found[2]
-        yield _Change(index, f"{line[: found.start()]}{key}: {line[found.end() :]}")
+    for match in re.finditer(r"""(?:(['"])\s*=\s*|(?<=\{)(['"]\w+['"])\s+(?=\w))""", line):
+        key = match[1] or match[2]
+        yield _Change(index, f"{line[: match.start()]}{key}: {line[match.end() :]}")
 
 
 # What is tried for a message of Python, in this order.

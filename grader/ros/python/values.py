@@ -1,5 +1,6 @@
-"""The values of Python expressions: Python's own, and stand-ins for functions, iterators and what
-is not evaluated.
+"""The values of Python expressions.
+
+They are Python's own, and stand-ins for functions, iterators and what is not evaluated.
 
 What is not known raises Undetermined where it is needed: `known`, `iterate` and `str_of` are the
 ways to a value.
@@ -64,8 +65,9 @@ Lacking = Literal["", "value", "declaration"]
 
 
 class EvaluationFails(EvaluationSignal):
-    """Python, xacro or launch certainly raises an error here; the text is a sentence without its
-    end. `kind` is Python's class of the error, if it is known.
+    """Python, xacro or launch certainly raises an error here.
+
+    The text is a sentence without its end. `kind` is Python's class of the error, if it is known.
     """
 
     lacks: Lacking = ""  # what another launch file, or the user, may give
@@ -125,8 +127,10 @@ class Undetermined(EvaluationSignal):
 
 
 class Unknown:
-    """A value that is not known, and why. With `follows_error`, an error that is recorded already
-    certainly stops Python before it has the value.
+    """A value that is not known, and why.
+
+    With `follows_error`, an error that is recorded already certainly stops Python before it has the
+    value.
     """
 
     is_text = False  # whether it certainly is a text
@@ -146,8 +150,10 @@ class Unknown:
 
 
 class QualifiedName:
-    """A module, or something in one, by its full name: os.path.join. With `is_defined` False, the
-    file uses the name without defining or importing it, which is an error that is recorded already.
+    """A module, or something in one, by its full name: os.path.join.
+
+    With `is_defined` False, the file uses the name without defining or importing it, which is an
+    error that is recorded already.
     """
 
     def __init__(self, name: str, *, is_defined: bool = True) -> None:
@@ -155,8 +161,9 @@ class QualifiedName:
 
 
 class BoundMethod:
-    """A method of a value, which is not called yet; `node` is the expression in the file that
-    gives it.
+    """A method of a value, which is not called yet.
+
+    `node` is the expression in the file that gives it.
     """
 
     def __init__(self, owner: Value, name: str, node: ast.expr | None = None) -> None:
@@ -201,8 +208,9 @@ class Call:
 
 
 class Function:
-    """A function or lambda of the file. `body` evaluates it in a scope; `local` are the names
-    that its body binds.
+    """A function or lambda of the file.
+
+    `body` evaluates it in a scope; `local` are the names that its body binds.
     """
 
     def __init__(
@@ -233,8 +241,9 @@ class Scope:
         self.names, self.outer, self.local = names, outer, local
 
     def find(self, name: str) -> Value:
-        """Return the value of a name; raise KeyError, or EvaluationFails for one that is bound
-        later.
+        """Return the value of a name.
+
+        Raises KeyError, or EvaluationFails for one that is bound later.
         """
         scope: Scope | None = self
         while scope is not None:
@@ -247,8 +256,9 @@ class Scope:
 
 
 class PlainFunction:
-    """A function that an expression may call. It is Python's own, or takes and returns what
-    Python's own does.
+    """A function that an expression may call.
+
+    It is Python's own, or takes and returns what Python's own does.
 
     `kind` is "plain" for one whose arguments are wholly known; "holds" for one that only passes on
     what a list contains, known or not; "applies" for such a one that calls functions, by the one
@@ -263,9 +273,9 @@ class PlainFunction:
         name: str,
         run: Callable[..., Value],
         kind: str = "plain",
-        own: Callable[..., Value] | None = None,
+        bound: Callable[..., Value] | None = None,
     ) -> None:
-        self.name, self.run, self.kind, self.own = name, run, kind, own
+        self.name, self.run, self.kind, self.own = name, run, kind, bound
 
 
 # The functions that are evaluated, by their full names; each of the second kind takes the
@@ -283,8 +293,9 @@ class Namespace:
 
 
 class Items:
-    """An iterator, such as zip(), map() and a generator: Python's own, so it yields each item
-    once.
+    """An iterator, such as zip(), map() and a generator.
+
+    It is Python's own, so it yields each item once.
     """
 
     __slots__ = ("iterator",)
@@ -339,8 +350,8 @@ def iterate(value: Value) -> Iterator[Value]:
     if isinstance(value, Items):
         return value.iterator
     if isinstance(value, PLAIN) or (callable(value) and not isinstance(value, OPAQUE)):
-        found: Iterator[Value] = call_plain(iter, value)
-        return found
+        iterator: Iterator[Value] = call_plain(iter, value)
+        return iterator
     return refuse(value, "this loop is not supported")
 
 
@@ -401,8 +412,9 @@ def unknown_in(value: Value) -> Unknown | None:
 
 
 def checked_key(key: Value) -> Value:
-    """Return a key of a dict: a text or a number whose hash no other one has. Raises Undetermined
-    for other keys.
+    """Return a key of a dict: a text or a number whose hash no other one has.
+
+    Raises Undetermined for other keys.
     """
     if not isinstance(key, str) and not (isinstance(key, int) and abs(key) < _MAX_KEY):
         raise Undetermined(
@@ -412,8 +424,9 @@ def checked_key(key: Value) -> Value:
 
 
 def str_of(value: Value) -> str:
-    """Return str() of a value that is charged; raise Undetermined where it differs between runs,
-    such as an address.
+    """Return str() of a value that is charged.
+
+    Raises Undetermined where it differs between runs, such as an address.
     """
     if is_object(value):
         return f"<{value.short}{OBJECT}"
@@ -425,8 +438,9 @@ def str_of(value: Value) -> str:
 
 
 def is_object(value: Value) -> bool:
-    """Return whether a value is an object that is true, equal to itself alone, and has no
-    operators.
+    """Return whether a value is an object without operators.
+
+    Such an object is true, and equal to itself alone.
     """
     return isinstance(value, Call) and value.is_object
 

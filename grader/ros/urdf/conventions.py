@@ -1,5 +1,6 @@
-"""The frames of a whole robot: whether everything in it is turned or moved alike, in comparison
-with a reference.
+"""Whether everything in a robot is turned or moved alike, in comparison with a reference.
+
+This is about the frames of a whole robot.
 
 It finds any quarter turn and any move, for a note that each report has, without hints too.
 """
@@ -29,8 +30,9 @@ _Pairs = list[tuple[Vector, Vector]]  # a point of the robot, and the same point
 
 
 class Convention(NamedTuple):
-    """How everything in a robot differs from the reference, and the robot without that
-    difference.
+    """How everything in a robot differs from the reference.
+
+    It has the robot without that difference.
     """
 
     description: str
@@ -38,8 +40,9 @@ class Convention(NamedTuple):
 
 
 def convention_of(robot: Configuration, reference: Configuration, base: str) -> Convention | None:
-    """Return how all is rotated by quarter turns or moved in the frame of `base`; None if it is
-    not, or not alike.
+    """Return how all is rotated by quarter turns or moved in the frame of `base`.
+
+    Returns None if it is not, or not alike.
 
     One link may be elsewhere: its own mistake.
     """
@@ -64,16 +67,18 @@ def convention_of(robot: Configuration, reference: Configuration, base: str) -> 
 def _matching_points(
     robot: Configuration, reference: Configuration, link: str, base: str
 ) -> tuple[Vector, Vector] | None:
-    """Return where the first shape of a link is in the frame of both robots' base, or its frame if
-    it has no shape.
+    """Return where the first shape of a link is in the frame of both robots' base.
+
+    If the link has no shape, returns where its frame is.
     """
     try:
-        found = [
-            (it.pose(link, relative_to=base), it.link(link).visuals) for it in (robot, reference)
+        posed_visuals = [
+            (each_robot.pose(link, relative_to=base), each_robot.link(link).visuals)
+            for each_robot in (robot, reference)
         ]
     except (MissingElement, NotDecided):
         return None
-    (T_ours, ours), (T_theirs, theirs) = found
+    (T_ours, ours), (T_theirs, theirs) = posed_visuals
     if ours and theirs:
         return T_ours.apply(ours[0].origin.xyz), T_theirs.apply(theirs[0].origin.xyz)
     return T_ours.translation, T_theirs.translation
@@ -122,8 +127,9 @@ def _describe_motion(T: Transform) -> str:
 def _reframe(
     robot: Configuration, reference: Configuration, base: str, T_base_other: Transform
 ) -> Robot:
-    """Return a robot with another frame of its base, and of each link that is turned alike; nothing
-    in it moves.
+    """Return a robot with another frame of its base, and of each link that is turned alike.
+
+    Nothing in the robot moves.
     """
     turned = Transform(T_base_other.rotation)
     frames = {base: T_base_other}
@@ -141,8 +147,8 @@ def _reframe(
         _reframe_link(link, frames.get(link.name, IDENTITY)) for link in robot.robot.links
     )
     joints = tuple(
-        _reframe_joint(it, frames.get(it.parent, IDENTITY), frames.get(it.child, IDENTITY))
-        for it in robot.robot.joints
+        _reframe_joint(joint, frames.get(joint.parent, IDENTITY), frames.get(joint.child, IDENTITY))
+        for joint in robot.robot.joints
     )
     return replace(robot.robot, links=links, joints=joints)
 
@@ -151,12 +157,15 @@ def _reframe_link(link: Link, T_link_other: Transform) -> Link:
     if T_link_other == IDENTITY:
         return link
     back = T_link_other.inverse()
-    visuals = tuple(replace(it, origin=_reframe_origin(back, it.origin)) for it in link.visuals)
+    visuals = tuple(
+        replace(visual, origin=_reframe_origin(back, visual.origin)) for visual in link.visuals
+    )
     return replace(
         link,
         visuals=visuals,
         collisions=tuple(
-            replace(it, origin=_reframe_origin(back, it.origin)) for it in link.collisions
+            replace(collision, origin=_reframe_origin(back, collision.origin))
+            for collision in link.collisions
         ),
     )
 

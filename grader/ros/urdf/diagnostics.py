@@ -1,5 +1,6 @@
-"""The problems that are found in a URDF while its elements and their values are read, each with its
-location.
+"""The problems that are found in a URDF while it is read, each with its location.
+
+They are found in its elements and their values.
 """
 
 import re
@@ -75,15 +76,16 @@ class Problems:
         return LazyLocation(self.source, self._indices[element])
 
     def parts(self, element: Element) -> UnresolvedParts:
-        """Return what xacro left unresolved of a link, joint or material, by child tag; "@name" for
-        an attribute.
+        """Return what xacro left unresolved of a link, joint or material, by child tag.
+
+        The key of an attribute is "@name".
         """
         if not self.unresolved:
             return _NOTHING
         parts: dict[str, UnresolvedPart] = {}
         for inner in element.iter():
-            found = self.unresolved.get(inner)
-            if found is None:
+            unresolved = self.unresolved.get(inner)
+            if unresolved is None:
                 continue
             above = inner
             while (
@@ -92,14 +94,14 @@ class Problems:
                 and parent is not None
             ):
                 above = parent
-            for name, reason in found.attributes.items():
+            for name, reason in unresolved.attributes.items():
                 key = f"@{name}" if inner is element else str(above.tag)
                 parts.setdefault(
                     key, UnresolvedPart(reason, self.location(inner)._replace(attribute=name))
                 )
-            if found.content is not None:
+            if unresolved.content is not None:
                 key = "" if inner is element else str(above.tag)
-                parts.setdefault(key, UnresolvedPart(found.content, self.location(inner)))
+                parts.setdefault(key, UnresolvedPart(unresolved.content, self.location(inner)))
         return parts
 
     def is_unresolved(self, element: Element) -> bool:
@@ -108,13 +110,13 @@ class Problems:
 
     def _explains(self, kind: Kind, element: Element, attribute: str | None) -> bool:
         """Return whether what xacro left unresolved explains a problem."""
-        found, of_root = self.unresolved.get(element), self.unresolved.get(self.root)
+        unresolved, of_root = self.unresolved.get(element), self.unresolved.get(self.root)
         if kind in _OF_MISSING and of_root is not None and of_root.content is not None:
             return True
-        return found is not None and (
-            attribute in found.attributes
+        return unresolved is not None and (
+            attribute in unresolved.attributes
             if attribute and element.get(attribute)
-            else found.content is not None
+            else unresolved.content is not None
         )
 
     def line(self, element: Element) -> int:
@@ -134,8 +136,9 @@ class Problems:
         attribute: str | None = None,
         subject: str = "",
     ) -> None:
-        """Add a problem at an element, or at one of its attributes if it has it, unless xacro left
-        that unresolved.
+        """Add a problem at an element, unless xacro left that unresolved.
+
+        The place is that of one of its attributes if it has it.
         """
         if self.unresolved and self._explains(kind, element, attribute):
             return
@@ -150,8 +153,9 @@ class Problems:
             self.unlisted += 1
 
     def ignores(self, element: Element, attribute: str, since: UrdfVersion) -> bool:
-        """Return whether ROS 2 ignores an attribute because it is of a newer version than the
-        file, and add a problem then.
+        """Return whether ROS 2 ignores an attribute, and add a problem then.
+
+        It ignores one of a newer version than the file.
         """
         if self.format.version >= since:
             return False
@@ -208,8 +212,9 @@ class Problems:
         return None
 
     def did_you_mean(self, name: str, known: Iterable[str]) -> str:
-        """Return `; did you mean 'x'?` for the end of a message, or nothing if no known name is
-        close.
+        """Return the end of a message: `; did you mean 'x'?`.
+
+        Returns nothing if no known name is close.
         """
         self._guesses -= 1
         if self._guesses >= 0:
@@ -217,8 +222,9 @@ class Problems:
         return ""
 
     def check_printed(self, text: str, element: Element, attribute: str | None = None) -> None:
-        """Add a problem if ROS 2 passes this text to printf and it contains a directive that can
-        crash it, as on Jazzy.
+        """Add a problem if ROS 2 passes this text to printf and it can crash there.
+
+        It can crash, as on Jazzy, if it contains a directive.
         """
         if self.format.warns:
             return
@@ -231,8 +237,9 @@ class Problems:
 
 
 class ElementReader:
-    """Reads one element that ROS 2 keeps or loses as a whole: every defect in it is a problem of
-    one kind.
+    """Reads one element that ROS 2 keeps or loses as a whole.
+
+    Every defect in it is a problem of one kind.
 
     A value that cannot be read is a problem and sets `failed`. A number is NaN then, any other
     value its default.
@@ -247,8 +254,9 @@ class ElementReader:
         consequence: str = "ROS 2 rejects the file",
         link: str = "",
     ) -> None:
-        """`consequence` says what ROS 2 does about a defect; the name of the `link` is put where it
-        has {}.
+        """`consequence` says what ROS 2 does about a defect.
+
+        The name of the `link` is put where it has {}.
         """
         self._problems = problems
         self._kind = kind
@@ -263,8 +271,9 @@ class ElementReader:
         self._problems.add(self._kind, f"{reason}; {consequence}", element, attribute, self._link)
 
     def number(self, element: Element, attribute: str) -> float:
-        """Return an attribute's number, or its default if it is not given; it is a problem if it
-        has none.
+        """Return an attribute's number, or its default if it is not given.
+
+        It is a problem if the attribute has none.
         """
         if attribute in element.attrib:
             return self._value(element, attribute, number, nan)

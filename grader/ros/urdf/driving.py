@@ -1,5 +1,6 @@
-"""How a robot stands on level ground and where its wheels drive it, in words: what a person would
-see, and which wheel is the cause.
+"""How a robot stands on level ground and where its wheels drive it, in words.
+
+They say what a person would see, and which wheel is the cause.
 """
 
 from collections.abc import Sequence
@@ -44,8 +45,9 @@ class RobotFault(NamedTuple):
 
 
 def describe_driving(robot: Configuration, wheels: Sequence[str]) -> str:
-    """Return in one line how a robot stands, and where these links drive it; empty where it cannot
-    be determined.
+    """Return in one line how a robot stands, and where these links drive it.
+
+    It is empty where it cannot be determined.
     """
     try:
         standing = StandingRobot(robot, wheels)
@@ -88,8 +90,9 @@ def plan_drive(
     forward: Vector = X_AXIS,
     rollers: Sequence[float] | None = None,
 ) -> Drive | None:
-    """Return how a robot stands, and where these wheels drive it; None if it cannot be determined
-    how it stands, or it has no wheel.
+    """Return how a robot stands, and where these wheels drive it.
+
+    Returns None if it cannot be determined how it stands, or it has no wheel.
 
     Without names of links that it has, its wheels are all links that a continuous joint turns about
     a level axis, and that are round about it.
@@ -106,6 +109,13 @@ def plan_drive(
         return None
     if standing.rest.has_fallen:
         return Drive(standing, "on level ground, it tips over")
+    return _plan_course(standing, forward, rollers)
+
+
+def _plan_course(
+    standing: StandingRobot, forward: Vector, rollers: Sequence[float] | None
+) -> Drive:
+    """Return how a robot stands that has not fallen, and where its wheels drive it."""
     text = _describe_rest(standing)
     try:
         driven = Drivetrain(standing, rollers)
@@ -126,8 +136,9 @@ def plan_drive(
 
 
 def _find_rolling_links(robot: Configuration) -> list[str]:
-    """Return the links that a continuous joint turns about a level axis, and that are round about
-    it.
+    """Return the links that a continuous joint turns about a level axis.
+
+    They are round about it.
     """
     turning = []
     for link in robot.robot.links:
@@ -212,8 +223,9 @@ class Drivetrain:
 
     @property
     def crossed_wheels(self) -> tuple[str, str] | None:
-        """Two of more than two wheels without known rollers whose axes cross, so that they may be
-        omni wheels; None without any.
+        """Two of more than two wheels whose axes cross, so that they may be omni wheels.
+
+        These have no known rollers. It is None without any.
         """
         if self._has_rollers or len(self.wheels) < 3:
             return None
@@ -237,9 +249,7 @@ class Drivetrain:
         return faults
 
     def find_course_faults(self, forward: Vector, angle: float, turn: float) -> list[RobotFault]:
-        """Return what is wrong with the way that the robot drives while all wheels turn at one
-        rate.
-        """
+        """Return what is wrong with the way of a robot whose wheels all turn at one rate."""
         course = self._standing.drive(self.wheels, [1.0] * len(self.wheels), forward)
         at = axis_place(self.wheels[0].joint)
         faults = []
@@ -277,9 +287,7 @@ class Drivetrain:
         return [RobotFault(text, share, 100.0 * _MAX_SLIP, "%", at)]
 
     def find_turning_faults(self) -> list[RobotFault]:
-        """Return what is wrong with the way that the robot turns while its wheels turn against each
-        other.
-        """
+        """Return what is wrong with a robot's turn while its wheels turn against each other."""
         sides = self._standing.drive(self.wheels, [0.0] * len(self.wheels), X_AXIS).sides
         rates = [-1.0 if side > 0.0 else 1.0 for side in sides]
         course = self._standing.drive(self.wheels, rates, X_AXIS)
@@ -313,8 +321,9 @@ class Drivetrain:
         return [first, *faults[1:]]
 
     def _find_culprits(self, forward: Vector) -> list[_Culprit]:
-        """Return the wheels that do not drive as the others: those that point elsewhere, or else
-        those of another size.
+        """Return the wheels that do not drive as the others.
+
+        These are those that point elsewhere, or else those of another size.
         """
         rates = [1.0] * len(self.wheels)
         headings = self._standing.drive(self.wheels, rates, forward).headings

@@ -25,8 +25,9 @@ _STEPS = np.arange(-8, 9) / 8.0
 
 
 def least_edge_overlap(a: _Edged, b: _Edged, T_a_b: Transform) -> Vector:
-    """Return the unit normal of least overlap among those that two straight edges, an edge and a
-    rim, or two rims span.
+    """Return the unit normal of least overlap among those that edges and rims span.
+
+    Two straight edges, an edge and a rim, or two rims span them.
 
     If the rims were polygons, these and the normals of flat faces would be all that the separating
     axis test needs; a rim differs from its polygon by no more than `_SAGITTA`. Two more rounds
@@ -60,16 +61,18 @@ def least_edge_overlap(a: _Edged, b: _Edged, T_a_b: Transform) -> Vector:
 
 
 def _cross_products(p: _Array, q: _Array) -> _Array:
-    """Return the cross products of directions of shape (3, n) and (3, m), as (3, n m). np.cross is
-    far slower.
+    """Return the cross products of directions of shape (3, n) and (3, m), as (3, n m).
+
+    The function np.cross is far slower.
     """
     (a, b, c), (x, y, z) = p[:, :, None], q[:, None, :]
     return np.array((b * z - c * y, c * x - a * z, a * y - b * x)).reshape(3, -1)
 
 
 def _all_around(radius: float) -> _Array:
-    """Return the directions of a polygon's edges as angles over half a turn; the other half repeats
-    them.
+    """Return the directions of a polygon's edges as angles over half a turn.
+
+    The other half repeats them.
     """
     sagitta = max(_SAGITTA, _MIN_RELATIVE_SAGITTA * abs(radius))
     count = max(

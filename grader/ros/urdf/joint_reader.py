@@ -1,5 +1,6 @@
-"""Joints as urdfdom reads them (`joint.cpp`), where each defect rejects the whole file, and the
-names they refer to.
+"""Joints as urdfdom reads them (`joint.cpp`), and the names they refer to.
+
+Each defect rejects the whole file.
 """
 
 from math import inf
@@ -158,8 +159,9 @@ def _read_limit(
 def _checked_limits(
     limit: Element, kind: str, reader: ElementReader
 ) -> tuple[float, float, float, float]:
-    """Return lower, upper, effort and velocity in a file of version 1.2: without limit if they are
-    not given, and never negative but for positions.
+    """Return lower, upper, effort and velocity in a file of version 1.2.
+
+    They are without limit if they are not given, and never negative but for positions.
     """
     if kind in _WITH_LIMIT:
         for attribute in ("lower", "upper"):
@@ -256,20 +258,26 @@ def check_references(robot: Robot, problems: Problems) -> None:
     for joint in robot.joints:
         if not is_link_open:
             _check_ends(robot, joint, links, problems)
-        mimic = joint.mimic
-        if mimic is not None and not is_joint_open and not robot.has_joint(mimic.joint):
-            message = (
-                f"joint {quoted(joint.name)} mimics {quoted(mimic.joint)}, which does not "
-                f"exist{problems.did_you_mean(mimic.joint, joints)}"
-            )
-            at = _child_element(joint, "mimic", problems)
-            problems.add(urdf_problems.MIMIC_TARGET, message, at, "joint")
+        if not is_joint_open:
+            _check_mimic(robot, joint, joints, problems)
     if not is_joint_open:
         _check_controlled_joints(robot, joints, problems)
     for loop in _mimic_loops(robot):
         steps = " -> ".join(map(quoted, (*loop[:_MAX_STEPS], loop[0])))
         message = f"joint {quoted(loop[0])} mimics itself: {steps}"
         at = _child_element(robot.joint(loop[0]), "mimic", problems)
+        problems.add(urdf_problems.MIMIC_TARGET, message, at, "joint")
+
+
+def _check_mimic(robot: Robot, joint: Joint, joints: list[str], problems: Problems) -> None:
+    """Report that a joint mimics one that does not exist."""
+    mimic = joint.mimic
+    if mimic is not None and not robot.has_joint(mimic.joint):
+        message = (
+            f"joint {quoted(joint.name)} mimics {quoted(mimic.joint)}, which does not "
+            f"exist{problems.did_you_mean(mimic.joint, joints)}"
+        )
+        at = _child_element(joint, "mimic", problems)
         problems.add(urdf_problems.MIMIC_TARGET, message, at, "joint")
 
 
@@ -290,8 +298,9 @@ def _check_ends(robot: Robot, joint: Joint, links: list[str], problems: Problems
 
 
 def _check_controlled_joints(robot: Robot, joints: list[str], problems: Problems) -> None:
-    """Report what controller_manager stops at: unknown joints in ros2_control, and hardware without
-    plugin.
+    """Report what controller_manager stops at.
+
+    This is unknown joints in ros2_control, and hardware without plugin.
     """
     for system in problems.root.iterchildren("ros2_control"):
         for joint in system.iterchildren("joint"):

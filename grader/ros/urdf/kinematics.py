@@ -1,5 +1,6 @@
-"""Forward kinematics: the pose of every link with the joints at given positions, and why a pose
-is undefined.
+"""Forward kinematics: the pose of every link with the joints at given positions.
+
+It also says why a pose is undefined.
 """
 
 from collections.abc import Collection, Iterable, Mapping
@@ -53,8 +54,9 @@ class _Frames:
         self._loops: dict[str, str] = {}
 
     def of(self, link: str) -> _Frame:
-        """Return the frame of a link; raises MissingElement where it is not there, or in no
-        tree.
+        """Return the frame of a link.
+
+        Raises MissingElement where it is not there, or in no tree.
         """
         frame = self._known.get(link)
         if frame is not None:
@@ -92,8 +94,9 @@ class _Frames:
         return frame
 
     def position(self, joint: Joint) -> float:
-        """Return the position of a joint: its own, that of the joint it mimics, or 0; NaN if xacro
-        leaves it open.
+        """Return the position of a joint: its own, that of the joint it mimics, or 0.
+
+        Returns NaN if xacro leaves it open.
         """
         if joint.name in self._given or (joint.mimic is None and "mimic" not in joint.unresolved):
             return self._given.get(joint.name, 0.0)
@@ -102,12 +105,12 @@ class _Frames:
         followers: dict[str, Joint] = {}
         value = 0.0
         while joint.name not in followers:
-            own = self._mimicked.get(joint.name, self._given.get(joint.name))
-            if own is None and "mimic" in joint.unresolved:
+            given = self._mimicked.get(joint.name, self._given.get(joint.name))
+            if given is None and "mimic" in joint.unresolved:
                 value = nan
                 break
-            if own is not None or joint.mimic is None:
-                value = own or 0.0
+            if given is not None or joint.mimic is None:
+                value = given or 0.0
                 break
             followers[joint.name] = joint
             if not self._robot.has_joint(joint.mimic.joint):
@@ -123,8 +126,9 @@ class _Frames:
 
 
 def _undefined_pose(joint: Joint, robot: Robot) -> MissingElement:
-    """Return the error for a pose that this joint leaves undefined; raise NotDecided where xacro
-    leaves it open.
+    """Return the error for a pose that this joint leaves undefined.
+
+    Raises NotDecided where xacro leaves it open.
     """
     for part in ("origin", "axis", ""):
         if part in joint.unresolved:
@@ -164,8 +168,9 @@ def _mimic_leaders(joint: Joint, robot: Robot) -> Iterable[Joint]:
 
 
 def _motion_of(joint: Joint, position: float) -> Transform | None:
-    """Return T_origin_child; None if it is undefined, as it is for every position about a zero axis
-    (KDL).
+    """Return T_origin_child.
+
+    Returns None if it is undefined, as it is for every position about a zero axis (KDL).
 
     A planar or floating joint stays at its origin: robot_state_publisher does not move it.
     """
@@ -204,8 +209,9 @@ def _check_position(joint: Joint, position: float) -> None:
 
 
 class _Views(NamedTuple):
-    """What the configurations of a robot share: the robot and its parent joints, as checks read
-    them and as known.
+    """What the configurations of a robot share.
+
+    This is the robot and its parent joints, as checks read them and as known.
     """
 
     robot: Robot
@@ -303,8 +309,9 @@ class Configuration:
         return tuple(largest)
 
     def root_of(self, link: str) -> str:
-        """Return the root of the tree that a link is in; raises MissingElement for a link on a loop
-        of joints.
+        """Return the root of the tree that a link is in.
+
+        Raises MissingElement for a link on a loop of joints.
         """
         return self._frames.of(link).root
 
@@ -348,15 +355,17 @@ class Configuration:
 
     @property
     def are_joints_in_place(self) -> bool:
-        """Whether each joint connects two links that are there: none of them may be meant for
-        another link.
+        """Whether each joint connects two links that are there.
+
+        None of them may be meant for another link.
         """
         has_link = self.known.has_link
         return all(has_link(joint.parent) and has_link(joint.child) for joint in self.known.joints)
 
     def axis(self, joint: str | Joint) -> Vector:
-        """Return the unit axis of a joint in its child link's frame; raises MissingElement if it
-        has no direction.
+        """Return the unit axis of a joint in its child link's frame.
+
+        Raises MissingElement if it has no direction.
         """
         if isinstance(joint, str):
             joint = self.joint(joint)
@@ -372,8 +381,9 @@ class Configuration:
     def chain(self, link: str, *, above: str | None) -> tuple[Joint, ...] | None: ...
 
     def chain(self, link: str, *, above: str | None = None) -> tuple[Joint, ...] | None:
-        """Return the joints that lead to a link, top down, from its root or from `above`; None if
-        that is not above it.
+        """Return the joints that lead to a link, top down, from its root or from `above`.
+
+        Returns None if that is not above it.
 
         Raises MissingElement for a link that is not there, NotDecided where the type of one of the
         joints is not known.
@@ -396,8 +406,9 @@ class Configuration:
         return tuple(reversed(joints))
 
     def between(self, one: str, other: str) -> tuple[Joint, ...]:
-        """Return the joints on the path from one link to another; raises MissingElement where there
-        is no path.
+        """Return the joints on the path from one link to another.
+
+        Raises MissingElement where there is no path.
         """
         below = self.chain(other, above=one)
         if below is not None:
@@ -432,20 +443,23 @@ class Configuration:
         )
 
     def joint_between(self, one: str, other: str, types: Collection[str], message: str) -> Joint:
-        """Return the last joint with one of the types on the path from one link to another; raises
-        MissingElement where there is none.
+        """Return the last joint with one of the types on the path from one link to another.
+
+        Raises MissingElement where there is none.
         """
         return _last_moving(self.between(one, other), other, types, message)
 
     def selected_name(self, name: str) -> str:
-        """Return the name that a selector means, and any other text as it is. Raises
-        MissingElement, NotDecided.
+        """Return the name that a selector means, and any other text as it is.
+
+        Raises MissingElement, NotDecided.
         """
         return selected_name(self.known, self.known_parents, name)
 
     def selected_or_name(self, name: str) -> str:
-        """Return the link that a selector means; a name, or a selector that means no single link,
-        as it is.
+        """Return the link that a selector means.
+
+        A name, or a selector that means no single link, is returned as it is.
         """
         try:
             return selected_name(self.robot, self.parent_joints, name)
@@ -453,8 +467,9 @@ class Configuration:
             return name
 
     def moved(self, joint: str | Joint, position: float) -> "Configuration":
-        """Return the same robot with one joint elsewhere; raises ValueError for a position that it
-        cannot have.
+        """Return the same robot with one joint elsewhere.
+
+        Raises ValueError for a position that it cannot have.
         """
         if isinstance(joint, str):
             joint = self.joint(joint)
@@ -468,8 +483,9 @@ class Configuration:
         )
 
     def displacement(self, link: str, joint: Joint, angle: float, *, relative_to: str) -> Transform:
-        """Return the motion of points on a link when a turning or sliding joint moves by `angle`
-        (rad, m) from here.
+        """Return the motion of points on a link when a joint moves by `angle` from here.
+
+        The joint turns or slides; `angle` is in rad or m.
 
         Both the points and the motion are in the frame of `relative_to`.
         """
@@ -493,8 +509,9 @@ class Configuration:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class _MovedConfiguration(Configuration):
-    """A configuration that another one made by moving joints: it shares what positions do not
-    change, and does not validate positions.
+    """A configuration that another one made by moving joints.
+
+    It shares what positions do not change, and does not validate positions.
     """
 
     shared_views: _Views = field(kw_only=True)
@@ -508,8 +525,9 @@ class _MovedConfiguration(Configuration):
 
 
 def _last_moving(path: tuple[Joint, ...], link: str, types: Collection[str], message: str) -> Joint:
-    """Return the last joint with one of the types on the path to a link; raises MissingElement
-    where there is none.
+    """Return the last joint with one of the types on the path to a link.
+
+    Raises MissingElement where there is none.
     """
     moving = [joint for joint in path if joint.type in types]
     if not moving:

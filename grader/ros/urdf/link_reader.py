@@ -1,8 +1,11 @@
-"""Links as urdfdom reads them: what is lost with a bad element (`link.cpp`), and the material that
-each visual gets.
+"""Links as urdfdom reads them (`link.cpp`), with what is lost with a bad element.
+
+The material that each visual gets is here too.
 
 Its colour is that of `parseMaterial` in `link.cpp` and of `assignMaterial` in `model.cpp`.
 """
+
+from collections.abc import Sequence
 
 from grader.base.source import LazyLocation
 from grader.base.text import quoted
@@ -37,8 +40,9 @@ _COLLISION_LOST = "ROS 2 drops this collision of link {} and the collisions afte
 
 
 class Materials:
-    """The materials that are defined so far: first those under <robot>, then those in links, in
-    file order.
+    """The materials that are defined so far.
+
+    Those under <robot> come first, then those in links, in file order.
     """
 
     def __init__(self, problems: Problems) -> None:
@@ -83,61 +87,70 @@ class Materials:
             fallback = "the definition above applies"
         else:
             fallback = f"material {quoted(name)} stays undefined"
-        own, reported = self._read_material(element, name, f"ROS 2 logs an error: {fallback}")
-        found = self.known.get(name) if name else own
-        if own is None:
-            if found is None and name and not reported:
+        material, reported = self._read_material(element, name, f"ROS 2 logs an error: {fallback}")
+        known = self.known.get(name) if name else material
+        if material is None:
+            if known is None and name and not reported:
                 self._note_undefined(name, element, link)
-                found = self._find_elsewhere(name)
-        elif found is None:
-            found = self.known[name] = own
-        elif (own.rgba, own.texture) != (found.rgba, found.texture):
+                known = self._find_elsewhere(name)
+        elif known is None:
+            known = self.known[name] = material
+        elif (material.rgba, material.texture) != (known.rgba, known.texture):
             message = (
                 f"material {quoted(name)} is already defined differently; ROS 2 ignores this "
                 "definition"
             )
             self._problems.add(urdf_problems.REDEFINED_MATERIAL, message, element, "name")
-        return found, name, found is None and reported
+        return known, name, known is None and reported
 
     def _read_material(
         self, element: Element, name: str, consequence: str
     ) -> tuple[Material | None, bool]:
-        """Return the material that an element defines, if it does, and whether its colour is
-        reported as a problem.
+        """Return the material that an element defines, if it does.
+
+        Also returns whether its colour is reported as a problem.
         """
         inside = first_children(element)
         colour = inside.get("color")
         filename = inside["texture"].get("filename") if "texture" in inside else None
         channels, reported = None, False
-        if colour is not None and (text := colour.get("rgba")) is not None:
-            try:
-                channels = rgba(text)
-                if channels is None:
-                    message = (
-                        f"rgba={quote_value(text)} needs exactly four numbers; ROS 2 silently "
-                        "shows black"
-                    )
-                    self._problems.add(urdf_problems.COLOUR_COUNT, message, colour, "rgba")
-                    channels = _BLACK
-            except NumberError as error:
-                reported = True
-                message = f"cannot read rgba={quote_value(text)}: {error}; {consequence}"
-                self._problems.add(urdf_problems.BAD_COLOUR, message, colour, "rgba")
-                self._problems.check_printed(f"{name} {text}", colour, "rgba")
+        if colour is not None and colour.get("rgba") is not None:
+            channels = self._read_colour(colour, name, consequence)
+            reported = channels is None
         unresolved = self._problems.parts(element)
         if channels is None and filename is None and not unresolved:
             return None, reported
         location = self._problems.location(element if colour is None else colour)
         return Material(name, channels or _BLACK, filename or "", location, unresolved), reported
 
+    def _read_colour(
+        self, colour: Element, name: str, consequence: str
+    ) -> tuple[float, float, float, float] | None:
+        """Return the channels of a colour; None, with a problem, for one that cannot be read."""
+        text = colour.get("rgba") or ""
+        try:
+            channels = rgba(text)
+        except NumberError as error:
+            message = f"cannot read rgba={quote_value(text)}: {error}; {consequence}"
+            self._problems.add(urdf_problems.BAD_COLOUR, message, colour, "rgba")
+            self._problems.check_printed(f"{name} {text}", colour, "rgba")
+            return None
+        if channels is None:
+            message = (
+                f"rgba={quote_value(text)} needs exactly four numbers; ROS 2 silently shows black"
+            )
+            self._problems.add(urdf_problems.COLOUR_COUNT, message, colour, "rgba")
+            return _BLACK
+        return channels
+
     def _find_elsewhere(self, name: str) -> Material | None:
         """Return a material that may be defined in a part of the robot that xacro leaves open."""
         root = self._problems.root
-        found = self._problems.unresolved.get(root)
-        if found is None or not found.content:
+        unresolved = self._problems.unresolved.get(root)
+        if unresolved is None or not unresolved.content:
             return None
         return Material(
-            name, unresolved={"": UnresolvedPart(found.content, self._problems.location(root))}
+            name, unresolved={"": UnresolvedPart(unresolved.content, self._problems.location(root))}
         )
 
     def _note_undefined(self, name: str, element: Element, link: str) -> None:
@@ -159,8 +172,9 @@ class Materials:
 
 
 def read_link(element: Element, problems: Problems, materials: Materials) -> Link:
-    """Read one link with what ROS 2 keeps of it: a bad inertial loses all shapes, a bad shape
-    those after it.
+    """Read one link with what ROS 2 keeps of it.
+
+    A bad inertial loses all shapes, a bad shape those after it.
     """
     name = element.get("name")
     location = problems.location(element)
@@ -174,21 +188,35 @@ def read_link(element: Element, problems: Problems, materials: Materials) -> Lin
     parts: dict[str, list[Element]] = {"inertial": [], "visual": [], "collision": []}
     for child in element:
         parts.get(child.tag, []).append(child)
-    inertial = _read_inertial(parts["inertial"][0], problems, name) if parts["inertial"] else None
-    dropping = (
-        inertial is None
-        and parts["inertial"] != []
-        and not problems.is_unresolved(parts["inertial"][0])
-    )
-    shapes: list[Visual | Collision] = []
-    for child in parts["visual"] + parts["collision"]:
-        shape = _read_shape(child, problems, name, None if dropping else materials)
-        dropping = dropping or (shape is None and not problems.is_unresolved(child))
-        if shape is not None and not dropping:
-            shapes.append(shape)
+    inertial, is_bad = None, False
+    if parts["inertial"]:
+        first = parts["inertial"][0]
+        inertial = _read_inertial(first, problems, name)
+        is_bad = inertial is None and not problems.is_unresolved(first)
+    elements = parts["visual"] + parts["collision"]
+    shapes = _read_shapes(elements, problems, name, materials, is_dropping=is_bad)
     visuals = tuple(shape for shape in shapes if isinstance(shape, Visual))
     collisions = tuple(shape for shape in shapes if isinstance(shape, Collision))
     return Link(name, visuals, collisions, inertial, location, problems.parts(element))
+
+
+def _read_shapes(
+    elements: Sequence[Element],
+    problems: Problems,
+    link: str,
+    materials: Materials,
+    *,
+    is_dropping: bool,
+) -> list[Visual | Collision]:
+    """Read the shapes of a link; after a bad one, or with `is_dropping`, none is kept."""
+    shapes: list[Visual | Collision] = []
+    for element in elements:
+        shape = _read_shape(element, problems, link, None if is_dropping else materials)
+        if shape is None:
+            is_dropping = is_dropping or not problems.is_unresolved(element)
+        elif not is_dropping:
+            shapes.append(shape)
+    return shapes
 
 
 def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial | None:
@@ -210,8 +238,9 @@ def _read_inertial(element: Element, problems: Problems, link: str) -> Inertial 
 def _read_shape(
     element: Element, problems: Problems, link: str, materials: Materials | None
 ) -> Visual | Collision | None:
-    """Read a visual or collision; `materials` is None where it is dropped anyway, and defines
-    none.
+    """Read a visual or collision.
+
+    `materials` is None where it is dropped anyway, and defines none.
     """
     is_visual = element.tag == "visual"
     if is_visual:

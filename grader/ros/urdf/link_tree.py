@@ -1,5 +1,6 @@
-"""The tree of links: their parent joints, what keeps them from being one tree, and links that are
-named by their place.
+"""The tree of links: their parent joints, and what keeps them from being one tree.
+
+Links that are named by their place are here too.
 
 ROS 2 makes the tree in `model.h` (initTree, initRoot) and kdl_parser (addChildrenToTree). A rubric
 can name a link by its place in the tree: "@root", "@tip", "@moved:2"; and a joint by the link that
@@ -82,8 +83,9 @@ def _most_plausible(joints: list[Joint]) -> dict[str, Joint]:
 
 
 def _implausibility(joint: Joint) -> int:
-    """Return how implausible the ends of a joint are by its name: 0, 1, or 2 if they look
-    swapped.
+    """Return how implausible the ends of a joint are by its name.
+
+    This is 0, 1, or 2 if they look swapped.
     """
     if joint.child in joint.name:
         return 0
@@ -91,8 +93,9 @@ def _implausibility(joint: Joint) -> int:
 
 
 def check_tree(robot: Robot, links: dict[str, Element], problems: Problems) -> None:
-    """Report everything that keeps the links from being one tree. `links` gives their elements by
-    name.
+    """Report everything that keeps the links from being one tree.
+
+    `links` gives their elements by name.
     """
     parents = parent_joints(robot)
     roots = [link.name for link in robot.links if link.name not in parents]
@@ -145,8 +148,9 @@ def _predecessors(edges: _Edges, links: Iterable[str]) -> dict[str, list[str]]:
 
 
 def _cycles(edges: _Edges, links: list[str]) -> list[list[Joint]]:
-    """Return up to `_MAX_CYCLES` loops of joints; the links of each are removed before the next is
-    looked for.
+    """Return up to `_MAX_CYCLES` loops of joints.
+
+    The links of each are removed before the next is looked for.
     """
     cycles: list[list[Joint]] = []
     rank = {link: number for number, link in enumerate(links)}
@@ -192,9 +196,24 @@ def _report_cycle(
 def _check_roots(
     robot: Robot, roots: list[str], edges: _Edges, links: dict[str, Element], problems: Problems
 ) -> None:
-    """Report the links that no joint connects to the robot, but for those that another problem
-    explains.
+    """Report the links that no joint connects to the robot.
+
+    Those that another problem explains are not reported.
     """
+    explained = _explained_roots(robot, links, problems)
+    is_child_open = any("child" in joint.unresolved for joint in robot.joints)
+    if is_child_open or sum(name not in explained for name in roots) < 2:
+        return
+    # Of very many roots the first is as good: searching the tree below each takes long.
+    candidates = roots if len(roots) <= _MAX_ROOTS else roots[:1]
+    main = max(candidates, key=lambda name: len(_reachable([name], edges)))
+    others = [name for name in roots if name != main and name not in explained]
+    message = _describe_roots(main, others)
+    problems.add(urdf_problems.TWO_ROOTS, message, links[others[0]], "name")
+
+
+def _explained_roots(robot: Robot, links: dict[str, Element], problems: Problems) -> set[str]:
+    """Return the links whose missing parent joint another problem explains."""
     explained: set[str] = set()
     for joint in robot.joints:
         if not robot.has_link(joint.parent):
@@ -203,21 +222,18 @@ def _check_roots(
             explained.add(problems.closest(joint.child, links) or "")
     # Any joint may have a link of an open name as its child.
     explained |= {link.name for link in robot.links if "@name" in link.unresolved}
-    is_child_open = any("child" in joint.unresolved for joint in robot.joints)
-    if is_child_open or sum(name not in explained for name in roots) < 2:
-        return
-    # Of very many roots the first is as good: searching the tree below each takes long.
-    candidates = roots if len(roots) <= _MAX_ROOTS else roots[:1]
-    main = max(candidates, key=lambda name: len(_reachable([name], edges)))
-    others = [name for name in roots if name != main and name not in explained]
+    return explained
+
+
+def _describe_roots(main: str, others: list[str]) -> str:
+    """Return the message on links that no joint connects to the main root."""
     named = enumerated([*map(quoted, others)], _MAX_ROOTS)
     verb, them = ("is", "it") if len(others) == 1 else ("are", "them")
     all_roots = ", ".join(map(quoted, [main, *others][:_MAX_ROOTS]))
-    message = (
+    return (
         f"{named} {verb} not connected to the robot: no joint has {them} as its child "
         f"(the roots are {all_roots}); ROS 2 rejects the file"
     )
-    problems.add(urdf_problems.TWO_ROOTS, message, links[others[0]], "name")
 
 
 def _check_paths(
@@ -249,8 +265,9 @@ def is_selector(text: str) -> bool:
 
 
 def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
-    """Return the name that a selector means, and any other text as it is; `parents` are the parent
-    joints of links.
+    """Return the name that a selector means, and any other text as it is.
+
+    `parents` are the parent joints of links.
 
     Of several trees the one with the most links counts. "@root" is its root. The chain with the
     most moving joints, which are neither fixed nor mimic joints, leads to "@tip", its last link,
@@ -275,17 +292,26 @@ def selected_name(robot: Robot, parents: Mapping[str, Joint], name: str) -> str:
         return root
     most = max(place.depth for place in places.values())
     if match[1] is None:
-        inner = {parents[link].parent for link in places if link != root}
-        tips = {link for link, place in places.items() if place.depth == most and link not in inner}
-        return _only_link(robot, tips, name)
-    return _only_link(robot, _links_moved_by(places, parents, int(match[1]), most, name), name)
+        selected = _find_tips(places, parents, most)
+    else:
+        selected = _links_moved_by(places, parents, int(match[1]), most, name)
+    return _only_link(robot, selected, name)
+
+
+def _find_tips(
+    places: Mapping[str, _LinkPlace], parents: Mapping[str, Joint], most: int
+) -> set[str]:
+    """Return the last links of the chains of a tree with the most moving joints."""
+    inner = {parents[link].parent for link, place in places.items() if link != place.root}
+    return {link for link, place in places.items() if place.depth == most and link not in inner}
 
 
 def _links_moved_by(
     places: dict[str, _LinkPlace], parents: Mapping[str, Joint], number: int, most: int, name: str
 ) -> set[str]:
-    """Return the links that the joint of this number moves, of those on the chains with the most
-    moving joints.
+    """Return the links that the joint of this number moves.
+
+    They are on the chains with the most moving joints.
     """
     if number > most:
         longest = f"the longest chain has {counted(most, 'moving joint')}"

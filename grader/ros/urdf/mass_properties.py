@@ -1,5 +1,6 @@
-"""Mass, centre of mass and inertia of uniform solids, alone or together, and principal moments of
-an inertia tensor.
+"""Mass, centre of mass and inertia of uniform solids, alone or together.
+
+Principal moments of an inertia tensor are here too.
 
 The formulas for box, cylinder, sphere and half sphere, the parallel axis theorem and the rotation
 of a tensor are those of textbooks of dynamics (Featherstone, Rigid Body Dynamics Algorithms, 2008,
@@ -33,8 +34,9 @@ Tensor = tuple[
 
 
 class MassProperties(NamedTuple):
-    """The mass of a body in kg, its centre of mass in m, and its inertia about that, along the axes
-    of one frame.
+    """The mass of a body in kg, its centre of mass in m, and its inertia about that.
+
+    The inertia is along the axes of one frame.
     """
 
     mass: float
@@ -59,8 +61,9 @@ class Solid(NamedTuple):
 
     @property
     def size(self) -> float:
-        """An upper bound on the distance of two of its points, in metres: of a single shape, that
-        distance.
+        """An upper bound on the distance of two of its points, in metres.
+
+        For a single shape, it is that distance.
         """
         balls = [(pose.translation, bounding_radius(shape)) for shape, pose in self.shapes]
         return max(
@@ -69,8 +72,9 @@ class Solid(NamedTuple):
         )
 
     def difference(self, inertial: Inertial) -> "_SolidDifference":
-        """Return how an <inertial> differs from it. Raises ValueError where its volume cannot be
-        computed.
+        """Return how an <inertial> differs from it.
+
+        Raises ValueError where its volume cannot be computed.
         """
         T_link_inertial = inertial.origin.placed_in()
         given = MassProperties(
@@ -93,8 +97,10 @@ class Solid(NamedTuple):
 
 
 class _SolidDifference(NamedTuple):
-    """How an <inertial> differs from a uniform solid of its mass: the inertia about any axis, in
-    percent of the largest principal moment of the solid, and the centres of mass in metres.
+    """How an <inertial> differs from a uniform solid of its mass.
+
+    It has the inertia about any axis, in percent of the largest principal moment of the solid, and
+    the centres of mass in metres.
 
     Both are in the frame of the link.
     """
@@ -106,8 +112,10 @@ class _SolidDifference(NamedTuple):
     distance: float
 
     def components(self, tolerance: float) -> list[tuple[str, float, float]]:
-        """Return the names of the numbers of the <inertia> that are off, and what they are and
-        should be, along the axes in which it is given. The tolerance is in percent.
+        """Return the names of the numbers of the <inertia> that are off.
+
+        Each has what it is and should be, along the axes in which it is given. The tolerance is in
+        percent.
         """
         expected = turned(self.solid.inertia, self.inertial.origin.placed_in().inverse().rotation)
         # Of a symmetric matrix that is more off, one number is.
@@ -144,8 +152,9 @@ def _capsule_inertia(radius: float, length: float, mass: float) -> Tensor:
 
 
 def uniform_solid(shapes: Iterable[tuple[Shape, Transform]], mass: float) -> MassProperties:
-    """Return the mass properties of shapes of one density and of this mass together; each comes
-    with its T_frame_shape.
+    """Return the mass properties of shapes of one density and of this mass together.
+
+    Each comes with its T_frame_shape.
 
     What two shapes share counts twice. Raises ValueError for shapes without a volume, and for
     numbers that are too large.
@@ -162,8 +171,9 @@ def uniform_solid(shapes: Iterable[tuple[Shape, Transform]], mass: float) -> Mas
 
 
 def with_volume(elements: Iterable[Visual | Collision]) -> list[tuple[Geometry, Origin]]:
-    """Return the shapes that have a volume, or may have one because they are meshes, each once with
-    its origin.
+    """Return the shapes that have a volume, or may have one because they are meshes.
+
+    Each is there once, with its origin.
     """
     placed = dict.fromkeys((element.geometry, element.origin) for element in elements)
     shapes = []
@@ -175,8 +185,9 @@ def with_volume(elements: Iterable[Visual | Collision]) -> list[tuple[Geometry, 
 
 
 def together(bodies: Iterable[MassProperties]) -> MassProperties:
-    """Return the mass properties of bodies that are fixed to each other; the sum of their masses
-    must not be 0.
+    """Return the mass properties of bodies that are fixed to each other.
+
+    The sum of their masses must not be 0.
     """
     every = list(bodies)
     mass = sum(body.mass for body in every)
@@ -206,8 +217,9 @@ def turned(inertia: Tensor, T_a_b: Rotation) -> Tensor:
 
 
 def shifted(inertia: Tensor, mass: float, offset: Vector) -> Tensor:
-    """Return the inertia of a body about a point at `offset` (m) from its centre of mass: parallel
-    axis theorem.
+    """Return the inertia of a body about a point at `offset` (m) from its centre of mass.
+
+    This is the parallel axis theorem.
     """
     x, y, z = offset
     away = (y * y + z * z, -x * y, -x * z, x * x + z * z, -y * z, x * x + y * y)
@@ -215,8 +227,9 @@ def shifted(inertia: Tensor, mass: float, offset: Vector) -> Tensor:
 
 
 def largest_difference(a: Tensor, b: Tensor) -> float:
-    """Return the largest moment, in size, of the difference of two inertias, about any axis; NaN
-    where it overflows.
+    """Return the largest moment, in size, of the difference of two inertias, about any axis.
+
+    Returns NaN where it overflows.
     """
     moments = principal_moments(_tensor(one - other for one, other in zip(a, b, strict=True)))
     return max(abs(moments[0]), abs(moments[2]))

@@ -1,10 +1,11 @@
-"""The words for which ROS 2 rejects a file and that surely stand for others: what the robot is if
-they are undone.
+"""Words for which ROS 2 rejects a file and that surely stand for others.
+
+It tells what the robot is if they are undone.
 """
 
 import re
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 from typing import NamedTuple
 
@@ -43,8 +44,9 @@ _OF_JOINT = (
 
 
 class Word(NamedTuple):
-    """A word of an element that is read as another one, in a sentence; `tag` and `attributes` are
-    those as read.
+    """A word of an element that is read as another one, in a sentence.
+
+    `tag` and `attributes` are those as read.
     """
 
     element: Element
@@ -60,7 +62,7 @@ class Word(NamedTuple):
         return self.element, self.attribute
 
 
-class _AsMeant(NamedTuple):
+class AsMeant(NamedTuple):
     """What ROS 2 would read if some words were others; the problems say which."""
 
     robot: Robot
@@ -70,9 +72,10 @@ class _AsMeant(NamedTuple):
 
 def read_as_meant(
     root: Element, robot: Robot, read: Callable[[], tuple[Robot, Problems]]
-) -> _AsMeant | None:
-    """Return what a rejected file means; None if a word can stand for several, or ROS 2 would still
-    reject the file.
+) -> AsMeant | None:
+    """Return what a rejected file means.
+
+    Returns None if a word can stand for several, or ROS 2 would still reject the file.
 
     `robot` was read from `root`, and `read` reads it again. The elements are as before at the end.
     """
@@ -101,7 +104,7 @@ def read_as_meant(
                 for word in words:
                     problems.undone = {**problems.undone, word.place: word.fixes}
                     problems.listed.append(problems.assumed(*word.place, word.sentence, word.fixes))
-                return _AsMeant(robot, problems.listed, words)
+                return AsMeant(robot, problems.listed, words)
         return None
     finally:
         for element, tag, attributes in reversed(before):
@@ -165,8 +168,9 @@ def _word_with_value(element: Element, attribute: str, value: str, what: str) ->
 
 
 def _misspelt_references(root: Element, robot: Robot) -> Iterator[Word]:
-    """Yield links that joints name and that do not exist, and joint types, each near one that can
-    be meant.
+    """Yield links that joints name and that do not exist, and joint types.
+
+    Each is near one that can be meant.
     """
     links = [link.name for link in robot.links]
     uses = Counter(name for joint in robot.joints for name in (joint.parent, joint.child))
@@ -174,28 +178,39 @@ def _misspelt_references(root: Element, robot: Robot) -> Iterator[Word]:
     if len(unknown) > _MAX_WORDS:
         return
     defined = _misspelt_definitions(robot, links, uses, unknown)
-    for element in root.iterchildren("link"):
-        if (meant := defined.get(element.get("name") or "")) is not None:
-            yield _word_with_value(element, "name", meant, "the link")
-    children = {joint.child for joint in robot.joints}
-    misspelt = {name for name in unknown if name not in defined.values()}
+    yield from _misspelt_links(root, defined)
+    misspelt = set(unknown).difference(defined.values())
     if sum(uses[name] for name in misspelt) > _MAX_ROUNDS * _MAX_WORDS:
         misspelt = set()
+    children = {joint.child for joint in robot.joints}
     for joint in root.iterchildren("joint"):
-        if joint.get("type") not in JOINT_TYPES:
-            kind = near(joint.get("type") or "", JOINT_TYPES)
-        else:
-            kind = None
+        yield from _misspelt_type(joint)
+        yield from _misspelt_ends(joint, misspelt, links, children)
+
+
+def _misspelt_links(root: Element, defined: Mapping[str, str]) -> Iterator[Word]:
+    """Yield the links whose definitions have the wrong word."""
+    for element in root.iterchildren("link"):
+        meant = defined.get(element.get("name") or "")
+        if meant is not None:
+            yield _word_with_value(element, "name", meant, "the link")
+
+
+def _misspelt_type(joint: Element) -> Iterator[Word]:
+    """Yield the type of a joint if it is near one that there is."""
+    written = joint.get("type")
+    if written not in JOINT_TYPES:
+        kind = near(written or "", JOINT_TYPES)
         if kind is not None:
             yield _word_with_value(joint, "type", kind, "the joint type")
-        yield from _misspelt_ends(joint, misspelt, links, children)
 
 
 def _misspelt_definitions(
     robot: Robot, links: Collection[str], uses: Mapping[str, int], unknown: Collection[str]
 ) -> dict[str, str]:
-    """Return the links whose definitions have the wrong word, each with the unknown name that is
-    meant.
+    """Return the links whose definitions have the wrong word.
+
+    Each has the unknown name that is meant.
 
     No joint names the link, and several joints name the other one, or a joint is named after it.
     """
@@ -216,8 +231,9 @@ def _misspelt_definitions(
 def _misspelt_ends(
     joint: Element, misspelt: Collection[str], links: Sequence[str], children: set[str]
 ) -> Iterator[Word]:
-    """Yield the misspelt parent and child of a joint; `children` grows by what is meant, which no
-    other joint can.
+    """Yield the misspelt parent and child of a joint.
+
+    `children` grows by what is meant, which no other joint can.
     """
     ends = {role: end for role in ("parent", "child") if (end := joint.find(role)) is not None}
     for role, end in ends.items():
@@ -235,8 +251,9 @@ def _misspelt_ends(
 
 
 def _readable_numbers(root: Element) -> Iterator[Word]:
-    """Yield numbers of joints that ROS 2 cannot read although they are clear: without them it
-    rejects the file.
+    """Yield numbers of joints that ROS 2 cannot read although they are clear.
+
+    Without them it rejects the file.
     """
     for joint in root.iterchildren("joint"):
         for element in joint:
@@ -250,8 +267,9 @@ def _readable_numbers(root: Element) -> Iterator[Word]:
 
 
 def _with_numbers(tag: str, name: str, given: dict[str, str]) -> dict[str, str] | None:
-    """Return the attributes of an element, one of them with the numbers that are meant; None where
-    it can be read, or may be several.
+    """Return the attributes of an element, one of them with the numbers that are meant.
+
+    Returns None where it can be read, or may be several.
     """
     count = len(PARTS.get(name, ()))
     if not count or name not in ATTRIBUTES[tag]:
@@ -266,8 +284,9 @@ def _with_numbers(tag: str, name: str, given: dict[str, str]) -> dict[str, str] 
 
 
 def _exchanged_ends(root: Element, robot: Robot) -> Iterator[Word]:
-    """Yield the parent and child of the one joint that are exchanged, so that one link has two
-    parents.
+    """Yield the parent and child of the one joint that are exchanged.
+
+    Because of it one link has two parents.
     """
     root_with = _roots_with_exchanged_ends(robot)
     usual = [index for index, name in root_with.items() if _ROOT.match(name)]
@@ -283,8 +302,9 @@ def _exchanged_ends(root: Element, robot: Robot) -> Iterator[Word]:
 
 
 def _roots_with_exchanged_ends(robot: Robot) -> dict[int, str]:
-    """Return the only root that the robot has if the ends of a joint are exchanged, by the number
-    of the joint: of those above the one link that has several parents.
+    """Return the only root of the robot if the ends of a joint are exchanged, by joint number.
+
+    The joints are those above the one link that has several parents.
     """
     counts = Counter(joint.child for joint in robot.joints)
     doubled = [child for child, count in counts.items() if count > 1]
@@ -301,51 +321,68 @@ def _roots_with_exchanged_ends(robot: Robot) -> dict[int, str]:
 
 
 def _pasted_children(root: Element, robot: Robot) -> Iterator[Word]:
-    """Yield the child that a second joint has by mistake: the one link that no joint names should
-    be there.
+    """Yield the child that a second joint has by mistake.
+
+    The one link that no joint names should be there.
     """
     counts = Counter(joint.child for joint in robot.joints)
     named = {*counts, *(joint.parent for joint in robot.joints)}
     lonely = [link.name for link in robot.links if link.name not in named]
     doubled = [child for child, count in counts.items() if count == 2]
-    if len(lonely) != 1 or len(doubled) != 1:
-        return
-    ends = []  # where the two joints name their child
-    named_after = []  # those of joints that are named after the lonely link
+    if len(lonely) == len(doubled) == 1:
+        end = _end_for_link(root, doubled[0], lonely[0])
+        if end is not None:
+            yield _word_with_value(end, "link", lonely[0], "the child")
+
+
+def _end_for_link(root: Element, doubled: str, lonely: str) -> Element | None:
+    """Return the end of a joint that names a child twice, and should name the lonely link.
+
+    It is that of the joint that is named after the lonely link, else the later one.
+    """
+    ends = []
+    named_after = []
     for joint in root.iterchildren("joint"):
         end = joint.find("child")
-        if end is not None and end.get("link") == doubled[0]:
+        if end is not None and end.get("link") == doubled:
             ends.append(end)
-            if lonely[0] in (joint.get("name") or ""):
+            if lonely in (joint.get("name") or ""):
                 named_after.append(end)
-    for end in (named_after if len(named_after) == 1 else ends)[-1:]:
-        yield _word_with_value(end, "link", lonely[0], "the child")
+    if len(named_after) == 1:
+        return named_after[0]
+    return ends[-1] if ends else None
 
 
 def _repeated_names(root: Element) -> Iterator[Word]:
-    """Yield a name that is given twice, where one other name is used and not given: the later one
-    should have it.
+    """Yield a name that is given twice, where one other name is used and not given.
+
+    The later one should have it.
     """
     ends = [end for end in root.iterfind("joint/*") if end.tag in ("parent", "child")]
     used_links = dict.fromkeys(end.get("link") for end in ends)
     used_joints = dict.fromkeys(mimic.get("joint") for mimic in root.iterfind("joint/mimic"))
-    for tag, used in (("link", used_links), ("joint", used_joints)):
-        named = [(element.get("name"), element) for element in root.iterchildren(tag)]
-        counts = Counter(name for name, _ in named)
-        repeated = [name for name, count in counts.items() if name is not None and count > 1]
-        missing = [name for name in used if name and name not in counts]
-        if len(repeated) == len(missing) == 1 and counts[repeated[0]] == 2:
-            later = [element for name, element in named if name == repeated[0]][-1]
-            yield _word_with_value(later, "name", missing[0], f"the second {tag}")
+    yield from _repeated_names_of(root, "link", used_links)
+    yield from _repeated_names_of(root, "joint", used_joints)
+
+
+def _repeated_names_of(root: Element, tag: str, used: Iterable[str | None]) -> Iterator[Word]:
+    by_name: dict[str | None, list[Element]] = {}
+    for element in root.iterchildren(tag):
+        by_name.setdefault(element.get("name"), []).append(element)
+    repeated = [named for name, named in by_name.items() if name is not None and len(named) > 1]
+    missing = [name for name in used if name and name not in by_name]
+    if len(repeated) == len(missing) == 1 and len(repeated[0]) == 2:
+        yield _word_with_value(repeated[0][-1], "name", missing[0], f"the second {tag}")
 
 
 def _misspelt_format(root: Element) -> Iterator[Word]:
-    """Yield tags and attributes that the format does not have there, each near one that it needs
-    and that is absent.
+    """Yield tags and attributes that the format does not have there.
+
+    Each is near one that the format needs and that is absent.
     """
     yield from _misspelt_tags(root, ("link", "joint"))
     yield from _misspelt_attributes(root)
-    for element in (it for tag in ("link", "joint") for it in root.iterchildren(tag)):
+    for element in (declared for tag in ("link", "joint") for declared in root.iterchildren(tag)):
         yield from _misspelt_attributes(element)
         if element.tag == "joint":
             needed = ["parent", "child"]

@@ -1,5 +1,6 @@
-"""A robot as plain values: the content of a URDF as ROS 2 keeps it, and what xacro leaves open of
-it.
+"""A robot as plain values.
+
+It is the content of a URDF as ROS 2 keeps it, and what xacro leaves open of it.
 
 Lengths are metres, angles radians about fixed axes x, y, z (REP 103). `None` is a value that the
 file gives but that cannot be read; a value that the file does not give has ROS 2's default.
@@ -32,8 +33,9 @@ _MAX_COMPARED = 50  # links whose names are compared
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """The pose of a child frame in its parent: `xyz` in metres, `rpy` in radians about fixed
-    axes.
+    """The pose of a child frame in its parent.
+
+    `xyz` is in metres, `rpy` in radians about fixed axes.
     """
 
     xyz: Vector = (0.0, 0.0, 0.0)
@@ -41,8 +43,9 @@ class Origin:
     location: LazyLocation | None = field(default=None, compare=False, repr=False)
 
     def placed_in(self, T_frame_parent: Transform = IDENTITY) -> Transform:
-        """Return T_frame_child, of the frame that it places in its parent; by default, in the
-        parent's own frame.
+        """Return T_frame_child, of the frame that it places in its parent.
+
+        By default, it is in the parent's own frame.
         """
         if self.rpy == (0.0, 0.0, 0.0):
             return Transform(T_frame_parent.rotation, T_frame_parent.apply(self.xyz))
@@ -133,8 +136,9 @@ class Sphere:
 
 @dataclass(frozen=True, slots=True)
 class Mesh:
-    """A mesh file, with a factor of its size along each axis. Only pictures open it, so to checks
-    its extent is unknown.
+    """A mesh file, with a factor of its size along each axis.
+
+    Only pictures open it, so to checks its extent is unknown.
     """
 
     filename: str
@@ -151,8 +155,9 @@ Geometry = Box | Cylinder | Capsule | Sphere | Mesh
 
 
 class UnresolvedPart(NamedTuple):
-    """A part of a link, joint or material that xacro leaves open: the reason, which is empty where
-    xacro refuses it.
+    """A part of a link, joint or material that xacro leaves open.
+
+    It has the reason, which is empty where xacro refuses it.
     """
 
     reason: str
@@ -171,8 +176,9 @@ UnresolvedParts = Mapping[str, UnresolvedPart]
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """A colour with channels in 0..1, red, green, blue, alpha; `texture` is a file name, never
-    opened.
+    """A colour with channels in 0..1, red, green, blue, alpha.
+
+    `texture` is a file name, never opened.
     """
 
     name: str
@@ -184,8 +190,9 @@ class Material:
 
 @dataclass(frozen=True, slots=True)
 class Visual:
-    """One shape that a link shows, placed in its frame. `material` is resolved; None if ROS 2 has
-    no colour for it, or cannot read it.
+    """One shape that a link shows, placed in its frame.
+
+    `material` is resolved; None if ROS 2 has no colour for it, or cannot read it.
     """
 
     geometry: Geometry
@@ -272,8 +279,9 @@ class Dynamics:
 
 @dataclass(frozen=True, slots=True)
 class SafetyController:
-    """The range (rad or m) in which a safety controller keeps a joint, and its gains for position
-    and velocity.
+    """The range (rad or m) in which a safety controller keeps a joint.
+
+    It also has its gains for position and velocity.
     """
 
     k_velocity: float
@@ -285,8 +293,9 @@ class SafetyController:
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """The positions (rad or m) at which a joint's reference switch has a rising or falling edge;
-    None if not given.
+    """The positions (rad or m) at which a joint's reference switch has a rising or falling edge.
+
+    A position is None if it is not given.
     """
 
     rising: float | None = None
@@ -404,8 +413,9 @@ class Robot:
         return 2 * self.known_links(wanted) < len(wanted)
 
     def is_foreign(self, wanted: Collection[str]) -> bool:
-        """Return whether it is another robot, and not only unfinished: most of its links are not
-        wanted.
+        """Return whether it is another robot, and not only unfinished.
+
+        Most of its links are not wanted.
         """
         if not self.is_another(wanted):
             return False

@@ -1,5 +1,6 @@
-"""The normal form of a robot: equal for files that differ only in what nobody can see, and what a
-copy can change.
+"""The normal form of a robot.
+
+Equal for files that differ only in what nobody can see, and what a copy can change.
 
 What counts: every pose, shape, colour, mass, axis, limit, mimic and dynamics, the tree, and every
 name that something refers to. What does not: comments, white space, the order of elements, the way
@@ -60,8 +61,9 @@ def normal_form(
 
 
 def robot_hash(reading: Reading) -> str:
-    """Return the hash of a robot's normal form, with the problems of its file; empty without a
-    robot that has links.
+    """Return the hash of a robot's normal form, with the problems of its file.
+
+    It is empty without a robot that has links.
 
     The problems count because ROS 2 ignores what is wrong: without them, different mistakes could
     give the same robot.
@@ -96,8 +98,9 @@ def _extensions(root: Element | None) -> list[tuple[Any, ...]]:
 
 
 def _content(element: Element) -> tuple[Any, ...]:
-    """Return an element and all in it, in document order; the numbers of children tell the levels
-    apart.
+    """Return an element and all in it, in document order.
+
+    The numbers of children tell the levels apart.
     """
     return tuple(
         (
@@ -164,8 +167,9 @@ class _Forms(NamedTuple):
     def _normalise_pose(
         self, origin: Origin, geometry: Geometry | None = None
     ) -> tuple[Any, tuple[float, ...]]:
-        """Return a position and a rotation, without what the symmetry of a shape hides: a cylinder
-        has a line.
+        """Return a position and a rotation, without what the symmetry of a shape hides.
+
+        The symmetry of a cylinder is a line.
         """
         pose = origin.placed_in()
         rotation = self._normalise_direction(pose.rotation)
@@ -178,8 +182,9 @@ class _Forms(NamedTuple):
         return _rounded(pose.translation), rotation
 
     def _normalise_axis(self, joint: Joint) -> object:
-        """Return the direction of an axis; of one without a direction what the file gives, and
-        nothing without use.
+        """Return the direction of an axis.
+
+        For one without a direction, returns what the file gives, and nothing for one without use.
         """
         if joint.type not in _TURNING:
             return ()
@@ -193,8 +198,9 @@ class _Forms(NamedTuple):
 
 
 def _rounded(value: Any) -> Any:
-    """Return numbers, also those in tuples and elements, without what computing with them may
-    change.
+    """Return numbers without what computing with them may change.
+
+    They may also be in tuples and elements.
     """
     if is_dataclass(value):
         return tuple(

@@ -31,8 +31,9 @@ class NumberError(ValueError):
 
 
 def _cached_reader(read: Callable[[str], _Value]) -> Callable[[str], _Value]:
-    """Return a reader that keeps values: the files of a class contain the same few texts thousands
-    of times.
+    """Return a reader that keeps values.
+
+    The files of a class contain the same few texts thousands of times.
     """
     cached = lru_cache(maxsize=4096)(read)
     return wraps(read)(lambda text: cached(text) if len(text) <= _MAX_CACHED_LENGTH else read(text))
@@ -59,8 +60,9 @@ def finite_number(text: str | None) -> float | None:
 
 
 def numbers(text: str) -> list[float]:
-    """Return the numbers of a list with spaces between; raises NumberError for the first piece that
-    is not a number.
+    """Return the numbers of a list with spaces between.
+
+    Raises NumberError for the first piece that is not a number.
     """
     return [number(piece) for piece in text.split(" ") if piece]
 
@@ -84,8 +86,9 @@ def quaternion(text: str) -> tuple[float, float, float, float]:
 
 
 def readable_numbers(text: str, count: int) -> list[str] | None:
-    """Return the numbers that a list surely means, as texts, for one that ROS 2 cannot read; None
-    if it can be read.
+    """Return the numbers that a list surely means, as texts, for one that ROS 2 cannot read.
+
+    Returns None if it can be read.
 
     There may be twice as many, as in a pose. They are separated by any white space or by commas,
     with decimal commas, or are computed, as in pi/2.
@@ -98,17 +101,18 @@ def readable_numbers(text: str, count: int) -> list[str] | None:
     pieces = text.replace("\N{MINUS SIGN}", "-").split()
     decimal = [piece.strip(",").replace(",", ".") for piece in pieces]
     ways = [pieces, decimal, " ".join(pieces).replace(",", " ").split()]
-    found = []
+    readings = []
     for way in ways:
         values = [_computed(piece) for piece in way]
         if len(way) in (count, 2 * count) and None not in values:
-            found.append([str(value) for value in values])
-    return found[0] if found else None
+            readings.append([str(value) for value in values])
+    return readings[0] if readings else None
 
 
 def _computed(piece: str) -> str | None:
-    """Return a number, or the value of an arithmetic expression with pi, as a text that ROS 2
-    reads; else None.
+    """Return a number, or the value of an expression with pi, as a text that ROS 2 reads.
+
+    The expression is arithmetic. Returns None for any other text.
     """
     if _NUMBER.fullmatch(piece):
         return piece
@@ -127,8 +131,9 @@ def _computed(piece: str) -> str | None:
 
 
 def rgba(text: str) -> tuple[float, float, float, float] | None:
-    """Return four channels in 0..1; None for another count, which ROS 2 silently shows as black;
-    raises NumberError.
+    """Return four channels in 0..1.
+
+    Returns None for another count, which ROS 2 silently shows as black. Raises NumberError.
     """
     values = numbers(text)
     for value in values:

@@ -70,8 +70,9 @@ def _view_of_material(material: Material) -> Material:
 
 
 def _value_if_known(part: Link | Joint, field: str, value: _Value) -> _Value:
-    """Return the value of a field of a link or joint; raise NotDecided or MissingElement if it is
-    open.
+    """Return the value of a field of a link or joint.
+
+    Raises NotDecided or MissingElement if it is open.
     """
     key = _KEYS.get(field, field)
     unresolved = part.unresolved.get(key)
@@ -108,8 +109,9 @@ def _show(view: object, known: object) -> None:
 
 
 class _MaterialView(Material):
-    """A material of which something is open, so that neither its colour nor its texture can be
-    read.
+    """A material of which something is open.
+
+    Neither its colour nor its texture can be read.
     """
 
     __slots__ = ("_known",)
@@ -192,8 +194,9 @@ class _JointView(Joint):
 
 
 class _IncompleteRobot(Robot):
-    """A robot that may have more links and joints than are known: those that are known can be read
-    one by one.
+    """A robot that may have more links and joints than are known.
+
+    Those that are known can be read one by one.
     """
 
     __slots__ = ("_known",)

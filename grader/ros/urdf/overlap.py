@@ -26,8 +26,9 @@ _MAX_LENGTH = 1e6
 def penetration(
     a: Shape, T_w_a: Transform, b: Shape, T_w_b: Transform, allowed: float = 0.0
 ) -> float:
-    """Return the penetration depth of two shapes in metres if it is more than `allowed`; otherwise
-    0.0.
+    """Return the penetration depth of two shapes in metres if it is more than `allowed`.
+
+    Otherwise returns 0.0.
 
     Shapes that touch are separate. Off by less than 0.1 mm, or 1e-4 of the largest length where
     that is more than 10 m. Raises UnknownShape for a mesh.
@@ -51,8 +52,9 @@ def penetration(
 
 
 def least_overlap(a: Shape, b: Shape, T_a_b: Transform, limit: float = _ROUNDING) -> Vector:
-    """Return the unit direction along which two shapes overlap least, or one of an overlap up to
-    the limit.
+    """Return the unit direction along which two shapes overlap least.
+
+    It may also be one of an overlap up to the limit.
 
     A few directions are enough for parts that are side by side, and most are.
     """
@@ -62,9 +64,9 @@ def least_overlap(a: Shape, b: Shape, T_a_b: Transform, limit: float = _ROUNDING
 
     best, least = (0.0, 0.0, 1.0), inf
     for direction in _likely_directions(a, b, T_a_b):
-        found = overlap(direction)
-        if found < least:
-            best, least = direction, found
+        amount = overlap(direction)
+        if amount < least:
+            best, least = direction, amount
         if least <= limit:
             return best
     if not isinstance(a, Sphere) and not isinstance(b, Sphere) and _rims_matter(a, b, T_a_b):
@@ -90,27 +92,12 @@ def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]
 
     If no rim matters, the least overlap of intersecting shapes is along one of these.
     """
-    c = T_a_b.translation
     edges_a = straight_edges(a)
     edges_b = [T_a_b.rotate(edge) for edge in straight_edges(b)]
     yield from edges_a
     yield from edges_b
-    yield unit(c) or (0.0, 0.0, 1.0)
-    if isinstance(a, Cylinder):
-        x, y, _ = T_a_b.rotate(_vector_from_nearest(b, T_a_b.unrotate(c)))
-        yield unit((x, y, 0.0)) or (1.0, 0.0, 0.0)
-    if isinstance(b, Cylinder):
-        x, y, _ = T_a_b.unrotate(_vector_from_nearest(a, c))
-        yield T_a_b.rotate(unit((x, y, 0.0)) or (1.0, 0.0, 0.0))
-    if isinstance(b, Sphere):
-        yield unit(_outside(a, c)) or (1.0, 0.0, 0.0)
-    if isinstance(a, Sphere):
-        yield T_a_b.rotate(unit(_outside(b, T_a_b.unrotate(c))) or (1.0, 0.0, 0.0))
-    if isinstance(b, Capsule):
-        yield unit(_outside(a, _nearest_of_axis(b, T_a_b, a))) or (1.0, 0.0, 0.0)
-    if isinstance(a, Capsule):
-        point = _nearest_of_axis(a, T_a_b.inverse(), b)
-        yield T_a_b.rotate(unit(_outside(b, point)) or (1.0, 0.0, 0.0))
+    yield unit(T_a_b.translation) or (0.0, 0.0, 1.0)
+    yield from _directions_of_round(a, b, T_a_b)
     for p, q in product(edges_a, edges_b):
         normal = cross(p, q)
         length = hypot(*normal)
@@ -118,9 +105,35 @@ def _likely_directions(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]
             yield (normal[0] / length, normal[1] / length, normal[2] / length)
 
 
+def _directions_of_round(a: Shape, b: Shape, T_a_b: Transform) -> Iterator[Vector]:
+    """Yield the unit directions from round shapes to the nearest points of the other shape."""
+    c = T_a_b.translation
+    if isinstance(a, Cylinder):
+        x, y, _ = T_a_b.rotate(_vector_from_nearest(b, T_a_b.unrotate(c)))
+        yield _unit_or_x((x, y, 0.0))
+    if isinstance(b, Cylinder):
+        x, y, _ = T_a_b.unrotate(_vector_from_nearest(a, c))
+        yield T_a_b.rotate(_unit_or_x((x, y, 0.0)))
+    if isinstance(b, Sphere):
+        yield _unit_or_x(_outside(a, c))
+    if isinstance(a, Sphere):
+        yield T_a_b.rotate(_unit_or_x(_outside(b, T_a_b.unrotate(c))))
+    if isinstance(b, Capsule):
+        yield _unit_or_x(_outside(a, _nearest_of_axis(b, T_a_b, a)))
+    if isinstance(a, Capsule):
+        point = _nearest_of_axis(a, T_a_b.inverse(), b)
+        yield T_a_b.rotate(_unit_or_x(_outside(b, point)))
+
+
+def _unit_or_x(vector: Vector) -> Vector:
+    """Return the unit vector of a direction; that of x for length zero."""
+    return unit(vector) or (1.0, 0.0, 0.0)
+
+
 def _vector_from_nearest(shape: Shape, point: Vector) -> Vector:
-    """Return the vector to a point from the nearest point of a box, or from the centre of a round
-    shape.
+    """Return the vector to a point from the nearest point of a box.
+
+    For a round shape, it is the vector from the centre.
     """
     if not isinstance(shape, Box):
         return point
@@ -132,8 +145,9 @@ def _vector_from_nearest(shape: Shape, point: Vector) -> Vector:
 
 
 def _outside(shape: Shape, point: Vector) -> Vector:
-    """Return the vector to a point from the nearest point of a shape; zero for a point in it. Of a
-    sphere or capsule the centre or the axis counts alone.
+    """Return the vector to a point from the nearest point of a shape; zero for a point in it.
+
+    Of a sphere or capsule the centre or the axis counts alone.
     """
     if isinstance(shape, Capsule):
         x, y, z = point

@@ -1,10 +1,11 @@
-"""Read a URDF as a release of ROS 2 does, and report everything that is wrong with it, also names
-that look misspelt.
+"""Read a URDF as a release of ROS 2 does, and report everything that is wrong with it.
+
+Names that look misspelt are reported too.
 """
 
 import os
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal, NamedTuple
@@ -47,7 +48,7 @@ from grader.ros.xml.urdf_format import (
 from grader.ros.xml.xml_problems import NOT_WELL_FORMED, RECOVERED
 
 if TYPE_CHECKING:
-    from grader.ros.urdf.meant import Word
+    from grader.ros.urdf.meant import AsMeant, Word
 
 
 Verdict = Literal["clean", "degraded", "rejected"]
@@ -95,7 +96,9 @@ class Reading(NamedTuple):
     @property
     def raw_xacro(self) -> Problem | None:
         """The problem of xacro that is loaded without xacro; None where it has none."""
-        return next((it for it in self.problems if it.kind is urdf_problems.RAW_XACRO), None)
+        return next(
+            (problem for problem in self.problems if problem.kind is urdf_problems.RAW_XACRO), None
+        )
 
     @property
     def elements(self) -> Element | None:
@@ -182,53 +185,79 @@ def read_robot(document: XmlDocument, newest: UrdfVersion = FIRST) -> Reading:
 
 
 def _read_content(document: XmlDocument, root: Element, newest: UrdfVersion) -> Reading:
-    """Return what is read of a robot: if ROS 2 rejects it for words that surely stand for
-    others, with these undone.
+    """Return what is read of a robot.
+
+    If ROS 2 rejects it for words that surely stand for others, these are undone.
     """
     listed = document.problems
     read = partial(_read_robot, document, root, newest)
     robot, problems = read()
     effects = {problem.kind.effect for problem in listed} | problems.effects
-    found, incomplete = (
-        problems.listed,
-        _why_incomplete(document, robot) if effects.intersection(_FATAL) else "",
-    )
+    robot_problems = problems.listed
+    incomplete = _why_incomplete(document, robot) if effects.intersection(_FATAL) else ""
     is_meant = document.is_meant and "rejects" not in problems.effects
     undone: tuple[Word, ...] = ()
-    if document.is_meant and not is_meant and not incomplete and len(causes(found)) <= _MAX_CAUSES:
-        from grader.ros.urdf.meant import read_as_meant  # late: few files are rejected
-
-        meant = read_as_meant(root, robot, read)
+    if document.is_meant and not is_meant and not incomplete:
+        meant = _read_as_meant(root, robot, problems, read)
         if meant is not None:
             is_meant, robot, undone = True, meant.robot, tuple(meant.words)
-            problems.undone = {word.place: word.fixes for word in undone}
-            own = _without_other_guesses(read, causes(found), meant.problems)
-            found = [*own, *meant.problems]
+            robot_problems = meant.problems
     if document.root is None:
-        broken = {problem.location.line for problem in listed}
-        found = [
-            it for it in found if not it.kind.is_consequence and it.location.line not in broken
-        ]
-    listed += found
+        robot_problems = _problems_of_unbroken_lines(robot_problems, listed)
+    listed += robot_problems
     if problems.unlisted:
         message = f"{problems.unlisted} more problems of this file are not listed"
-        listed.append(
-            Problem(urdf_problems.UNLISTED, message, document.source.at(len(document.source.text)))
-        )
+        end = document.source.at(len(document.source.text))
+        listed.append(Problem(urdf_problems.UNLISTED, message, end))
     verdict = _verdict(effects)
-    if verdict != "rejected" and not document.is_expanded:
-        listed += _problems_for_python(document, robot)
     if verdict == "rejected":
-        robot = replace(
-            robot, rejected=not is_meant or "undetermined" in effects, incomplete=incomplete
-        )
+        is_open = not is_meant or "undetermined" in effects
+        robot = replace(robot, rejected=is_open, incomplete=incomplete)
+    elif not document.is_expanded:
+        listed += _problems_for_python(document, robot)
     places = (document.source, document.root, document.unresolved, document.recovered)
     return Reading(verdict, robot, in_order(listed), *places, is_meant, undone)
 
 
+def _read_as_meant(
+    root: Element,
+    robot: Robot,
+    problems: Problems,
+    read: Callable[..., tuple[Robot, Problems]],
+) -> "AsMeant | None":
+    """Return what a rejected file means, with all its problems.
+
+    Returns None if a word can stand for several, or too much is wrong.
+    """
+    rejecting = causes(problems.listed)
+    if len(rejecting) > _MAX_CAUSES:
+        return None
+    from grader.ros.urdf.meant import read_as_meant  # late: few files are rejected
+
+    meant = read_as_meant(root, robot, read)
+    if meant is None:
+        return None
+    problems.undone = {word.place: word.fixes for word in meant.words}
+    independent = _without_other_guesses(read, rejecting, meant.problems)
+    return meant._replace(problems=[*independent, *meant.problems])
+
+
+def _problems_of_unbroken_lines(
+    problems: Iterable[Problem], reported: Iterable[Problem]
+) -> list[Problem]:
+    """Return problems of a robot in lines that have no problem yet, but no consequences."""
+    broken = {problem.location.line for problem in reported}
+    return [
+        problem
+        for problem in problems
+        if not problem.kind.is_consequence and problem.location.line not in broken
+    ]
+
+
 def _problems_for_python(document: XmlDocument, robot: Robot) -> Iterator[Problem]:
-    """Yield that joint_state_publisher cannot read the file, if it has joints for which it
-    publishes positions.
+    """Yield that joint_state_publisher cannot read the file.
+
+    This matters if the file has joints for which it publishes positions.
     """
     is_moving = any(joint.has_position for joint in robot.joints)
     error = python_xml_error(document.source.text) if is_moving else None
@@ -236,9 +265,9 @@ def _problems_for_python(document: XmlDocument, robot: Robot) -> Iterator[Proble
         return
     at = document.source.at(error.offset)
     same_line = (
-        it.subject
-        for it in document.problems
-        if it.location.line == at.line and it.kind is NOT_WELL_FORMED
+        problem.subject
+        for problem in document.problems
+        if problem.location.line == at.line and problem.kind is NOT_WELL_FORMED
     )
     message = f"joint_state_publisher cannot read this file ({next(same_line, error.message)})"
     message += ": in RViz no moving link has a transform"
@@ -252,16 +281,17 @@ def _verdict(effects: Collection[Effect]) -> Verdict:
 
 
 def _without_other_guesses(
-    read: Callable[[int], tuple[Robot, Problems]], found: list[Problem], assumed: list[Problem]
+    read: Callable[[int], tuple[Robot, Problems]], reported: list[Problem], assumed: list[Problem]
 ) -> list[Problem]:
-    """Return problems without guesses where words of another line are read as others: these tell
-    what is meant.
+    """Return problems without guesses where words of another line are read as others.
+
+    These tell what is meant.
     """
     lines = {problem.location.line for problem in assumed if problem.kind is RECOVERED}
     _, problems = read(NO_GUESSES)
     plain = {(problem.kind, problem.location): problem.message for problem in problems.listed}
     changed = []
-    for problem in found:
+    for problem in reported:
         message = problem.message
         if problem.location.line not in lines:
             message = plain.get((problem.kind, problem.location), message)
@@ -326,8 +356,9 @@ def _refused_version(text: str, version: UrdfVersion | None, newest: UrdfVersion
 
 
 def _why_incomplete(document: XmlDocument, robot: Robot) -> str:
-    """Return why there may be more links and joints than are known: unknown content, or the name
-    of one is unknown.
+    """Return why there may be more links and joints than are known.
+
+    The reason is unknown content, or that the name of one is unknown.
     """
     root = document.root if document.root is not None else document.recovered
     unresolved = document.unresolved.get(root) if root is not None else None
@@ -370,8 +401,9 @@ def _check_root_inertia(robot: Robot, links: dict[str, Element], problems: Probl
 
 
 def find_xacro(text: str) -> int | None:
-    """Return the offset of the first xacro in a text outside of comments: a tag, ${...} or
-    $(...).
+    """Return the offset of the first xacro in a text outside of comments.
+
+    This is a tag, ${...} or $(...).
     """
     if "$" not in text and "xacro:" not in text:
         return None
@@ -407,8 +439,9 @@ def _check_text(problems: Problems, *, is_expanded: bool) -> None:
 
 
 def _check_spelling(root: Element, problems: Problems) -> None:
-    """Report misspelt names and repeated elements in what urdfdom reads; extensions of other tools
-    are skipped.
+    """Report misspelt names and repeated elements in what urdfdom reads.
+
+    Extensions of other tools are skipped.
     """
     if not ATTRIBUTES["robot"].issuperset(root.keys()):
         _check_attributes(root, problems)

@@ -12,7 +12,17 @@ from math import atan2, cos, degrees, hypot, inf, isfinite, pi, radians, sin
 from typing import NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.transforms import X_AXIS, Z_AXIS, Vector, cross, degrees_between, dot, minus, unit
+from grader.base.transforms import (
+    X_AXIS,
+    Z_AXIS,
+    Transform,
+    Vector,
+    cross,
+    degrees_between,
+    dot,
+    minus,
+    unit,
+)
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Box, Capsule, Collision, Cylinder, Mesh, Visual
 from grader.ros.urdf.shapes import PlacedShape, UnknownShape, bounding_radius
@@ -55,9 +65,7 @@ class _RestingBody(NamedTuple):
     is_weighed: bool
 
     def lowest(self, up: Vector) -> Vector:
-        """Return the lowest point of all shapes, with `up` as the direction away from the
-        ground.
-        """
+        """Return the lowest point of all shapes; `up` is the direction away from the ground."""
         down = (-up[0], -up[1], -up[2])
         lowest, height = self.mass_centre, inf
         for _, shape in self.shapes:
@@ -125,21 +133,33 @@ def body_of(robot: Configuration, base: str) -> _RestingBody:
         if not solids and link.inertial is None:
             continue
         T_base_link = robot.pose(link.name, relative_to=base)
-        for element in solids:
-            if isinstance(element.geometry, Mesh):
-                raise UnknownShape(element.geometry)
-            pose = element.origin.placed_in(T_base_link)
-            shapes.append(_LinkShape(link.name, PlacedShape(element.geometry, pose)))
+        shapes += _place_shapes(link.name, solids, T_base_link)
         if link.inertial is not None and link.inertial.mass > 0.0:
             masses.append((link.inertial.mass, T_base_link.apply(link.inertial.origin.xyz)))
     if len(shapes) > MAX_SHAPES:
         raise NotDecided(f"the robot has more than {MAX_SHAPES} shapes", "a robot has many shapes")
-    is_weighed = bool(masses)
-    if not is_weighed:
-        for _, (geometry, pose) in shapes:
-            assert not isinstance(geometry, Mesh)
-            masses.append((geometry.volume, pose.translation))
-    return _RestingBody(tuple(shapes), _mean(masses), is_weighed)
+    mean = _mean(masses or _volumes(shapes))
+    return _RestingBody(tuple(shapes), mean, bool(masses))
+
+
+def _place_shapes(
+    link: str, elements: Iterable[Visual | Collision], T_base_link: Transform
+) -> Iterator[_LinkShape]:
+    """Yield the shapes of a link in the frame of the base. Raises UnknownShape for a mesh."""
+    for element in elements:
+        if isinstance(element.geometry, Mesh):
+            raise UnknownShape(element.geometry)
+        pose = element.origin.placed_in(T_base_link)
+        yield _LinkShape(link, PlacedShape(element.geometry, pose))
+
+
+def _volumes(shapes: Iterable[_LinkShape]) -> list[tuple[float, Vector]]:
+    """Return the volume and the centre of each shape."""
+    volumes = []
+    for _, (geometry, pose) in shapes:
+        assert not isinstance(geometry, Mesh)
+        volumes.append((geometry.volume, pose.translation))
+    return volumes
 
 
 def solid_shapes(elements: Iterable[Visual | Collision]) -> list[Visual | Collision]:
@@ -159,8 +179,9 @@ def _mean(weighted: Sequence[tuple[float, Vector]]) -> Vector:
 
 
 def find_rest(body: _RestingBody) -> Rest:
-    """Return how a robot stands that is set down upright, its base level, and then let go; the
-    body must have shapes.
+    """Return how a robot stands that is set down upright, its base level, and then let go.
+
+    The body must have shapes.
     """
     *_, up = _fall(body, _MAX_TILT)
     heights, contacts = _measure_heights(body, up)
@@ -170,8 +191,10 @@ def find_rest(body: _RestingBody) -> Rest:
 
 
 def list_fall(body: _RestingBody) -> list[tuple[Vector, float]]:
-    """Return how a robot comes to rest that is set down upright, its base level, even if it tips
-    over: where up is on the way, each with the height of the centre of mass above the ground.
+    """Return how a robot comes to rest that is set down upright, even if it tips over.
+
+    Its base is level. The result is where up is on the way, each with the height of the centre of
+    mass above the ground.
     """
     ups: list[Vector] = []
     for up in _fall(body, 180.0):
@@ -188,8 +211,9 @@ def list_fall(body: _RestingBody) -> list[tuple[Vector, float]]:
 
 
 def _fall(body: _RestingBody, max_tilt: float) -> Iterator[Vector]:
-    """Yield where up is while a robot falls that is set down upright, until it rests, or leans by
-    more than an angle in degrees.
+    """Yield where up is while a robot falls that is set down upright.
+
+    It falls until it rests, or leans by more than an angle in degrees.
 
     The face of the convex hull that is straight below the centre of mass becomes the ground, until
     it is the ground already. The centre of mass only goes down on the way: the height of the hull's
@@ -220,8 +244,10 @@ def _fall(body: _RestingBody, max_tilt: float) -> Iterator[Vector]:
 
 
 def _follow(body: _RestingBody, start: Vector, face: Vector) -> Vector:
-    """Return where up is after a fall to a face, and further that way while the mass goes down and
-    the way is short: a large ball rolls far in many small steps.
+    """Return where up is after a fall to a face, and further that way.
+
+    It goes further while the mass goes down and the way is short: a large ball rolls far in many
+    small steps.
     """
     best, step = face, minus(face, start)
     while hypot(*step) < _LEAP:
@@ -284,8 +310,9 @@ def moved(point: Vector, moves: Iterable[tuple[Vector, float]]) -> Vector:
 
 
 def _refined(corners: list[Vector], point: Vector, centre: Vector, up: Vector) -> list[Vector]:
-    """Return the triangle of two corners and a point that has the centre inside, seen from above;
-    counterclockwise, as the corners are.
+    """Return the triangle of two corners and a point that has the centre inside.
+
+    This is seen from above. The triangle is counterclockwise, as the corners are.
     """
     a, b, c = corners
     best, best_fit = corners, (-inf, 0.0)
@@ -297,8 +324,9 @@ def _refined(corners: list[Vector], point: Vector, centre: Vector, up: Vector) -
 
 
 def _fit_around(triangle: list[Vector], centre: Vector, up: Vector) -> tuple[float, float]:
-    """Return how well a triangle has a point inside, seen from above: by how much of its area it
-    is outside, at most 0; the area.
+    """Return how well a triangle has a point inside, seen from above, and its area.
+
+    The first is by how much of the area the point is outside, at most 0.
     """
     a, b, c = (minus(corner, centre) for corner in triangle)
     parts = [dot(up, cross(a, b)), dot(up, cross(b, c)), dot(up, cross(c, a))]
@@ -309,8 +337,9 @@ def _fit_around(triangle: list[Vector], centre: Vector, up: Vector) -> tuple[flo
 
 
 def _pushed_off_balance(body: _RestingBody, up: Vector, size: float) -> Vector | None:
-    """Return where up is after a push under which the centre of mass goes down; None if the robot
-    stands firmly.
+    """Return where up is after a push under which the centre of mass goes down.
+
+    Returns None if the robot stands firmly.
 
     It can fall only if its centre of mass is straight above a line between two contacts, such as
     the axle of two wheels, or above a single one. There the slope is 0, and the curvature decides.
@@ -366,9 +395,10 @@ def _measure_heights(
 
 
 def _low_points(shape: PlacedShape, up: Vector) -> Iterator[Vector]:
-    """Yield the points with which a shape can touch the ground: the corners of a box, the lowest
-    point of a sphere, of each end of a capsule and of each rim of a cylinder, or points around its
-    rims if it is upright.
+    """Yield the points with which a shape can touch the ground.
+
+    These are the corners of a box, the lowest point of a sphere, of each end of a capsule and of
+    each rim of a cylinder, or points around its rims if it is upright.
     """
     geometry, pose = shape
     if isinstance(geometry, Box):

@@ -1,7 +1,7 @@
 """The slips of a URDF that ROS 2 loads all the same: it ignores a word, or drops the element."""
 
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from grader.base import markup
 from grader.base.element_edits import tag_edits
@@ -64,18 +64,24 @@ class RobotSlips:
             if element in materials:
                 yield materials[element]
             inside: list[tuple[Element, str]] = []
-            present = {str(child.tag) for child in element}
-            for child in element:
-                written = str(child.tag)
-                meant = None
-                if child not in self._undone and child not in self._unresolved:
-                    meant = meant_tag(written, tag, present)
-                if meant is not None:
-                    present.add(meant)
-                    yield from self._tag_slip(child, written, meant, tag)
-                if meant is not None or written in CHILDREN.get(tag, ()):
-                    inside.append((child, meant or written))
+            yield from self._child_slips(element, tag, inside)
             waiting += reversed(inside)
+
+    def _child_slips(
+        self, element: Element, tag: str, inside: list[tuple[Element, str]]
+    ) -> Iterator[Slip]:
+        """Yield the slips of children's tags; `inside` gets the children that ROS 2 should read."""
+        present = {str(child.tag) for child in element}
+        for child in element:
+            written = str(child.tag)
+            meant = None
+            if child not in self._undone and child not in self._unresolved:
+                meant = meant_tag(written, tag, present)
+            if meant is not None:
+                present.add(meant)
+                yield from self._tag_slip(child, written, meant, tag)
+            if meant is not None or written in CHILDREN.get(tag, ()):
+                inside.append((child, meant or written))
 
     def _place(self, element: Element) -> tuple[Source, int]:
         """Return the text that an element was written in, and the offset of its start tag."""
@@ -114,16 +120,16 @@ class RobotSlips:
     ) -> Iterator[Slip]:
         """Yield the slip in the name of an attribute, in its value, or in both."""
         source, start = self._place(element)
-        found = markup.attribute(source.text, start, name)
-        if found is None:
+        attribute = markup.attribute(source.text, start, name)
+        if attribute is None:
             return
-        written = source.text[slice(*found.value)]
+        written = source.text[slice(*attribute.value)]
         value = written if numbers is None else numbers
         if numbers is not None and written != element.get(name):  # xacro makes the value of texts
             value = _without_separators(written)
-        before = source.text[found.start + len(name) : found.value_start]
-        after = source.text[found.value_end : found.end]
-        edit = source.edit(found.start, found.end, f"{meant}{before}{value}{after}")
+        before = source.text[attribute.start + len(name) : attribute.value_start]
+        after = source.text[attribute.value_end : attribute.end]
+        edit = source.edit(attribute.start, attribute.end, f"{meant}{before}{value}{after}")
         if edit.old == edit.new or "\n" in edit.old:
             return
         reaction = f"ROS 2 cannot read {name}={quoted(cut(written, _MAX_SHOWN))} of <{tag}>"
@@ -136,10 +142,11 @@ class RobotSlips:
         yield self._slip(element, (edit,), reaction, assumption, name)
 
     def _material_slips(self) -> dict[Element, Slip]:
-        """Return the slip of each material whose name is misspelt: where it is used, or where
-        nothing uses it as it is defined.
+        """Return the slip of each material whose name is misspelt.
+
+        It is where the name is used, or where nothing uses it as it is defined.
         """
-        definitions = {}
+        definitions: dict[str, Element] = {}
         uses: dict[str, list[Element]] = {}
         for element in self._root.iter("material"):
             name = element.get("name") or ""
@@ -149,23 +156,29 @@ class RobotSlips:
                 uses.setdefault(name, []).append(element)
         slips: dict[Element, Slip] = {}
         for name, elements in uses.items():
-            if not name or name in definitions:
-                continue
-            meant = near(name, definitions)
+            meant = near(name, definitions) if name and name not in definitions else None
             if meant is None:
                 continue
-            is_definition = meant not in uses and len(elements) > 1
-            misspelt = [definitions[meant]] if is_definition else elements
-            written, right = (meant, name) if is_definition else (name, meant)
-            for element in misspelt:
-                source, start = self._place(element)
-                found = markup.attribute(source.text, start, "name")
-                if found is not None and source.text[slice(*found.value)] == written:
-                    text = source.text[found.start : found.end].replace(written, right)
-                    edit = source.edit(found.start, found.end, text)
-                    reaction = f"there is no material {quoted(name)}"
-                    assumption = f"the material {quoted(written)} is read as {quoted(right)}"
-                    slips[element] = self._slip(element, (edit,), reaction, assumption, "name")
+            if meant not in uses and len(elements) > 1:
+                slips |= self._slips_of_material([definitions[meant]], name, meant, name)
+            else:
+                slips |= self._slips_of_material(elements, name, name, meant)
+        return slips
+
+    def _slips_of_material(
+        self, elements: Sequence[Element], unknown: str, written: str, meant: str
+    ) -> dict[Element, Slip]:
+        """Return the slips of elements whose name is written as another one."""
+        slips = {}
+        for element in elements:
+            source, start = self._place(element)
+            attribute = markup.attribute(source.text, start, "name")
+            if attribute is not None and source.text[slice(*attribute.value)] == written:
+                text = source.text[attribute.start : attribute.end].replace(written, meant)
+                edit = source.edit(attribute.start, attribute.end, text)
+                reaction = f"there is no material {quoted(unknown)}"
+                assumption = f"the material {quoted(written)} is read as {quoted(meant)}"
+                slips[element] = self._slip(element, (edit,), reaction, assumption, "name")
         return slips
 
 

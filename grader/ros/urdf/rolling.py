@@ -19,8 +19,9 @@ _ANY = 1e-9  # a determinant that is smaller is 0
 
 
 class DrivenWheel(NamedTuple):
-    """A wheel in the frame of the base: its joint's axis, a point on it, its shapes, and where it
-    touches the ground.
+    """A wheel in the frame of the base.
+
+    It has its joint's axis, a point on it, its shapes, and where it touches the ground.
 
     `roller` is the angle in degrees from its axis to those of its rollers, of a mecanum or omni
     wheel; None for any other wheel.
@@ -45,8 +46,9 @@ class DrivenWheel(NamedTuple):
         return hypot(*self.rim_motion)
 
     def heading(self, up: Vector) -> float:
-        """Return the angle in degrees to the left, on the ground, from the base's x axis to where
-        the wheel alone rolls.
+        """Return the angle in degrees from the base's x axis to where the wheel alone rolls.
+
+        The angle is to the left, on the ground.
         """
         forward, left = level_directions(up)
         return degrees(atan2(-dot(self.rim_motion, left), -dot(self.rim_motion, forward)))
@@ -131,8 +133,9 @@ class Course(NamedTuple):
 
     @property
     def headings(self) -> list[float]:
-        """The angles in degrees to the left from where it should drive to where each wheel alone
-        rolls.
+        """The angles in degrees from where it should drive to where each wheel alone rolls.
+
+        The angles are to the left.
         """
         return [self._from_goal(wheel.heading(self.up)) for wheel in self.wheels]
 
@@ -156,8 +159,9 @@ def middle_of(points: Sequence[Vector]) -> Vector:
 
 
 def _held_directions(wheel: DrivenWheel, up: Vector) -> list[Vector]:
-    """Return the directions on the ground in which a wheel does not slide: all, or those along the
-    axis of the roller that touches the ground.
+    """Return the directions on the ground in which a wheel does not slide.
+
+    These are all, or those along the axis of the roller that touches the ground.
     """
     forward, left = level_directions(up)
     if wheel.roller is None:
@@ -169,8 +173,9 @@ def _held_directions(wheel: DrivenWheel, up: Vector) -> list[Vector]:
 
 
 def _least_squares(rows: Sequence[tuple[Vector, float]]) -> Vector:
-    """Return the three unknowns of linear equations that they leave least, by normal equations;
-    what they do not decide is 0.
+    """Return the three unknowns of linear equations that they leave least, by normal equations.
+
+    What they do not decide is 0.
     """
     table = [[0.0] * 4 for _ in range(3)]
     for row, right in rows:

@@ -1,5 +1,6 @@
-"""The size of a robot's shapes: support points, extents, volumes; how far a placed shape differs
-from another one.
+"""The size of a robot's shapes, and how far a placed shape differs from another one.
+
+The size is support points, extents, volumes.
 
 Lengths are metres. A negative size counts as its absolute value: urdfdom accepts it, and a shape
 that is symmetric about its centre does not change when it is mirrored. Shapes are compared as
@@ -35,8 +36,9 @@ class UnknownShape(ValueError):
 
 
 def half_width(geometry: Geometry, direction: Vector) -> float:
-    """Return the extent (m) of a shape from its centre along a unit direction of its frame;
-    UnknownShape for a mesh.
+    """Return the extent (m) of a shape from its centre along a unit direction of its frame.
+
+    Raises UnknownShape for a mesh.
 
     This is the shape's support function (Ericson, Real-Time Collision Detection, 2004, section
     4.3). The cylinder's `hypot` has no cancellation near its axis, which `sqrt(1 - z * z)` would
@@ -56,8 +58,9 @@ def half_width(geometry: Geometry, direction: Vector) -> float:
 
 
 def support(geometry: Geometry, direction: Vector) -> Vector:
-    """Return the farthest point of a shape along a direction of its frame; the middle of them if
-    several tie.
+    """Return the farthest point of a shape along a direction of its frame.
+
+    Returns the middle of the farthest points if several tie.
 
     Metres, in the shape's frame; the direction need not be unit, and a zero one gives the centre.
     Raises UnknownShape for a mesh.
@@ -83,8 +86,9 @@ def support(geometry: Geometry, direction: Vector) -> Vector:
 
 
 def straight_edges(geometry: Geometry) -> list[Vector]:
-    """Return the directions of the straight edges of a shape, which are the normals of its flat
-    faces too; of a capsule, that of its axis.
+    """Return the directions of the straight edges of a shape.
+
+    They are the normals of its flat faces too. For a capsule, it is that of its axis.
     """
     if isinstance(geometry, Box):
         return [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0)]
@@ -122,9 +126,10 @@ def _signed_half(size: float, component: float, tie: float) -> float:
 
 
 class ShapeDifference(NamedTuple):
-    """The differences of two shapes in metres: how far the centres are apart, the largest
-    difference of a size, and how far the turn of one against the other moves a point of the
-    surface. `angle` is that turn in degrees.
+    """The differences of two shapes in metres.
+
+    They are how far the centres are apart, the largest difference of a size, and how far the turn
+    of one against the other moves a point of the surface. `angle` is that turn in degrees.
     """
 
     apart: float
@@ -148,8 +153,9 @@ class PlacedShape(NamedTuple):
     pose: Transform
 
     def extent(self, direction: Vector) -> tuple[float, float]:
-        """Return the smallest and the largest coordinate along a unit direction of the frame,
-        metres.
+        """Return the smallest and largest coordinate along a unit direction of the frame.
+
+        They are in metres.
 
         Raises UnknownShape for a mesh.
         """
@@ -158,8 +164,9 @@ class PlacedShape(NamedTuple):
         return (middle - half, middle + half)
 
     def farthest(self, direction: Vector) -> Vector:
-        """Return the farthest point along a direction of the frame; the middle of them if several
-        tie.
+        """Return the farthest point along a direction of the frame.
+
+        Returns the middle of the farthest points if several tie.
 
         Metres, in the frame. Raises UnknownShape for a mesh.
         """
@@ -168,8 +175,9 @@ class PlacedShape(NamedTuple):
     def mismatch(
         self, other: "PlacedShape", tolerance: float, *, turned: bool = True
     ) -> ShapeDifference | None:
-        """Return how two shapes differ, with as few differences beyond a tolerance as their
-        symmetries allow.
+        """Return how two shapes differ, with as few differences as their symmetries allow.
+
+        Those count that are beyond a tolerance.
 
         None for shapes of different kinds, and for different meshes. Without `turned`, their
         orientations do not count.
@@ -191,8 +199,9 @@ class PlacedShape(NamedTuple):
 def _differences_by_pose(
     a: Geometry, T_w_a: Transform, b: Geometry, T_w_b: Transform
 ) -> Iterator[tuple[float, float, float]]:
-    """Yield the size, turn and angle of the difference for each way to lay a shape over another,
-    aligned axes first.
+    """Yield the difference of size, turn and angle for each way to lay a shape over another.
+
+    Aligned axes come first.
     """
     match a, b:
         case Sphere(), Sphere():
@@ -246,8 +255,9 @@ def _chord_angle(chord: Vector) -> float:
 
 
 def _corner_motion(size: Vector, leans: list[Vector]) -> float:
-    """Return how far the farthest corner of a box moves if the directions of its edges change by
-    these vectors.
+    """Return how far the farthest corner of a box moves.
+
+    The directions of its edges change by these vectors.
     """
     motions = []
     for signs in _CORNERS:

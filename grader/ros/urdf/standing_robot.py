@@ -95,15 +95,17 @@ class StandingRobot:
         return name if name in self.named else link
 
     def height(self, link: str) -> float:
-        """Return the height of the lowest point of a named link above the ground, with what is
-        fixed to it.
+        """Return the height of the lowest point of a named link above the ground.
+
+        What is fixed to the link belongs to it.
         """
         heights = self.rest.heights
         return min(heights[name] for name in heights if self._owners[name] == link)
 
     def find_odd_height(self) -> tuple[str, float]:
-        """Return the named link whose lowest point is farthest from the level of the others while
-        the base is level, and how far above it is, in metres.
+        """Return the named link whose lowest point is farthest from the level of the others.
+
+        The base is level. Also returns how far above it is, in metres.
         """
         bottoms: dict[str, float] = {}
         for name, shape in self.body.shapes:
@@ -120,14 +122,18 @@ class StandingRobot:
         return [*dict.fromkeys(self._owners[link] for link in self.rest.contacts)]
 
     def list_fall(self) -> list[tuple[Vector, float]]:
-        """Return how it comes to rest that is set down with its base level, even if it tips over:
-        where up is on the way, each with the height of the centre of mass above the ground.
+        """Return how it comes to rest that is set down with its base level.
+
+        It may tip over. The result is where up is on the way, each with the height of the centre of
+        mass above the ground.
         """
         return list_fall(self.body)
 
     def _find_span_below_mass(self) -> tuple[float, float] | None:
-        """Return how far the area between the contacts of links reaches backward and forward from
-        below the centre of mass; None if it is not below that.
+        """Return how far the area between contacts reaches from below the centre of mass.
+
+        It reaches backward and forward; the contacts are those of links. Returns None if it is not
+        below the centre of mass.
         """
         forward, left = level_directions(self.rest.up)
         corners: list[tuple[float, float]] = []
@@ -148,8 +154,9 @@ class StandingRobot:
         return (-min(crossings), max(crossings))
 
     def wheels(self, rollers: Sequence[float] | None = None) -> list[DrivenWheel]:
-        """Return the wheels that the named links are; `rollers` has the angle in degrees to the
-        rollers of each, of omni and mecanum wheels.
+        """Return the wheels that the named links are.
+
+        `rollers` has the angle in degrees to the rollers of each, of omni and mecanum wheels.
         """
         robot, up = self.robot, self.rest.up
         wheels = []
@@ -178,14 +185,17 @@ class StandingRobot:
     def drive(
         self, wheels: Sequence[DrivenWheel], rates: Sequence[float], forward: Vector
     ) -> Course:
-        """Return how the robot moves while its wheels turn at these rates (rad/s), as compared to a
-        direction in the frame of the base.
+        """Return how the robot moves while its wheels turn at these rates (rad/s).
+
+        The motion is compared to a direction in the frame of the base.
         """
         return Course.of(self.rest.up, wheels, rates, forward)
 
     def tipping_accelerations(self) -> tuple[float, float] | None:
-        """Return the accelerations in m/s^2, forward and backward, from which on the robot tips
-        over, resting on the named links; None if its centre of mass is not over them.
+        """Return the accelerations in m/s^2 from which on the robot tips over.
+
+        They are forward and backward, and the robot rests on the named links. Returns None if its
+        centre of mass is not over them.
         """
         span = self._find_span_below_mass()
         if span is None:

@@ -10,17 +10,18 @@ from grader.ros.urdf.shapes import PlacedShape
 
 def visuals(robot: Configuration, link: str) -> tuple[Visual, ...]:
     """Return the visuals of a link that have a size; raise MissingElement if there is none."""
-    found = robot.link(link)
-    shown = tuple(visual for visual in found.visuals if not visual.geometry.is_empty)
+    shown_link = robot.link(link)
+    shown = tuple(visual for visual in shown_link.visuals if not visual.geometry.is_empty)
     if not shown:
         message = f"link {link!r} has no visual with a size"
-        raise MissingElement("visual", link, message=message, location=place(found.location))
+        raise MissingElement("visual", link, message=message, location=place(shown_link.location))
     return shown
 
 
 def placed(robot: Configuration, link: str, visual: Visual, relative_to: str) -> PlacedShape:
-    """Return the shape of a visual in the frame of another link; raise MissingElement where its
-    pose is not defined.
+    """Return the shape of a visual in the frame of another link.
+
+    Raises MissingElement where its pose is not defined.
     """
     pose = visual.origin.placed_in(robot.pose(link, relative_to=relative_to))
     return PlacedShape(visual.geometry, pose)
@@ -35,8 +36,9 @@ def origin_place(robot: Configuration, link: str) -> LazyLocation | None:
 
 
 def axis_place(joint: Joint) -> LazyLocation | None:
-    """Return the place that gives an axis its direction: the joint's rpy if the axis is z of a
-    rotated frame.
+    """Return the place that gives an axis its direction.
+
+    This is the joint's rpy if the axis is z of a rotated frame.
     """
     is_z = (
         joint.axis_location is not None

@@ -17,9 +17,11 @@ _OFF_AXIS = 0.05  # of the radius: how far from its axis the middle of a wheel m
 
 
 class WheelSize(NamedTuple):
-    """The wheel of a joint. `axis` is the unit axis of the joint, `middle` the middle of the wheel,
-    or the origin of the joint where no round shape is known. `radii` has those of all round shapes,
-    the largest first, and `half_width` is None without one.
+    """The wheel of a joint.
+
+    `axis` is the unit axis of the joint, `middle` the middle of the wheel, or the origin of the
+    joint where no round shape is known. `radii` has those of all round shapes, the largest first,
+    and `half_width` is None without one.
     """
 
     joint: Joint
@@ -36,20 +38,28 @@ def measure_wheel(robot: Configuration, joint: Joint, base: str) -> WheelSize:
     the joints that mimic it, or of those that it carries, as a steering joint does. Raises
     MissingElement where a pose or an axis is not defined, NotDecided where one is open.
     """
-    own = _measure_own(robot, joint, base)
-    if own.radii:
-        return own
+    size = _measure_own(robot, joint, base)
+    if size.radii:
+        return size
     for other in _standing_for(robot, joint):
-        found = _measure_own(robot, other, base)
-        if found.radii:
-            return own._replace(radii=found.radii)
-    return own
+        other_size = _measure_own(robot, other, base)
+        if other_size.radii:
+            return size._replace(radii=other_size.radii)
+    return size
 
 
 def _standing_for(robot: Configuration, joint: Joint) -> Iterator[Joint]:
     """Yield the joints that mimic a joint, and then those that turn below these and below it."""
-    turning = [it for it in robot.robot.joints if it.has_position and it is not joint]
-    following = [it for it in turning if it.mimic is not None and it.mimic.joint == joint.name]
+    turning = [
+        candidate
+        for candidate in robot.robot.joints
+        if candidate.has_position and candidate is not joint
+    ]
+    following = [
+        candidate
+        for candidate in turning
+        if candidate.mimic is not None and candidate.mimic.joint == joint.name
+    ]
     yield from following
     below = {joint.child, *(follower.child for follower in following)}
     for link in [*below]:
@@ -60,12 +70,13 @@ def _standing_for(robot: Configuration, joint: Joint) -> Iterator[Joint]:
 
 
 def _measure_own(robot: Configuration, joint: Joint, base: str) -> WheelSize:
-    """Return the wheel that the cylinders and spheres about the axis of a joint make, on its link
-    and on those that are fixed to it.
+    """Return the wheel that the cylinders and spheres about the axis of a joint make.
+
+    They are on its link and on those that are fixed to it.
     """
     T_base_joint = robot.pose(joint.child, relative_to=base)
     axis = T_base_joint.rotate(robot.axis(joint))
-    found: list[tuple[float, float, Vector]] = []
+    shapes: list[tuple[float, float, Vector]] = []
     for link in _links_below(robot, joint.child, is_fixed=True):
         T_base_link = robot.pose(link, relative_to=base)
         elements: list[Collision | Visual] = [*robot.link(link).collisions]
@@ -82,17 +93,18 @@ def _measure_own(robot: Configuration, joint: Joint, base: str) -> WheelSize:
                     continue
             away = cross(minus(T_base_shape.translation, T_base_joint.translation), axis)
             if dot(away, away) <= (_OFF_AXIS * shape.radius) ** 2:
-                found.append((shape.radius, half_width, T_base_shape.translation))
-    if not found:
+                shapes.append((shape.radius, half_width, T_base_shape.translation))
+    if not shapes:
         return WheelSize(joint, axis, T_base_joint.translation)
-    found.sort(key=itemgetter(0), reverse=True)
-    radii = tuple(radius for radius, _, _ in found)
-    return WheelSize(joint, axis, found[0][2], radii, max(width for _, width, _ in found))
+    shapes.sort(key=itemgetter(0), reverse=True)
+    radii = tuple(radius for radius, _, _ in shapes)
+    return WheelSize(joint, axis, shapes[0][2], radii, max(width for _, width, _ in shapes))
 
 
 def _links_below(robot: Configuration, link: str, *, is_fixed: bool = False) -> Iterable[str]:
-    """Return a link and those that joints connect to it, downward; with `is_fixed`, fixed joints
-    only.
+    """Return a link and those that joints connect to it, downward.
+
+    With `is_fixed`, only fixed joints count.
     """
     children: dict[str, list[str]] = {}
     for joint in robot.robot.joints:

@@ -18,8 +18,9 @@ _NEARLY = 5.0  # degrees within which an axis is said to be vertical
 def travel_of(
     robot: Configuration, link: str, joint: Joint, base: str, up: Vector
 ) -> tuple[Vector, Literal[""]] | tuple[None, str]:
-    """Return the direction in which a small positive rotation drives the base, or None and why the
-    wheel does not roll.
+    """Return the direction in which a small positive rotation drives the base.
+
+    If the wheel does not roll, returns None and why.
 
     The direction is a unit vector in the base's frame, perpendicular to the unit vector `up`.
     Raises MissingElement, NotDecided or UnknownShape if it cannot be determined.
@@ -50,8 +51,9 @@ def travel_of(
 
 
 def turning_joint(robot: Configuration, link: str, base: str) -> Joint:
-    """Return the turning joint next to a link, on the path to the base; raise MissingElement where
-    nothing turns.
+    """Return the turning joint next to a link, on the path to the base.
+
+    Raises MissingElement where nothing turns.
     """
     message = f"no joint between {base!r} and {link!r} turns; one should be continuous or revolute"
     return robot.joint_between(base, link, ("continuous", "revolute"), message)

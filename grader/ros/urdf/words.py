@@ -16,8 +16,9 @@ _DIGIT_AND_LETTER = re.compile(r"(?=.*\d)[-+.\dOoIl]+(?:e[-+]?\d+)?")
 
 
 def meant_tag(tag: str, parent: str, present: set[str]) -> str | None:
-    """Return the child of `parent` that a tag surely stands for, which is not `present` yet; None
-    for a tag that is right, or that is of another tool.
+    """Return the child of `parent` that a tag surely stands for, which is not `present` yet.
+
+    Returns None for a tag that is right, or that is of another tool.
     """
     if tag in TAGS or tag.startswith("{"):
         return None
@@ -30,8 +31,9 @@ def meant_tag(tag: str, parent: str, present: set[str]) -> str | None:
 
 
 def meant_attribute(name: str, tag: str, values: Mapping[str, str]) -> str | None:
-    """Return the attribute of `tag` that a name surely stands for, which is not among its `values`
-    yet.
+    """Return the attribute of `tag` that a name surely stands for.
+
+    It is not among its `values` yet.
     """
     if name in ATTRIBUTES[tag] or name.startswith("{"):
         return None
@@ -47,8 +49,9 @@ def meant_attribute(name: str, tag: str, values: Mapping[str, str]) -> str | Non
 
 
 def _other_vector(name: str, value: str, tag: str, absent: list[str]) -> str | None:
-    """Return the one vector of an element whose name is written as that of another vector, as in
-    <axis rpy="0 0 1"/>.
+    """Return the one vector of an element whose name is written as another vector's.
+
+    An example is <axis rpy="0 0 1"/>.
     """
     count = len(PARTS[name])
     vectors = [other for other in TAGS[tag].attributes if len(PARTS[other]) == count]
@@ -64,26 +67,32 @@ def _may_have(attribute: str, value: str) -> bool:
 
 
 def meant_value(text: str, attribute: str) -> str | None:
-    """Return the numbers that a value surely stands for; None for one that ROS 2 reads, or that
-    may be several.
+    """Return the numbers that a value surely stands for.
+
+    Returns None for one that ROS 2 reads, or that may be several.
     """
     count = len(PARTS.get(attribute, ()))
     if not count or len(text) > _MAX_LENGTH or _is_read(text, count):
         return None
-    bracketed = _BRACKETS.fullmatch(text)
-    inner = (bracketed[1] if bracketed is not None else text).strip()
-    words = [
-        word.translate(_LETTERS) if _DIGIT_AND_LETTER.fullmatch(word) else word
-        for word in re.split(r"([\s,;]+)", inner)
-    ]
-    plain = "".join(words)
+    plain = _without_letters(text)
     decimal = _DECIMAL_COMMA.sub(".", plain)
     ways = {plain, _SEPARATORS.sub(" ", plain).strip(), _SEPARATORS.sub(" ", decimal).strip()}
-    found = {way for way in ways if _is_read(way, count)}
-    if len(found) == 1:
-        return found.pop()
-    readable = readable_numbers(text, count) if not found else None
+    readable_ways = {way for way in ways if _is_read(way, count)}
+    if len(readable_ways) == 1:
+        return readable_ways.pop()
+    readable = readable_numbers(text, count) if not readable_ways else None
     return " ".join(readable) if readable is not None and len(readable) == count else None
+
+
+def _without_letters(text: str) -> str:
+    """Return a value without brackets, and with digits for the letters that look like them."""
+    bracketed = _BRACKETS.fullmatch(text)
+    inner = (bracketed[1] if bracketed is not None else text).strip()
+    words = re.split(r"([\s,;]+)", inner)
+    for index, word in enumerate(words):
+        if _DIGIT_AND_LETTER.fullmatch(word):
+            words[index] = word.translate(_LETTERS)
+    return "".join(words)
 
 
 def _is_read(text: str, count: int) -> bool:

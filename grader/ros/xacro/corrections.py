@@ -1,5 +1,6 @@
-"""The edits that correct what xacro refuses: one edit, where it surely is meant, and others that
-hints try.
+"""The edits that correct what xacro refuses.
+
+There is one edit where it surely is meant, and others that hints try.
 """
 
 import re
@@ -58,8 +59,9 @@ Refusal = tuple[EvaluationFails, ScopePlace, str | None]
 
 
 class Corrections:
-    """Finds the correction that is surely meant of what xacro refuses in a document and the
-    files it includes.
+    """Finds the correction that is surely meant of what xacro refuses in a document.
+
+    The files that the document includes are part of it.
     """
 
     def __init__(self, files: Files, budget: Budget) -> None:
@@ -76,9 +78,9 @@ class Corrections:
         if parameters:
             return _correction(parameters, location, is_of_element=True)
         if unknown is not None:
-            found = self._correct_unknown(place, attribute, unknown)
-            if found is not None:
-                return found
+            correction = self._correct_unknown(place, attribute, unknown)
+            if correction is not None:
+                return correction
         ways: tuple[Callable[[Refusal], Edits], ...] = (
             _power,
             self._decimal_commas,
@@ -88,8 +90,9 @@ class Corrections:
         return _correction(edits, location) if edits else None
 
     def moved(self, unknown: UnknownName) -> tuple[Edits, Location] | None:
-        """Return the edits that move what defines a name to the top, and where it is; None if
-        nothing does, below.
+        """Return the edits that move what defines a name to the top, and where it is.
+
+        Returns None if nothing below defines it.
         """
         tag = {"property": "xacro:property", "macro": "xacro:macro"}.get(unknown.kind)
         root = next(iter(self._files.documents.values()))
@@ -139,15 +142,7 @@ class Corrections:
             )
             fix = Fix(moved[0], sentence)
             return XacroCorrection(fix, moved[1], is_of_element=True, problem=problem)
-        definitions = []
-        included: Edits = ()
-        for node in self.nodes():
-            edits = tag_edits(*node.place.written, node.tag, f"xacro:{node.tag}")
-            if node.tag == unknown.kind and node.attributes.get("name") == unknown.name:
-                definitions.append(edits)
-            elif node.tag == "include" and "filename" in node.attributes:
-                included += edits
-        prefixed = definitions or ([included] if included else [])
+        prefixed = self._prefixed(unknown)
         if len(prefixed) == 1:
             return _correction(prefixed[0], location, is_of_element=True)
         edits = self._quoted(place, attribute, unknown)
@@ -158,11 +153,26 @@ class Corrections:
             return self._respelt(place, attribute, unknown, is_of_element=of_element)
         return None
 
+    def _prefixed(self, unknown: UnknownName) -> list[Edits]:
+        """Return the edits that write xacro: before what defines a name, else before includes."""
+        definitions = []
+        included: Edits = ()
+        for node in self.nodes():
+            edits = tag_edits(*node.place.written, node.tag, f"xacro:{node.tag}")
+            if node.tag == unknown.kind and node.attributes.get("name") == unknown.name:
+                definitions.append(edits)
+            elif node.tag == "include" and "filename" in node.attributes:
+                included += edits
+        if included and not definitions:
+            return [included]
+        return definitions
+
     def _respelt(
         self, place: ScopePlace, attribute: str | None, unknown: UnknownName, *, is_of_element: bool
     ) -> XacroCorrection | None:
-        """Return the correction of a name where it is used, or where it is defined if nothing
-        uses it as defined.
+        """Return the correction of a name where it is used.
+
+        If nothing uses it as defined, it is corrected where it is defined.
         """
         meant = unknown.meant or ""
         definition = unknown.known.get(meant)
@@ -179,9 +189,7 @@ class Corrections:
         return None
 
     def _uses(self, name: str) -> int:
-        """Return how many attributes use a name in an expression, or give an argument of this
-        name.
-        """
+        """Return how many attributes use a name in an expression, or give an argument of it."""
         used = re.compile(rf"(?<![\w.]){re.escape(name)}(?!\w)")
         texts = (text for node in self.nodes() for text in node.attributes.values() if "${" in text)
         given = sum(
@@ -196,19 +204,20 @@ class Corrections:
             yield from islice(walk(root), _MAX_NODES)
 
     def _quoted(self, place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Edits:
-        """Return the edit that puts a text in quotes with which something is compared: ${side ==
-        left}.
+        """Return the edit that puts a text in quotes with which something is compared.
+
+        An example is ${side == left}.
         """
         name = re.escape(unknown.name)
         compared = re.compile(rf"([=!]=\s*){name}(?![\w.(\[])|(?<![\w.]){name}(?=\s*[=!]=)")
         is_value = any(unknown.name in node.attributes.values() for node in self.nodes())
         if unknown.kind != "property" or not (is_value or unknown.meant is None):
             return ()
-        for own, text, quote in _values(place, attribute):
+        for attribute_name, text, quote in _values(place, attribute):
             other = '"' if quote == "'" else "'"
             if "${" in text and compared.search(text):
                 return _with_value(
-                    place, own, compared.sub(rf"\g<1>{other}{unknown.name}{other}", text)
+                    place, attribute_name, compared.sub(rf"\g<1>{other}{unknown.name}{other}", text)
                 )
         return ()
 
@@ -235,17 +244,21 @@ class Corrections:
         """Return the edits that write decimal points in the numbers that an expression uses."""
         _, place, attribute = refusal
         expressions = [
-            it for _, text, _ in _values(place, attribute) for it in _EXPRESSION.findall(text)
+            expression
+            for _, text, _ in _values(place, attribute)
+            for expression in _EXPRESSION.findall(text)
         ]
         names = {name for text in expressions for name in _NAME.findall(text)}
         edits: list[Edit] = []
         for node in self.nodes():
-            own = {
+            named_by = {
                 "value": node.attributes.get("name", ""),
                 "default": node.attributes.get("name", ""),
             }
             for key, text in node.attributes.items() if node.tag.startswith("xacro:") else ():
-                name = own.get(key, key) if node.tag in ("xacro:property", "xacro:arg") else key
+                name = (
+                    named_by.get(key, key) if node.tag in ("xacro:property", "xacro:arg") else key
+                )
                 if name in names and _DECIMAL_COMMA.fullmatch(text):
                     edits += _with_value(node.place, key, text.replace(",", "."))
         return tuple(edits)
@@ -258,11 +271,14 @@ class Corrections:
         return tuple(edit for edit in self.unmarked() if edit[:2] == place.at()[:2])
 
     def unmarked(self) -> Edits:
-        """Return the edits that write ${side} where {side}, $ {side}, $(side) or $side stands for a
-        known name.
+        """Return the edits that write ${side} where another form stands for a known name.
+
+        Such a form is {side}, $ {side}, $(side) or $side.
         """
         properties = {
-            it.attributes.get("name", "") for it in self.nodes() if it.tag == "xacro:property"
+            element.attributes.get("name", "")
+            for element in self.nodes()
+            if element.tag == "xacro:property"
         }
         edits: list[Edit] = []
         for root in self._files.documents.values():
@@ -270,14 +286,9 @@ class Corrections:
             while waiting and len(edits) < _MAX_NODES:
                 node, known = waiting.pop()
                 if node.tag == "xacro:macro":
-                    known |= {
-                        re.split(r":?=", word)[0]
-                        for word in node.attributes.get("params", "").split()
-                    }
-                for name, text in node.attributes.items():
-                    new = _marked(text, known) if "{" in text or "$" in text else text
-                    if new != text and name != "params":
-                        edits += _with_value(node.place, name, new)
+                    words = node.attributes.get("params", "").split()
+                    known |= {re.split(r":?=", word)[0] for word in words}
+                edits += _mark_names(node, known)
                 waiting += [(child, known) for child in node.elements]
         return tuple(edits)
 
@@ -287,21 +298,31 @@ def _defined_name(node: XacroNode) -> str:
     return node.attributes.get("name", "").removeprefix("xacro:")
 
 
+def _mark_names(node: XacroNode, known: Iterable[str]) -> list[Edit]:
+    """Return the edits of attributes in which known names are meant to be evaluated."""
+    edits: list[Edit] = []
+    for name, text in node.attributes.items():
+        new = _marked(text, known) if "{" in text or "$" in text else text
+        if new != text and name != "params":
+            edits += _with_value(node.place, name, new)
+    return edits
+
+
 def _marked(text: str, known: Iterable[str]) -> str:
     """Return a text in which each known name that is meant to be evaluated is in ${}."""
 
-    def marked(found: re.Match[str]) -> str:
-        name = found["brace"] or found["paren"]
+    def marked(match: re.Match[str]) -> str:
+        name = match["brace"] or match["paren"]
         if name is not None:
             if name in known:
                 return f"${{{name}}}"
-            return found[0]
-        bare = found["bare"] or ""
+            return match[0]
+        bare = match["bare"] or ""
         ends = [len(bare), *(at.start() for at in reversed([*re.finditer("_", bare)]))]
         end = next((end for end in ends if bare[:end] in known), 0)
         if end:
             return f"${{{bare[:end]}}}{bare[end:]}"
-        return found[0]
+        return match[0]
 
     return _UNMARKED.sub(marked, text)
 
@@ -311,7 +332,10 @@ def _power(refusal: Refusal) -> Edits:
     _, place, attribute = refusal
     for name, text, _ in _values(place, attribute):
         new = _EXPRESSION.sub(
-            lambda it: it[0] if TEXT_IN_QUOTES.search(it[0]) else it[0].replace("^", "**"), text
+            lambda match: (
+                match[0] if TEXT_IN_QUOTES.search(match[0]) else match[0].replace("^", "**")
+            ),
+            text,
         )
         if new != text:
             return _with_value(place, name, new)
@@ -319,22 +343,27 @@ def _power(refusal: Refusal) -> Edits:
 
 
 def _values(place: ScopePlace, attribute: str | None) -> Iterator[tuple[str, str, str]]:
-    """Yield the name, the text and the quote of an attribute; without a name, those of all
-    attributes of the tag.
+    """Yield the name, the text and the quote of an attribute.
+
+    Without a name, those of all attributes of the tag are yielded.
     """
     source, start = place.source.element(place.tag)
-    for found in markup.attributes(source.text, start):
-        if attribute in (None, found.name) and found.value_end - found.value_start <= _MAX_VALUE:
+    for markup_attribute in markup.attributes(source.text, start):
+        if (
+            attribute in (None, markup_attribute.name)
+            and markup_attribute.value_end - markup_attribute.value_start <= _MAX_VALUE
+        ):
             yield (
-                found.name,
-                source.text[found.value_start : found.value_end],
-                source.text[found.value_end],
+                markup_attribute.name,
+                source.text[markup_attribute.value_start : markup_attribute.value_end],
+                source.text[markup_attribute.value_end],
             )
 
 
 def _with_value(place: ScopePlace, name: str, new: str) -> Edits:
-    """Return the edit that gives an attribute another value; none where it is not written in the
-    tag.
+    """Return the edit that gives an attribute another value.
+
+    Returns none where it is not written in the tag.
     """
     source, start = place.source.element(place.tag)
     if markup.attribute(source.text, start, name) is None:
@@ -360,8 +389,9 @@ def sentence_of(edits: Edits) -> str:
 
 
 def respellings(place: ScopePlace, attribute: str | None, unknown: UnknownName) -> Iterator[Edits]:
-    """Yield the edits that correct an unknown name where it is used, or where a similar one is
-    defined.
+    """Yield the edits that correct an unknown name where it is used.
+
+    Others correct a similar name where it is defined.
     """
     similar = closest(unknown.name, unknown.known)
     if similar is not None:
@@ -375,18 +405,17 @@ def respellings(place: ScopePlace, attribute: str | None, unknown: UnknownName) 
 def values_of_other_calls(
     place: ScopePlace, nodes: Sequence[XacroNode], lacking: tuple[str, ...]
 ) -> Iterator[tuple[Edits, Mapping[str, str]]]:
-    """Yield the edits that give a call the values that it lacks, from other calls of the macro,
-    also negated.
+    """Yield the edits that give a call the values that it lacks.
+
+    The values are from other calls of the macro, also negated.
     """
-    own = next((node for node in nodes if node.place[:2] == place[:2]), None)
+    own_call = next((node for node in nodes if node.place[:2] == place[:2]), None)
+    if own_call is None:
+        return
     for other in nodes:
         given = other.attributes
-        if (
-            own is not None
-            and other is not own
-            and other.tag == own.tag
-            and set(lacking) <= given.keys()
-        ):
+        is_of_macro = other is not own_call and other.tag == own_call.tag
+        if is_of_macro and set(lacking) <= given.keys():
             copied = {name: given[name] for name in lacking}
             mirrored = ({**copied, name: new} for name in lacking for new in _mirrored(given[name]))
             for values in (copied, *islice(mirrored, _MAX_MIRRORED)):
@@ -394,13 +423,14 @@ def values_of_other_calls(
 
 
 def _mirrored(text: str) -> Iterator[str]:
-    """Yield a text with each of its numbers and expressions negated: one on the other side differs
-    in one of them.
+    """Yield a text with each of its numbers and expressions negated.
+
+    One on the other side differs in one of them.
     """
-    for found in _WORD.finditer(text):
-        new = negated(found[0])
-        if new != found[0] and found[0].strip("0."):
-            yield f"{text[: found.start()]}{new}{text[found.end() :]}"
+    for match in _WORD.finditer(text):
+        new = negated(match[0])
+        if new != match[0] and match[0].strip("0."):
+            yield f"{text[: match.start()]}{new}{text[match.end() :]}"
 
 
 def negated(text: str) -> str:
@@ -419,7 +449,7 @@ def _give(place: ScopePlace, values: Mapping[str, str]) -> Edits:
     source, start = place.source.element(place.tag)
     ends = [
         markup.name_end(source.text, start),
-        *(it.end for it in markup.attributes(source.text, start)),
+        *(other.end for other in markup.attributes(source.text, start)),
     ]
     return (
         source.edit(
@@ -429,19 +459,20 @@ def _give(place: ScopePlace, values: Mapping[str, str]) -> Edits:
 
 
 def _rename(place: ScopePlace, attribute: str | None, old: str, new: str) -> Edits:
-    """Return the edit of an attribute's value; without an attribute, of an attribute's name, the
-    tag, or any value.
+    """Return the edit of an attribute's value.
+
+    Without an attribute, it is of an attribute's name, the tag, or any value.
     """
     source, start = place.source.element(place.tag)
     if attribute is None:
         tags = tag_edits(*place.written, f"xacro:{old}", f"xacro:{new}")
         if tags:
             return tags
-    for found in markup.attributes(source.text, start):
-        whole = source.text[found.start : found.end]
+    for markup_attribute in markup.attributes(source.text, start):
+        whole = source.text[markup_attribute.start : markup_attribute.end]
         changed = re.sub(
             rf"(?<![\w.]){re.escape(old)}(?!\w)", new, whole, count=0 if "$" in whole else 1
         )
-        if attribute in (None, found.name) and changed != whole:
-            return (source.edit(found.start, found.end, changed),)
+        if attribute in (None, markup_attribute.name) and changed != whole:
+            return (source.edit(markup_attribute.start, markup_attribute.end, changed),)
     return ()

@@ -79,18 +79,19 @@ class Expander:
         handlers: Mapping[str, Handler],
         other: Handler,
     ) -> None:
-        """`handlers` expand xacro's own tags, and `other` every other tag that begins with
-        xacro: a macro call.
+        """`handlers` expand xacro's own tags, and `other` the calls of macros.
+
+        A call of a macro is every other tag that begins with xacro.
         """
         self.files = files
         self.budget = budget
         # `texts` is set below, so that the lambda is needed.
-        own = document_functions(
+        functions = document_functions(
             self._load_yaml,
             lambda name: self.texts.argument(name),  # noqa: PLW0108
             lambda name: self.texts.note(name),  # noqa: PLW0108
         )
-        self.texts = Texts(dict(arguments), self.budget, self.report, own, files.has_package)
+        self.texts = Texts(dict(arguments), self.budget, self.report, functions, files.has_package)
         self.own_tags = [tag.removeprefix("xacro:") for tag in handlers]
         self.problems: list[Problem] = []
         self.warnings: list[Problem] = []  # what xacro writes to stderr, and notes
@@ -122,8 +123,9 @@ class Expander:
         return out
 
     def content(self, source: XacroNode, out: XacroNode, scopes: Scopes) -> None:
-        """Expand the children of an element into another. Omit what is refused or cannot be
-        determined.
+        """Expand the children of an element into another.
+
+        Omits what is refused or cannot be determined.
         """
         out.open = out.open or source.open
         for child in source.children:
@@ -147,8 +149,9 @@ class Expander:
                 out.open = out.open or reason
 
     def insert(self, source: XacroNode, out: XacroNode, scopes: Scopes) -> None:
-        """Expand the children of an element, but not itself, such as <xacro:if>; attributes set
-        on it are lost.
+        """Expand the children of an element, but not itself, such as <xacro:if>.
+
+        Attributes set on it are lost.
         """
         inside = XacroNode(source.tag, source.place)
         try:
@@ -169,15 +172,17 @@ class Expander:
         return out
 
     def set(self, out: XacroNode, name: str, value: str) -> None:
-        """Set an attribute of an expanded element. Raises OutOfBudget: each is compared with all
-        others.
+        """Set an attribute of an expanded element.
+
+        Raises OutOfBudget: each is compared with all others.
         """
         self._grow(value, len(out.attributes) // _COMPARED + len(name) // CHARACTERS)
         out.attributes[name] = value
 
     def _grow(self, text: str, parts: int = 0) -> None:
-        """Charge a text that the expanded document contains, and other parts. Raises
-        OutOfBudget.
+        """Charge a text that the expanded document contains, and other parts.
+
+        Raises OutOfBudget.
         """
         self.budget.charge(_OF_ATTRIBUTE + parts, len(text))
         self._length += len(text)
@@ -190,8 +195,9 @@ class Expander:
         place: ScopePlace,
         attribute: str | None = None,
     ) -> str:
-        """List a problem, or what cannot be determined; return why it cannot, nothing for what
-        xacro refuses.
+        """List a problem, or what cannot be determined.
+
+        Returns why it cannot, nothing for what xacro refuses.
         """
         message = str(error)
         if isinstance(error, Reported) or not self._is_new(message, place, attribute):
@@ -223,9 +229,7 @@ class Expander:
             self.warnings.append(Problem(kind, message, self._place(place).at(attribute)))
 
     def _warn_of_names(self) -> None:
-        """List the functions that wrote to stderr, the names of xacro that got other values, and
-        each use of ^.
-        """
+        """List functions that wrote to stderr, names of xacro with other values, each use of ^."""
         for name, place, attribute in self.texts.redefined.values():
             message = (
                 f"{quoted(name)} is a built-in name of xacro, which warns if it is redefined: "
@@ -260,8 +264,9 @@ class Expander:
         return next(iter(self.files.documents.values())).place, None
 
     def _is_new(self, message: str, place: ScopePlace, attribute: str | None) -> bool:
-        """Return whether something is to be listed: once for each place in the source, for all
-        calls of a macro.
+        """Return whether something is to be listed.
+
+        It is once for each place in the source, for all calls of a macro.
         """
         known = len(self._listed)
         if known < _MAX_LISTED:

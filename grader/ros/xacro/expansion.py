@@ -1,5 +1,6 @@
-"""A xacro file, expanded statically, as the document that ROS 2 reads; every element keeps its
-place in the source.
+"""A xacro file, expanded statically, as the document that ROS 2 reads.
+
+Every element keeps its place in the source.
 
 xacro (ros/xacro 2.1) stops at the first thing that it refuses. Here it becomes a problem, and the
 rest is expanded all the same, so that one defect does not hide another.
@@ -19,7 +20,7 @@ from grader.base.source import Edit, Edits, Location, Source
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.values import EvaluationFails, Undetermined
 from grader.ros.xacro import xacro_problems
-from grader.ros.xacro.corrections import Corrections, Refusal, sentence_of
+from grader.ros.xacro.corrections import Corrections, Refusal, XacroCorrection, sentence_of
 from grader.ros.xacro.expander import STOPS, Expander, UndeterminedUse
 from grader.ros.xacro.tags import CALL, HANDLERS
 from grader.ros.xacro.texts import OtherArguments, Texts
@@ -69,29 +70,33 @@ class ExpandedSource(Source):
         self._expander, self._work = expander, work
 
     def tag(self, index: int, attribute: str | None = None) -> Location:
-        """Return the location in the source of an expanded element, or of an attribute if it has
-        it.
+        """Return the location in the source of an expanded element.
+
+        With an attribute that the element has, it is the location of the attribute.
         """
         return self.nodes[index].place.at(attribute)
 
     def next_tag(self, index: int, name: str) -> int:
-        """Return the index of the first expanded element of this name after another one; that
-        one if there is none.
+        """Return the index of the first expanded element of this name after another one.
+
+        Returns the index of the other one if there is none.
         """
         others = range(index + 1, len(self.nodes))
         return next((other for other in others if self.nodes[other].tag == name), index)
 
     @property
     def documents(self) -> Mapping[str, XacroNode]:
-        """The files that it was expanded from, as they are written, by their paths: this one
-        first.
+        """The files that it was expanded from, as they are written, by their paths.
+
+        This file is the first one.
         """
         return self._expander.files.documents
 
     @property
     def includes(self) -> Mapping[tuple[str, int], list[str]]:
-        """The files that were included, by the path of the file and the index of the tag that
-        include them.
+        """The files that were included, by the path and the tag that include them.
+
+        The key is the path of the file and the index of the tag in it.
         """
         return self._expander.files.followed
 
@@ -130,7 +135,7 @@ class ExpandedSource(Source):
     @property
     def open_reason(self) -> str:
         """Why something could not be expanded; empty if everything was."""
-        return next((found.reason for found in self._expander.undetermined), "")
+        return next((part.reason for part in self._expander.undetermined), "")
 
     def inventory(self, budget: Budget) -> "Inventory":
         """Return what its files define and use. Raises NotDecided where that takes too much."""
@@ -141,15 +146,15 @@ class ExpandedSource(Source):
         except OutOfBudget as error:
             raise NotDecided(str(error)) from None
 
-    def check_known(self, found: "Inventory") -> None:
+    def check_known(self, read_inventory: "Inventory") -> None:
         """Raise NotDecided if what seems to be missing may be in a part that is not known."""
         is_open = any(
-            (place.source.path, place.tag) not in self.includes for place in found.includes
+            (place.source.path, place.tag) not in self.includes for place in read_inventory.includes
         )
         if self.open_reason and is_open:
             raise NotDecided(self.open_reason)
-        if found.dynamic:
-            place = found.dynamic[0].at()
+        if read_inventory.dynamic:
+            place = read_inventory.dynamic[0].at()
             reason = "xacro evaluates the name of a property or macro"
             raise NotDecided(f"{reason} ({place.path}, line {place.line})", reason)
 
@@ -159,8 +164,9 @@ class ExpandedSource(Source):
         return super().cost + self._work // _READING_OF_SHORT
 
     def element(self, tag: int) -> tuple[Source, int]:
-        """Return the text, perhaps of an included file, with an expanded element, and the offset
-        of its start tag.
+        """Return the text with an expanded element, and the offset of its start tag.
+
+        The text may be that of an included file.
         """
         place = self.nodes[tag].place
         return place.source.element(place.tag)
@@ -194,16 +200,19 @@ class _Expansion(NamedTuple):
 
     @property
     def document(self) -> XmlDocument:
-        """The expanded file as the reader of robots takes it; what cannot be determined is a
-        problem in it.
+        """The expanded file as the reader of robots takes it.
+
+        What cannot be determined is a problem in it.
         """
         undetermined = [
-            Problem(xacro_problems.XACRO_UNDETERMINED, found.reason, found.location)
-            for found in self.undetermined
+            Problem(xacro_problems.XACRO_UNDETERMINED, part.reason, part.location)
+            for part in self.undetermined
         ]
         problems = [*self.problems, *undetermined, *self.warnings]
-        found = XmlDocument(self.root, self.source, problems, 0, self.unresolved, is_expanded=True)
-        return found._replace(recovered=self.recovered, is_meant=self.is_meant)
+        expanded = XmlDocument(
+            self.root, self.source, problems, 0, self.unresolved, is_expanded=True
+        )
+        return expanded._replace(recovered=self.recovered, is_meant=self.is_meant)
 
 
 def expand(
@@ -214,8 +223,9 @@ def expand(
     others: OtherArguments = "default",
     edits: Edits = (),
 ) -> _Expansion:
-    """Return a xacro file as xacro expands it with these arguments; never raises. `path` is that in
-    the workspace.
+    """Return a xacro file as xacro expands it with these arguments; never raises.
+
+    `path` is that in the workspace.
 
     `others` says what is known of other arguments. With `edits`, which surely are meant, `meant` is
     the expansion of the files after these, too.
@@ -231,22 +241,29 @@ def expand(
         fixes = Fixes(lambda: [fix])
         assumed[fix.assumption] = Problem(RECOVERED, fix.assumption, at, fixes=fixes)
         meant, expander = read(_by_path(corrected))
-    while expander is not None and expander.corrections and len(assumed) < _MAX_ASSUMED:
-        of_elements = [
-            found for found in expander.corrections if found.is_of_element
-        ]  # first: they may define names
-        new = of_elements or expander.corrections
-        if all(corrected.keys() >= set(found.fix.edits) for found in new):
+    while expander is not None and len(assumed) < _MAX_ASSUMED:
+        new = _new_corrections(expander, corrected)
+        if not new:
             break
-        for found in new:
-            corrected |= dict.fromkeys(found.fix.edits)
-            sentence = found.fix.assumption
-            assumed.setdefault(sentence, Problem(RECOVERED, sentence, found.location))
+        for correction in new:
+            corrected |= dict.fromkeys(correction.fix.edits)
+            sentence = correction.fix.assumption
+            assumed.setdefault(sentence, Problem(RECOVERED, sentence, correction.location))
         meant, expander = read(_by_path(corrected))
     if expander is None or meant is expansion:
         return expansion
     expander.refused[:0] = refused  # for hints
     return expansion._replace(meant=meant, assumed=tuple(assumed.values()))
+
+
+def _new_corrections(expander: Expander, corrected: Mapping[Edit, None]) -> list[XacroCorrection]:
+    """Return the corrections to make next; none if all of them are made."""
+    # Those of elements come first: they may define names.
+    new = [correction for correction in expander.corrections if correction.is_of_element]
+    new = new or expander.corrections
+    if all(corrected.keys() >= set(correction.fix.edits) for correction in new):
+        return []
+    return new
 
 
 def _by_path(edits: Iterable[Edit]) -> dict[str, Edits]:
@@ -302,8 +319,9 @@ def _expand(
 def _read(
     data: bytes, text: Source, budget: Budget, edits: Edits
 ) -> tuple[XacroNode | None, tuple[Problem, ...], bool]:
-    """Return the elements of a file, what xacro refuses in it, and whether they are only what
-    broken tags leave.
+    """Return the elements of a file, and what xacro refuses in it.
+
+    Also returns whether they are only what broken tags leave.
     """
     path = text.path
     try:
@@ -321,11 +339,12 @@ def _read(
 
 
 def _instructions(text: Source) -> Iterator[Problem]:
-    """Yield the first processing instruction: xacro keeps it, after its own comment, where
-    TinyXML2 refuses it.
+    """Yield the first processing instruction.
+
+    It stands after xacro's own comment, where TinyXML2 refuses it.
     """
     instruction = next(
-        (found for found in _INSTRUCTION.finditer(text.text) if found["target"]), None
+        (match for match in _INSTRUCTION.finditer(text.text) if match["target"]), None
     )
     if instruction is not None:
         what = f"<?{instruction['target'][:40]}?>"
@@ -336,8 +355,9 @@ def _instructions(text: Source) -> Iterator[Problem]:
 def _element(
     root: XacroNode, nodes: list[XacroNode], unresolved: dict[Element, Unresolved]
 ) -> Element:
-    """Return the elements of lxml for expanded ones; `nodes` becomes the latter in document
-    order.
+    """Return the elements of lxml for expanded ones.
+
+    `nodes` becomes the latter in document order.
     """
     made = make_element(_name(root.tag), _attributes(root.attributes))
     pending: list[tuple[XacroNode, Element]] = [(root, made)]
@@ -347,24 +367,25 @@ def _element(
         if node.unresolved or node.open is not None:
             unresolved[element] = Unresolved(node.unresolved, node.open)
         children: list[tuple[XacroNode, Element]] = []
-        for kind, found in groupby(node.children, type):
+        for kind, group in groupby(node.children, type):
             if kind is XacroNode:
-                inside = [child for child in found if isinstance(child, XacroNode)]
+                inside = [child for child in group if isinstance(child, XacroNode)]
                 children += [
-                    (it, make_element(_name(it.tag), _attributes(it.attributes), element))
-                    for it in inside
+                    (child, make_element(_name(child.tag), _attributes(child.attributes), element))
+                    for child in inside
                 ]
             elif children:
-                children[-1][1].tail = "".join(map(str, found))
+                children[-1][1].tail = "".join(map(str, group))
             else:
-                element.text = "".join(map(str, found))
+                element.text = "".join(map(str, group))
         pending += reversed(children)
     return made
 
 
 def _name(tag: str) -> str:
-    """Return a name for lxml: a prefix stands for its namespace, because no element with one
-    belongs to a URDF.
+    """Return a name for lxml.
+
+    A prefix stands for its namespace, because no element with one belongs to a URDF.
     """
     if ":" not in tag:
         return tag
@@ -375,4 +396,4 @@ def _name(tag: str) -> str:
 def _attributes(attributes: dict[str, str]) -> dict[str, str]:
     if ":" not in "".join(attributes):
         return attributes
-    return {_name(name): it for name, it in attributes.items()}
+    return {_name(name): text for name, text in attributes.items()}

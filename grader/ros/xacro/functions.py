@@ -1,5 +1,6 @@
-"""The names that every xacro expression knows: Python's functions, math, and the namespaces python,
-math and xacro.
+"""The names that every xacro expression knows.
+
+They are Python's functions, math, and the namespaces python, math and xacro.
 """
 
 import re
@@ -71,22 +72,23 @@ def document_functions(
     argument: Callable[[str], str],
     note: Callable[[str], object],
 ) -> dict[str, Value]:
-    """Return the functions that need the document: those of the namespace xacro, and the old ones
-    outside of it.
+    """Return the functions that need the document.
+
+    These are those of the namespace xacro, and the old ones outside of it.
 
     `note` is called with the full name of each function that writes to stderr when it is called.
     """
-    own = {
+    functions = {
         **_XACRO,
         "load_yaml": PlainFunction("load_yaml", load_yaml),
         "arg": PlainFunction("arg", argument),
     }
-    old = {name: own[name] for name in ("load_yaml", "abs_filename", "dotify")}
+    old = {name: functions[name] for name in ("load_yaml", "abs_filename", "dotify")}
     old |= {name: BUILTINS[name] for name in ("sorted", "range")}
-    own |= {name: _noted(f"xacro.{name}", own[name], note) for name in _MESSAGES}
+    functions |= {name: _noted(f"xacro.{name}", functions[name], note) for name in _MESSAGES}
     return {
-        "xacro": namespace("xacro", own),
-        **{name: _noted(name, it, note) for name, it in old.items()},
+        "xacro": namespace("xacro", functions),
+        **{name: _noted(name, function, note) for name, function in old.items()},
     }
 
 
@@ -135,8 +137,9 @@ GLOBALS: Mapping[str, Value] = {
 
 
 def read_yaml_values(data: bytes, find: Callable[[str], Value], budget: Budget) -> Value:
-    """Return the value of a YAML text. `find` returns the value of a name in an expression with a
-    unit: !radians pi/2.
+    """Return the value of a YAML text.
+
+    `find` returns the value of a name in an expression with a unit: !radians pi/2.
 
     Raises EvaluationFails for what is not YAML, Undetermined for what is too large or rarely used.
     """

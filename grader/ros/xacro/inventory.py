@@ -1,10 +1,12 @@
-"""The properties and macros that xacro files define, and the names that they use, as they are
-written.
+"""The properties and macros that xacro files define, and the names that they use.
+
+They are as they are written.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import chain
 
 from grader.base.source import Location
 from grader.ros.python.budget import Budget
@@ -22,8 +24,9 @@ _Definitions = dict[str, list[ScopePlace]]
 
 @dataclass(frozen=True, slots=True)
 class Inventory:
-    """The definitions in files, each with its places, and what is used; `dynamic` are tags with
-    evaluated names.
+    """The definitions in files, each with its places, and what is used.
+
+    `dynamic` are tags with evaluated names.
     """
 
     properties: _Definitions = field(default_factory=dict)
@@ -36,13 +39,13 @@ class Inventory:
     @staticmethod
     def first_places(definitions: _Definitions, paths: Sequence[str]) -> dict[str, Location]:
         """Return where names are first defined in some files."""
-        found: dict[str, Location] = {}
+        first: dict[str, Location] = {}
         for name, places in definitions.items():
             for place in places:
                 if place.source.path in paths:
-                    found[name] = place.at("name")
+                    first[name] = place.at("name")
                     break
-        return found
+        return first
 
     def define(self, definitions: _Definitions, name: str, place: ScopePlace) -> None:
         """Note a definition, or that its name is evaluated."""
@@ -54,67 +57,73 @@ class Inventory:
 
 def take_inventory(documents: Iterable[XacroNode], budget: Budget) -> Inventory:
     """Return what files define and use; a macro's parameter is no use of a property of its name.
+
     Raises OutOfBudget.
     """
-    found, roots = Inventory(), [*documents]
-    namespaces = {
-        node.attributes.get("ns")
-        for root in roots
-        for node in walk(root)
-        if node.tag == "xacro:include"
-    }
+    inventory, roots = Inventory(), [*documents]
+    namespaces: set[str | None] = set()
+    for node in chain.from_iterable(map(walk, roots)):
+        if node.tag == "xacro:include":
+            namespaces.add(node.attributes.get("ns"))
     waiting = [(root, frozenset[str]()) for root in reversed(roots)]
     while waiting:
         node, hidden = waiting.pop()
-        own = _note_tag(node, found)
-        texts = [
-            *node.attributes.values(),
-            *(child for child in node.children if isinstance(child, str)),
-        ]
-        dotted = {name.partition(".") for text in texts for name in _names_in(text)}
-        names = {other if first in namespaces else first for first, _, other in dotted}
-        found.used.update(names - hidden - {own})
+        tag_name = _note_tag(node, inventory)
+        inventory.used.update(_names_used(node, namespaces) - hidden - {tag_name})
         if node.tag == "xacro:macro":
-            hidden |= _parameters(node, found, budget)
+            hidden |= _parameters(node, inventory, budget)
         waiting += [(child, hidden) for child in reversed(node.elements)]
-    return found
+    return inventory
 
 
-def _note_tag(node: XacroNode, found: Inventory) -> str:
-    """Note what a tag of xacro defines or calls; return the name of a property, whose own text is
-    no use of it.
+def _names_used(node: XacroNode, namespaces: Collection[str | None]) -> set[str]:
+    """Return the names in the attributes and texts of an element, without namespaces."""
+    names = set()
+    texts = [child for child in node.children if isinstance(child, str)]
+    for text in (*node.attributes.values(), *texts):
+        for name in _names_in(text):
+            first, _, other = name.partition(".")
+            names.add(other if first in namespaces else first)
+    return names
+
+
+def _note_tag(node: XacroNode, inventory: Inventory) -> str:
+    """Note what a tag of xacro defines or calls.
+
+    Returns the name of a property, whose own text is no use of it.
     """
     name = node.attributes.get("name", "")
     match node.tag:
         case "xacro:property":
             if node.attributes.get("remove") in (None, "false"):
-                found.define(found.properties, name, node.place)
+                inventory.define(inventory.properties, name, node.place)
             return name
         case "xacro:macro":
-            found.define(found.macros, name.removeprefix("xacro:"), node.place)
+            inventory.define(inventory.macros, name.removeprefix("xacro:"), node.place)
         case "xacro:include":
-            found.includes.append(node.place)
+            inventory.includes.append(node.place)
         case "xacro:insert_block":
-            found.used.add(name)
+            inventory.used.add(name)
         case "xacro:call":
             called = node.attributes.get("macro", "")
-            found.called.add(called.rpartition(".")[2])
+            inventory.called.add(called.rpartition(".")[2])
             if "$" in called:
-                found.dynamic.append(node.place)
+                inventory.dynamic.append(node.place)
         case tag if tag.startswith("xacro:") and tag not in HANDLERS:
-            found.called.add(tag.removeprefix("xacro:").rpartition(".")[2])
+            inventory.called.add(tag.removeprefix("xacro:").rpartition(".")[2])
     return ""
 
 
-def _parameters(node: XacroNode, found: Inventory, budget: Budget) -> frozenset[str]:
-    """Return the names of a macro's parameters; forwarding one uses the caller's property. Raises
-    OutOfBudget.
+def _parameters(node: XacroNode, inventory: Inventory, budget: Budget) -> frozenset[str]:
+    """Return the names of a macro's parameters; forwarding one uses the caller's property.
+
+    Raises OutOfBudget.
     """
     try:
         parameters = read_parameters(node.attributes.get("params", ""), budget)
     except (EvaluationFails, Undetermined):
         return frozenset()
-    found.used.update(parameter.name for parameter in parameters if parameter.is_forwarded)
+    inventory.used.update(parameter.name for parameter in parameters if parameter.is_forwarded)
     return frozenset(parameter.name.lstrip("*") for parameter in parameters)
 
 
@@ -125,5 +134,5 @@ def _names_in(text: str) -> Iterator[str]:
         position = piece.end()
         if piece["substitution"] is not None:
             yield from _names_in(piece["substitution"])
-        for found in _NAME.finditer(TEXT_IN_QUOTES.sub("''", piece["expression"] or "")):
-            yield found[0]
+        for match in _NAME.finditer(TEXT_IN_QUOTES.sub("''", piece["expression"] or "")):
+            yield match[0]

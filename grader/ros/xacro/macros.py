@@ -33,8 +33,10 @@ class MacroError(XacroFails):
 
 
 class _MacroParameter(NamedTuple):
-    """A parameter: `default` is its text, `is_forwarded` whether the caller's property of this name
-    comes before it.
+    """A parameter of a macro, with its default.
+
+    `default` is its text, `is_forwarded` whether the caller's property of this name comes before
+    it.
     """
 
     name: str
@@ -63,15 +65,15 @@ def read_parameters(text: str, budget: Budget) -> tuple[_MacroParameter, ...]:
     defaults: dict[str, _MacroParameter] = {}  # the last of several counts
     while text:
         budget.charge(1, len(text))
-        found = _WITH_DEFAULT.match(text)
-        if found is None:
+        match = _WITH_DEFAULT.match(text)
+        if match is None:
             words = text.lstrip().split(None, 1)
             if not words:
                 raise MacroError("the parameters of this macro end with a space")
             parameters.append(_MacroParameter(words[0]))
             text = words[1] if len(words) > 1 else ""
         else:
-            name, forward, default, text = found.groups()
+            name, forward, default, text = match.groups()
             defaults[name] = _MacroParameter(name, default or None, is_forwarded=bool(forward))
             parameters.append(defaults[name])
     return tuple(defaults.get(parameter.name, parameter) for parameter in parameters)
@@ -90,8 +92,12 @@ def bind_values(
                 f"the macro {macro.name} has no parameter {name}; it has: "
                 f"{', '.join(known) or 'none'}"
             )
-            absent = [it for it in macro.parameters if it.name not in call.attributes]
-            meant = near(name, [it.name for it in absent]) or _only_lacking(name, absent)
+            absent = [
+                parameter for parameter in macro.parameters if parameter.name not in call.attributes
+            ]
+            meant = near(name, [parameter.name for parameter in absent]) or _only_lacking(
+                name, absent
+            )
             raise MacroError(message, UnknownName(name, known, "parameter", meant))
         del left[first[name]]
         texts.check_name(name, macro.body.place, "params")
@@ -100,10 +106,15 @@ def bind_values(
 
 
 def _only_lacking(name: str, absent: list[_MacroParameter]) -> str | None:
-    """Return the one parameter that a call lacks, if a name differs from it in one letter: z for
-    y.
+    """Return the one parameter that a call lacks, if a name differs from it in one letter.
+
+    For example, z is meant by y.
     """
-    needed = [it.name for it in absent if it.default is None and not it.is_block]
+    needed = [
+        parameter.name
+        for parameter in absent
+        if parameter.default is None and not parameter.is_block
+    ]
     if len(needed) != 1 or len(needed[0]) != len(name):
         return None
     differing = sum(one != other for one, other in zip(name, needed[0], strict=True))

@@ -56,8 +56,9 @@ _MAX_DEFINITIONS = 12
 
 
 class _Written(NamedTuple):
-    """A text at an offset of a file, the scope in which it is evaluated, the attribute that it
-    is in, and its name.
+    """A text at an offset of a file, and the scope in which it is evaluated.
+
+    It also has the attribute that it is in, and its name.
     """
 
     source: Source
@@ -78,8 +79,9 @@ class _Written(NamedTuple):
 
 
 class _Use(NamedTuple):
-    """A use of a text: the scope in which it is evaluated, what it is and should be, the call of
-    the macro it is in.
+    """A use of a text: what it is and should be, and where it is evaluated.
+
+    This is the scope, and the call of the macro it is in.
     """
 
     scope: XacroScope
@@ -96,8 +98,9 @@ class _TextChange(NamedTuple):
 
 
 def _make_edits(changes: Iterable[_TextChange]) -> Edits | None:
-    """Return the edits that make changes, one for each attribute; None where two of them
-    overlap.
+    """Return the edits that make changes, one for each attribute.
+
+    Returns None where two of them overlap.
     """
     attributes: dict[tuple[str, int], list[_TextChange]] = {}
     for change in dict.fromkeys(changes):
@@ -130,10 +133,14 @@ def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written
     """
     source, at = place.source.element(place.tag)
     if attribute:
-        found = markup.attribute(source.text, at, attribute)
-        if found is None:
+        markup_attribute = markup.attribute(source.text, at, attribute)
+        if markup_attribute is None:
             return None
-        start, end, span = found.value_start, found.value_end, (found.start, found.end)
+        start, end, span = (
+            markup_attribute.value_start,
+            markup_attribute.value_end,
+            (markup_attribute.start, markup_attribute.end),
+        )
     else:
         start = markup.head_end(source.text, at)[0]
         end = source.text.rfind("</", start, markup.element_end(source.text, at))
@@ -150,15 +157,16 @@ def _find_text(place: ScopePlace, attribute: str, scope: XacroScope) -> _Written
 
 
 def _definition_text(definition: XacroDefinition) -> _Written | None:
-    """Return the text that a name is defined with: of a parameter's default the part of
-    `params`.
+    """Return the text that a name is defined with.
+
+    For a parameter's default it is a part of `params`.
     """
     whole = _find_text(definition.place, definition.attribute, definition.scope)
     if whole is not None and definition.attribute == "params" and whole.text != definition.text:
-        found = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
-        if found is None or not whole.text.startswith(definition.text, found.end()):
+        match = re.search(rf"(?:^|\s){re.escape(definition.name)}\s*:?=\s*(?:\^\|?)?", whole.text)
+        if match is None or not whole.text.startswith(definition.text, match.end()):
             return None
-        whole = whole.part(found.end(), found.end() + len(definition.text))
+        whole = whole.part(match.end(), match.end() + len(definition.text))
     if whole is not None:
         return whole._replace(key=definition.key)
     return None
@@ -171,39 +179,52 @@ class _Rewriter:
         self._texts = texts
 
     def ways(self, place: ScopePlace, attribute: str, uses: Sequence[_Use]) -> list[Edits]:
-        """Return the ways to change an attribute (or, without a name, the text) for its uses,
-        the best first.
+        """Return the ways to change an attribute for its uses, the best first.
+
+        Without a name, they change the text.
         """
         text = _find_text(place, attribute, uses[0].scope)
         changed = [use for use in uses if use.old != use.new]
         if text is None or not changed:
             return []
-        parts = []
+        parts: list[tuple[_Use, _Written, str, str]] = []
         if "$" in text.text:
             parts = [(use, *part) for use in changed for part in _parts(text, use)]
+        of_definitions = self._changes_of_definitions(parts)
+        if of_definitions is None:
+            return []
+        ways = [*self._literal(text, changed), *self._in_calls(text, changed)]
+        computed = self._computed(parts)
+        # Where it is used, it would change for other calls of a macro, too.
+        ways = [*computed, *ways] if len(changed) < len(uses) else [*ways, *computed]
+        return [*dict.fromkeys([*of_definitions, *ways])]
+
+    def _changes_of_definitions(
+        self, parts: Sequence[tuple[_Use, _Written, str, str]]
+    ) -> list[Edits] | None:
+        """Return the edits of the definitions of parts of a text; None where they are loaded.
+
+        Returns none where no part is defined, or uses want different values of one definition.
+        """
         changes: dict[tuple[Source, int, str], _TextChange] = {}
         has_definition, is_one = False, True
         for use, part, old, new in parts:
             definitions = self._definitions(part, use.scope, old, new)
             if not definitions and self._is_loaded(part):
-                return []
+                return None
             has_definition |= bool(definitions)
             for change in definitions or [_TextChange(part, new)]:
                 written = change.written
                 where = written.source, written.start, written.text
-                # Two uses may want different values of one definition.
                 is_one &= changes.setdefault(where, change).new == change.new
-        ways = [*self._literal(text, changed), *self._in_calls(text, changed)]
-        computed = self._computed(parts)
-        # Where it is used, it would change for other calls of a macro, too.
-        ways = [*computed, *ways] if len(changed) < len(uses) else [*ways, *computed]
         if has_definition and is_one:
-            ways = _edits_alone(changes.values()) + ways
-        return [*dict.fromkeys(ways)]
+            return _edits_alone(changes.values())
+        return []
 
     def _computed(self, parts: Iterable[tuple[_Use, _Written, str, str]]) -> list[Edits]:
-        """Return the edits of what parts of a text are computed from: of one definition for each
-        part.
+        """Return the edits of what parts of a text are computed from.
+
+        They are of one definition for each part.
         """
         origins = []
         for use, part, old, new in parts:
@@ -216,20 +237,21 @@ class _Rewriter:
     def _origins(
         self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
     ) -> Iterator[_TextChange]:
-        """Yield the changes of one definition with which a text has another value: numbers, then
-        expressions.
+        """Yield the changes of one definition with which a text has another value.
+
+        Numbers come first, then expressions.
         """
         defined = self._defined(text, scope, old, new)
         if defined is None:
             if depth:
                 yield from self._solved_origins(text, scope, old, new, depth)
             return
-        own, inside, was, value = defined
-        if _LOADED.match(own.text):
+        written, inside, was, value = defined
+        if _LOADED.match(written.text):
             return
-        parts = _parts(own, _Use(inside, was, value))
-        if not self.definitions(own):
-            yield self._rewritten(own, value)
+        parts = _parts(written, _Use(inside, was, value))
+        if not self.definitions(written):
+            yield self._rewritten(written, value)
         elif len(parts) == 1 and depth:
             part, before, after = parts[0]
             yield from self._origins(part, inside, before, after, depth - 1)
@@ -254,8 +276,9 @@ class _Rewriter:
     def _solved(
         self, text: _Written, name: str, scope: XacroScope, old: str, new: str
     ) -> Iterator[tuple[str, str]]:
-        """Yield the number that a name stands for, and the one with which a linear expression
-        has another value.
+        """Yield the number that a name stands for, and the one with which a value is another.
+
+        The value is that of a linear expression.
         """
         inside = XacroScope(scope)
 
@@ -266,18 +289,19 @@ class _Rewriter:
         try:
             at = float(self._texts.written(self._texts.find(name, scope)))
             first = value_with(at)
-            found = at + (float(new) - first) / (value_with(at + 1) - first)
+            solution = at + (float(new) - first) / (value_with(at + 1) - first)
             is_solved = _is_equal(old, repr(first)) and isclose(
-                value_with(found), float(new), abs_tol=1e-9
+                value_with(solution), float(new), abs_tol=1e-9
             )
         except (EvaluationSignal, ArithmeticError, ValueError, TypeError):
             return
         if is_solved:
-            yield repr(at), format_number(found)
+            yield repr(at), format_number(solution)
 
     def _in_calls(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
-        """Return the edits that give a parameter, of which a text is the default, in the calls
-        of its macro.
+        """Return the edits that give a parameter in the calls of its macro.
+
+        A text is the default of this parameter.
         """
         name = text.text[2:-1].strip() if text.text.startswith("${") else ""
         definition = self._definition_of(name, changed[0].scope)
@@ -288,8 +312,9 @@ class _Rewriter:
         return [tuple(with_attribute(source, start, name, new) for source, start, new in each)]
 
     def _literal(self, text: _Written, changed: Sequence[_Use]) -> list[Edits]:
-        """Return the edit that writes a value where it is used; none where uses differ, or a
-        YAML file gives it.
+        """Return the edit that writes a value where it is used.
+
+        Returns none where uses differ, or a YAML file gives it.
         """
         around = {_around(text, use) for use in changed}
         if len(around) == 1 and "" not in around:
@@ -314,55 +339,57 @@ class _Rewriter:
     def _definitions(
         self, text: _Written, scope: XacroScope, old: str, new: str, depth: int = _MAX_DEPTH
     ) -> list[_TextChange]:
-        """Return the changes of what defines the one name in a text, with which the text has
-        another value.
+        """Return the changes of the definition of the one name in a text.
+
+        With them the text has another value.
         """
         defined = self._defined(text, scope, old, new) if depth else None
         if defined is None:
             return []
-        own, inside, was, inner = defined
-        if self.definitions(own):
-            parts = _parts(own, _Use(inside, was, inner))
+        written, inside, was, inner = defined
+        if self.definitions(written):
+            parts = _parts(written, _Use(inside, was, inner))
             changes = [self._definitions(part, inside, a, b, depth - 1) for part, a, b in parts]
             if all(changes):
                 return [change for several in changes for change in several]
             return []
-        return [self._rewritten(own, inner)]
+        return [self._rewritten(written, inner)]
 
     def _defined(
         self, text: _Written, scope: XacroScope, old: str, new: str
     ) -> tuple[_Written, XacroScope, str, str] | None:
-        """Return the definition of the one name that gives a text, its scope, and what it is and
-        should be.
+        """Return the definition of the one name that gives a text, and its scope.
+
+        Also returns what it is and should be.
         """
-        found = _ALONE.fullmatch(text.text)
-        before, after = (found["before"], found["after"]) if found else ("", "")
+        match = _ALONE.fullmatch(text.text)
+        before, after = (match["before"], match["after"]) if match else ("", "")
         is_inside = (
             new.startswith(before) and new.endswith(after) and len(new) > len(before) + len(after)
         )
-        if found is None or not is_inside:
+        if match is None or not is_inside:
             return None
         inner = new[len(before) : len(new) - len(after)]
         was = old[len(before) : len(old) - len(after)]
-        if found["sign"]:
+        if match["sign"]:
             inner, was = _negate(inner), _negate(was)
-        name = found["argument"]
+        name = match["argument"]
         definition = (
-            self._texts.defaults.get(name) if name else self._definition_of(found["name"], scope)
+            self._texts.defaults.get(name) if name else self._definition_of(match["name"], scope)
         )
-        own = _definition_text(definition) if definition is not None else None
-        if definition is not None and own is not None:
-            return (own, definition.scope, was, inner)
+        written = _definition_text(definition) if definition is not None else None
+        if definition is not None and written is not None:
+            return (written, definition.scope, was, inner)
         return None
 
-    def _rewritten(self, own: _Written, value: str) -> _TextChange:
+    def _rewritten(self, written: _Written, value: str) -> _TextChange:
         """Return the change of a definition to a value, which stays in quotes."""
-        is_quoted = own.text[:1] == "'" == own.text[-1:]
-        return _TextChange(own, f"'{value}'" if is_quoted else merged(own.text, value))
+        is_quoted = written.text[:1] == "'" == written.text[-1:]
+        return _TextChange(written, f"'{value}'" if is_quoted else merged(written.text, value))
 
     def _is_loaded(self, text: _Written) -> bool:
         """Return whether a YAML file gives a text."""
-        return any(_LOADED.match(it.text) for it in self.definitions(text))
+        return any(_LOADED.match(definition.text) for definition in self.definitions(text))
 
     def _definition_of(self, name: str, scope: XacroScope) -> XacroDefinition | None:
         holder = scope.holder(name)
@@ -372,16 +399,16 @@ class _Rewriter:
 
     def definitions(self, text: _Written) -> list[_Written]:
         """Return the texts with which the names in a text are defined, also by way of others."""
-        found: dict[object, _Written] = {}
+        by_key: dict[object, _Written] = {}
         waiting = [text]
-        while waiting and len(found) < _MAX_DEFINITIONS:
+        while waiting and len(by_key) < _MAX_DEFINITIONS:
             one = waiting.pop(0)
             for definition in self._named(one):
-                own = _definition_text(definition)
-                if own is not None and definition.key not in found:
-                    found[definition.key] = own._replace(scope=definition.scope)
-                    waiting.append(found[definition.key])
-        return list(found.values())
+                written = _definition_text(definition)
+                if written is not None and definition.key not in by_key:
+                    by_key[definition.key] = written._replace(scope=definition.scope)
+                    waiting.append(by_key[definition.key])
+        return list(by_key.values())
 
     def _named(self, text: _Written) -> Iterator[XacroDefinition]:
         for expression in _EXPRESSION.findall(text.text):
@@ -397,23 +424,29 @@ class _Rewriter:
         """Return the texts that define numbers from which an attribute is computed."""
         text = _find_text(place, attribute, scope)
         if text is not None:
-            return [it for it in self.definitions(text) if _NUMBER.fullmatch(it.text)]
+            return [
+                definition
+                for definition in self.definitions(text)
+                if _NUMBER.fullmatch(definition.text)
+            ]
         return []
 
 
 def _may_change(text: _Written, *, keeps_sign: bool) -> bool:
-    """Return whether a definition is an argument in a call, or a number that keeps its sign, as
-    a length does.
+    """Return whether a definition is an argument in a call, or a number that keeps its sign.
+
+    A length is such a number.
     """
     is_argument = text.key is not None and text.key[2] not in _NO_CALL
     return is_argument or (keeps_sign and bool(_NUMBER.fullmatch(text.text)))
 
 
 def _parts(text: _Written, use: _Use) -> list[tuple[_Written, str, str]]:
-    """Return the parts of a text that should be others, each with what it is and should be:
-    words, or the whole.
+    """Return the parts of a text that should be others, each with what it is and should be.
+
+    The parts are words, or the whole text.
     """
-    tokens = [text.part(*found.span()) for found in _TOKEN.finditer(text.text)]
+    tokens = [text.part(*match.span()) for match in _TOKEN.finditer(text.text)]
     old, new = use.old.split(), use.new.split()
     if len(tokens) != len(old) or len(old) != len(new) or len(tokens) < 2:
         return [(text, use.old, use.new)]
@@ -421,14 +454,15 @@ def _parts(text: _Written, use: _Use) -> list[tuple[_Written, str, str]]:
 
 
 def _around(text: _Written, use: _Use) -> str:
-    """Return a text with another one around its only expression, whose value stays:
-    ${side}_joint; empty if it goes.
+    """Return a text with another one around its only expression, whose value stays.
+
+    An example is ${side}_joint. It is empty if the text around it goes.
     """
-    found = _ALONE.fullmatch(text.text)
-    if found is None or not (found["before"] or found["after"]):
+    match = _ALONE.fullmatch(text.text)
+    if match is None or not (match["before"] or match["after"]):
         return ""
-    value = use.old[len(found["before"]) : len(use.old) - len(found["after"])]
-    expression = text.text[len(found["before"]) : len(text.text) - len(found["after"])]
+    value = use.old[len(match["before"]) : len(use.old) - len(match["after"])]
+    expression = text.text[len(match["before"]) : len(text.text) - len(match["after"])]
     if value.isidentifier() and use.new.count(value) == 1:
         return use.new.replace(value, expression)
     return ""
@@ -447,10 +481,11 @@ def _is_equal(one: str, other: str) -> bool:
 
 
 def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
-    """Return the edits that correct a text in quotes in the condition of an <xacro:if> or
-    <xacro:unless>: 'rigth'.
+    """Return the edits that correct a text in quotes in a condition: 'rigth'.
+
+    The condition is that of an <xacro:if> or <xacro:unless>.
     """
-    found: list[Edits] = []
+    edits: list[Edits] = []
     for tag in re.finditer(r"<xacro:(?:if|unless)\b", source.text):
         value = markup.attribute(source.text, tag.start(), "value")
         if value is None:
@@ -461,8 +496,8 @@ def _conditions(source: Source, known: Sequence[str]) -> list[Edits]:
             meant = near(word, known) if word not in known else None
             if meant is not None:
                 new = re.sub(rf"\b{word}\b", meant, text)
-                found.append((with_attribute(source, tag.start(), "value", new),))
-    return found
+                edits.append((with_attribute(source, tag.start(), "value", new),))
+    return edits
 
 
 class _XacroMistake(NamedTuple):
@@ -488,16 +523,18 @@ class NumberDefinition(NamedTuple):
 
 
 class ExpandedEdits:
-    """Makes the edits of an expanded xacro file; elements are named by their indices in the
-    expanded document.
+    """Makes the edits of an expanded xacro file.
+
+    Elements are named by their indices in the expanded document.
     """
 
     def __init__(self, source: ExpandedSource) -> None:
         self._source = source
 
     def rewrites(self, attribute: str, wanted: Mapping[int, tuple[str, str]]) -> list[Edits]:
-        """Return the ways to give an attribute (or, without a name, the text) of elements of one
-        place other values.
+        """Return the ways to give an attribute of elements of one place other values.
+
+        Without a name, they are ways for the text.
         """
         place = self._source.nodes[next(iter(wanted))].place
         scope = place.scope or XacroScope()
@@ -515,55 +552,63 @@ class ExpandedEdits:
     def numbers(self, tag: int, attribute: str) -> "list[NumberDefinition]":
         """Return the definitions of the numbers from which an attribute is computed."""
         place = self._source.nodes[tag].place
-        found = self._rewriter.numbers(place, attribute, place.scope or XacroScope())
-        return [NumberDefinition(written) for written in found]
+        definitions = self._rewriter.numbers(place, attribute, place.scope or XacroScope())
+        return [NumberDefinition(written) for written in definitions]
 
     def siblings(self, tag: int) -> list[int]:
-        """Return the indices of the expanded elements that come from the same place of the
-        source.
-        """
+        """Return the indices of the expanded elements that come from the same source place."""
         place = self._source.nodes[tag].place
         return self._by_place[place.source.path, place.tag]
 
     @cached_property
     def _by_place(self) -> dict[tuple[str, int], list[int]]:
-        found: dict[tuple[str, int], list[int]] = {}
+        indices: dict[tuple[str, int], list[int]] = {}
         for index, node in enumerate(self._source.nodes):
-            found.setdefault((node.place.source.path, node.place.tag), []).append(index)
-        return found
+            indices.setdefault((node.place.source.path, node.place.tag), []).append(index)
+        return indices
 
     def corrections(self, names: Sequence[str]) -> list[_XacroMistake]:
-        """Return edits that may correct undeclared and undefined names, calls of macros, and
-        conditions.
+        """Return edits that may correct names, calls of macros, and conditions.
+
+        The names are undeclared or undefined.
 
         `names` are those that the reference and the format have.
         """
         written = Source(self._source.path, self._source.text)
         if self._source.corrected:
             texts = in_backticks(edit.old for edit in self._source.corrected)
-            found = [_XacroMistake(self._source.corrected, f"xacro refuses {texts or 'this'}")]
+            mistakes = [_XacroMistake(self._source.corrected, f"xacro refuses {texts or 'this'}")]
         else:
-            found = []
-        found += _corrections(written, self._source.documents, self._source.refused)
+            mistakes = []
+        mistakes += _corrections(written, self._source.documents, self._source.refused)
         given = sorted({word for name in names for word in name.split("_")})
         for document in self._source.documents.values():
             edited = _conditions(document.place.source, given)
-            found += [_XacroMistake(edits, "a text in a condition") for edits in edited]
-        return list({correction.edits: correction for correction in reversed(found)}.values())[::-1]
+            mistakes += [_XacroMistake(edits, "a text in a condition") for edits in edited]
+        return list({correction.edits: correction for correction in reversed(mistakes)}.values())[
+            ::-1
+        ]
 
     def calls(self, edit: Edit) -> dict[str, list[Location]]:
         """Return the calls of the macros that an edit is in, by their names."""
-        found: dict[str, dict[Location, None]] = {}
+        calls_by_name: dict[str, dict[Location, None]] = {}
         if not edit.old:
             return {}
         for node in self._source.nodes:
             place = node.place.at(
-                next((it for it in node.attributes if it and edit.old.startswith(f"{it}=")), None)
+                next(
+                    (
+                        parameter
+                        for parameter in node.attributes
+                        if parameter and edit.old.startswith(f"{parameter}=")
+                    ),
+                    None,
+                )
             )
             if node.place.calls and place[:3] == edit[:3]:
                 name, call = node.place.calls[-1]
-                found.setdefault(name, {})[call.at()] = None
-        return {name: [*calls] for name, calls in found.items()}
+                calls_by_name.setdefault(name, {})[call.at()] = None
+        return {name: [*calls] for name, calls in calls_by_name.items()}
 
     @cached_property
     def _rewriter(self) -> _Rewriter:
@@ -573,32 +618,48 @@ class ExpandedEdits:
 def _corrections(
     document: Source, files: Mapping[str, XacroNode], refusals: Sequence[Refusal]
 ) -> Iterator[_XacroMistake]:
-    """Yield the edits that may correct what xacro refuses in a document with the files that it
-    includes.
+    """Yield the edits that may correct what xacro refuses in a document.
+
+    The files that the document includes are part of it.
     """
+    yield from _declare_prefix(document)
+    nodes = [node for file in files.values() for node in islice(walk(file), 1, _MAX_NODES)]
+    yield from _add_prefixes(nodes)
+    named = 0
+    for error, place, attribute in refusals:
+        if isinstance(error, XacroFails) and (error.unknown is not None or error.lacking):
+            yield from _correct_names(error, place, attribute, nodes)
+            named += 1
+        if named == _MAX_NAMES:
+            return
+
+
+def _declare_prefix(document: Source) -> Iterator[_XacroMistake]:
+    """Yield the edit that declares the prefix xacro, if a document uses it and does not."""
     text = document.text
     if "xmlns:xacro" not in text and "xacro:" in text:
         _, start = document.element(0)
         end = markup.name_end(text, start)
         edit = document.edit(start, end, text[start:end] + _NAMESPACE)
         yield _XacroMistake((edit,), "the prefix xacro, which is not declared")
-    nodes = [node for file in files.values() for node in islice(walk(file), 1, _MAX_NODES)]
+
+
+def _add_prefixes(nodes: Sequence[XacroNode]) -> Iterator[_XacroMistake]:
+    """Yield the edits that write xacro: before tags of xacro and calls of macros."""
     macros = {node.attributes.get("name", "") for node in nodes if node.tag == "xacro:macro"}
     for node in nodes:
         if node.tag in _PREFIXED or node.tag in macros:
             edits = tag_edits(*node.place.written, node.tag, f"xacro:{node.tag}")
             yield _XacroMistake(edits, f"<{node.tag}> without xacro:")
-    named = [
-        it
-        for it in refusals
-        if isinstance(it[0], XacroFails) and (it[0].unknown is not None or it[0].lacking)
-    ]
-    for error, place, attribute in named[:_MAX_NAMES]:
-        assert isinstance(error, XacroFails)
-        if error.unknown is not None:
-            for edits in respellings(place, attribute, error.unknown):
-                yield _XacroMistake(edits, "a name that xacro does not know")
-        for edits, values in (
-            values_of_other_calls(place, nodes, error.lacking) if error.lacking else ()
-        ):
+
+
+def _correct_names(
+    error: XacroFails, place: ScopePlace, attribute: str | None, nodes: Sequence[XacroNode]
+) -> Iterator[_XacroMistake]:
+    """Yield the edits for a name that is not known, and for values that a call lacks."""
+    if error.unknown is not None:
+        for edits in respellings(place, attribute, error.unknown):
+            yield _XacroMistake(edits, "a name that xacro does not know")
+    if error.lacking:
+        for edits, values in values_of_other_calls(place, nodes, error.lacking):
             yield _XacroMistake(edits, f"this call gives no value for {' and '.join(values)}")

@@ -1,5 +1,6 @@
-"""The names that xacro binds: properties, evaluated when they are first used, and macros, in
-nested scopes.
+"""The names that xacro binds: properties, and macros, in nested scopes.
+
+Properties are evaluated when they are first used.
 """
 
 from collections.abc import Callable, Mapping
@@ -20,8 +21,9 @@ BOOLEANS = {"true": True, "True": True, "false": False, "False": False}
 
 
 class ScopePlace(NamedTuple):
-    """A start tag in a source file; once expanded, with its macro calls, outermost first, and
-    the scope.
+    """A start tag in a source file.
+
+    Once expanded, it has its macro calls, outermost first, and the scope.
     """
 
     source: Source
@@ -50,8 +52,9 @@ Key = tuple[str, int, str, str]
 
 
 class XacroDefinition(NamedTuple):
-    """Where a name got its value: the text in an attribute, and the scope in which it is
-    evaluated.
+    """Where a name got its value.
+
+    This is the text in an attribute, and the scope in which it is evaluated.
     """
 
     name: str
@@ -71,8 +74,9 @@ Known = Mapping[str, tuple[ScopePlace, str] | None]
 
 
 class UnknownName(NamedTuple):
-    """A name that is not defined, and those that are; `meant` is the one that it surely stands for,
-    if there is one.
+    """A name that is not defined, and those that are.
+
+    `meant` is the one that it surely stands for, if there is one.
 
     `kind` is property where the name is in an expression, else what it names: a macro, block,
     parameter, attribute or file.
@@ -85,8 +89,9 @@ class UnknownName(NamedTuple):
 
 
 class XacroFails(EvaluationFails):
-    """Something that xacro refuses, perhaps for a name that it does not know, or values that a call
-    lacks.
+    """Something that xacro refuses.
+
+    The reason may be a name that it does not know, or values that a call lacks.
     """
 
     def __init__(
@@ -101,8 +106,9 @@ class Reported(EvaluationFails):
 
 
 class _Property:
-    """A value, or the text whose value is determined at the first use; `failure` is why it has
-    none.
+    """A value, or the text whose value is determined at the first use.
+
+    `failure` is why it has none.
     """
 
     __slots__ = ("definition", "failure", "is_lazy", "is_open", "value")
@@ -136,8 +142,9 @@ class XacroScope:
 
     @property
     def caller(self) -> "XacroScope | None":
-        """The scope that the scope parent means: around a macro, the namespace that it is defined
-        in does not count.
+        """The scope that the scope parent means.
+
+        Around a macro, the namespace that it is defined in does not count.
         """
         scope = self.parent
         while not self.is_namespace and scope is not None and scope.is_namespace:
@@ -167,29 +174,31 @@ class XacroScope:
         return scope
 
     def definitions(self) -> dict[str, tuple[ScopePlace, str] | None]:
-        """Return the names that are known here, each with the tag and attribute that define it
-        where there is one.
+        """Return the names that are known here, each with what defines it.
+
+        This is a tag and attribute, where there is one.
         """
-        found = self.parent.definitions() if self.parent is not None else {}
+        visible = self.parent.definitions() if self.parent is not None else {}
         for name, definition in (
             (name, bound.definition) for name, bound in self.properties.items()
         ):
             if _is_compared(name):
                 attribute = _NAMED_IN.get(definition.attribute) if definition is not None else None
-                found[name] = (
+                visible[name] = (
                     (definition.place, attribute) if definition is not None and attribute else None
                 )
-        return found
+        return visible
 
     def blocks(self) -> dict[str, tuple[ScopePlace, str] | None]:
         """Return the names of the blocks of this macro, with its own tag."""
         bound = {
-            name.lstrip("*"): it.definition
-            for name, it in self.properties.items()
+            name.lstrip("*"): block_property.definition
+            for name, block_property in self.properties.items()
             if name.startswith("*")
         }
         return {
-            name: (it.place, it.attribute) if it is not None else None for name, it in bound.items()
+            name: (block.place, block.attribute) if block is not None else None
+            for name, block in bound.items()
         }
 
     def bind(
@@ -212,27 +221,27 @@ class XacroScope:
 
     def value(self, name: str, evaluate: _Evaluate, report: ReportFailure) -> Value:
         """Return the value of a name that this scope binds itself."""
-        found = self.properties[name]
-        if found.failure is not None:
-            raise found.failure.with_traceback(None)
-        if not found.is_lazy:
-            return found.value
-        if found.is_open:
+        binding = self.properties[name]
+        if binding.failure is not None:
+            raise binding.failure.with_traceback(None)
+        if not binding.is_lazy:
+            return binding.value
+        if binding.is_open:
             raise EvaluationFails(f"the property {name} is defined by itself")
-        found.is_open = True
+        binding.is_open = True
         try:
-            found.value, found.is_lazy = _literal(evaluate(found.value, self)), False
+            binding.value, binding.is_lazy = _literal(evaluate(binding.value, self)), False
         except EvaluationFails as error:
-            if found.definition is not None and not isinstance(error, Reported):
-                report(error, found.definition.place, "value")
-            found.failure = Reported(str(error))
-            raise found.failure from None
+            if binding.definition is not None and not isinstance(error, Reported):
+                report(error, binding.definition.place, "value")
+            binding.failure = Reported(str(error))
+            raise binding.failure from None
         except Undetermined as error:
-            found.failure = error
+            binding.failure = error
             raise
         finally:
-            found.is_open = False
-        return found.value
+            binding.is_open = False
+        return binding.value
 
 
 def _is_compared(name: str) -> bool:
@@ -241,8 +250,9 @@ def _is_compared(name: str) -> bool:
 
 
 def _literal(value: Value) -> Value:
-    """Return the number or boolean that a text is for xacro, else the text, without single quotes
-    around it.
+    """Return the number or boolean that a text is for xacro, else the text.
+
+    The text is without single quotes around it.
     """
     if not isinstance(value, str):
         return value

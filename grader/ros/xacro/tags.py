@@ -108,8 +108,9 @@ def _call_by_name(
 
 
 def _find_macro(name: str, scopes: Scopes) -> tuple[Macro | None, Scopes]:
-    """Return the macro of a name, perhaps in namespaces (arms.left), and the scopes that its body
-    is evaluated in.
+    """Return the macro of a name, and the scopes that its body is evaluated in.
+
+    The macro may be in namespaces (arms.left).
     """
     macro = scopes.macros.bound(name)
     if macro is None:
@@ -174,37 +175,39 @@ def _property(expander: Expander, node: XacroNode, _: XacroNode, scopes: Scopes)
     symbols, texts, given = scopes.symbols, expander.texts, node.attributes
     name = _property_name(texts.text(_needed(node, "name"), symbols))
     is_removed = _flag(node, "remove", "false", expander, scopes)
+    _check_ways(expander, node, name, is_removed=is_removed)
+    if is_removed and texts.is_bound(name, symbols):
+        texts.check_name(name, node.place)
+        symbols.remove(name)
+        return
+    attribute = "default" if "default" in given else "value"
+    if attribute == "default" and texts.is_bound(name, symbols):
+        return
+    text = given.get(attribute)
+    is_lazy = _flag(node, "lazy_eval", "true", expander, scopes)
+    is_lazy = is_lazy and given.get("scope") not in ("global", "parent")
+    if text is None:
+        name = f"**{name}"
+    target = _target(given.get("scope"), name, symbols)
+    texts.check_name(name, node.place)
+    if text is None:
+        target.bind(name, node, is_lazy=True, definition=None)
+    elif is_lazy:
+        definition = XacroDefinition(name, text, node.place, attribute, target)
+        target.bind(name, text, is_lazy=True, definition=definition)
+    else:
+        texts.bind(target, name, text, symbols, node.place, attribute)
+
+
+def _check_ways(expander: Expander, node: XacroNode, name: str, *, is_removed: bool) -> None:
+    """Fail for a property that is defined in several ways, and warn of a scope without effect."""
+    given = node.attributes
     if "default" in given and "scope" in given:
         message = "xacro warns that a property with default has the scope local only"
         expander.warn(xacro_problems.XACRO_ATTRIBUTE, message, node.place, "scope")
     ways = [key for key in ("value", "default") if key in given]
     if len(ways) > 1 or (ways and is_removed):
         raise TagFails(f"the property {name} has more than one of value, default and remove")
-    if is_removed and texts.is_bound(name, symbols):
-        texts.check_name(name, node.place)
-        symbols.remove(name)
-        return
-    if "default" in given and texts.is_bound(name, symbols):
-        return
-    attribute = "default" if "default" in given else "value"
-    text = given.get(attribute)
-    value: Value = text
-    if text is None:
-        name, value = f"**{name}", node
-    is_lazy = _flag(node, "lazy_eval", "true", expander, scopes) and given.get("scope") not in (
-        "global",
-        "parent",
-    )
-    target = _target(given.get("scope"), name, symbols)
-    texts.check_name(name, node.place)
-    if is_lazy or text is None:
-        if text is not None:
-            definition = XacroDefinition(name, text, node.place, attribute, target)
-        else:
-            definition = None
-        target.bind(name, value, is_lazy=True, definition=definition)
-    else:
-        texts.bind(target, name, text, symbols, node.place, attribute)
 
 
 def _property_name(name: str) -> str:
@@ -320,8 +323,9 @@ _OF_XACRO = frozenset(
 
 
 def _namespace(expander: Expander, name: str, scopes: Scopes, node: XacroNode) -> Scopes:
-    """Return the scopes of an included file with a namespace, which `name` stands for: it sees no
-    macros around.
+    """Return the scopes of an included file with a namespace, which `name` stands for.
+
+    It sees no macros around.
     """
 
     def find(wanted: str) -> Value:

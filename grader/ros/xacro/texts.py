@@ -55,9 +55,27 @@ INSTALLED = "/install"
 OtherArguments = Literal["default", "unknown", "none"]
 
 
+def _check_substitution(text: str, command: str, args: list[str]) -> None:
+    """Raise for $(...) that is neither $(find PACKAGE) nor $(arg NAME).
+
+    Raises Undetermined for what xacro accepts, else EvaluationFails.
+    """
+    if text.startswith("eval "):
+        raise Undetermined("$(eval ...) is not supported: use ${...}")
+    if command in ("env", "optenv") and args:
+        raise Undetermined(f"the environment variable {args[0]} is known only at run time")
+    if text == "cwd":
+        raise Undetermined("the folder in which xacro runs is known only at run time")
+    if "$" in text or "(" in text:
+        raise EvaluationFails(f"$({text}): no $ and no ( can be inside of $(...)")
+    if command not in ("find", "arg") or len(args) != 1:
+        raise EvaluationFails(f"$({text}): expected $(find PACKAGE) or $(arg NAME)")
+
+
 class Texts:
-    """Evaluates texts. `arguments` are those of $(arg): given ones, then the file's defaults;
-    None if unknown.
+    """Evaluates texts.
+
+    `arguments` are those of $(arg): given ones, then the file's defaults; None if unknown.
     """
 
     def __init__(
@@ -65,11 +83,12 @@ class Texts:
         arguments: dict[str, str | None],
         budget: Budget,
         report: ReportFailure,
-        own: dict[str, Value],
+        functions: dict[str, Value],
         is_own: Callable[[str], bool],
     ) -> None:
-        """`own` are functions that need the document, such as load_yaml; `is_own`: whether a
-        package is in the workspace.
+        """`own` are functions that need the document, such as load_yaml.
+
+        `is_own`: whether a package is in the workspace.
         """
         self.arguments = arguments
         self.other_arguments: OtherArguments = "default"
@@ -79,7 +98,7 @@ class Texts:
         self._budget = budget
         self._is_own = is_own
         self._report = report
-        self._globals = {**GLOBALS, **own}
+        self._globals = {**GLOBALS, **functions}
         self.noted: dict[
             tuple[str, str], None
         ] = {}  # functions that write to stderr, and ^, each with the expression
@@ -92,8 +111,9 @@ class Texts:
         self._similar: dict[tuple[str, ...], tuple[str, str | None]] = {}
 
     def evaluate(self, text: str, scope: XacroScope) -> Value:
-        """Return the value of a text: that of its expression, if it is a single one, else a
-        text.
+        """Return the value of a text.
+
+        It is that of its expression, if it is a single one, else a text.
         """
         if "$" not in text:
             return text
@@ -138,18 +158,21 @@ class Texts:
         raise XacroFails(*self.unknown("property", name, scope, self._globals))
 
     def unknown(
-        self, kind: str, name: str, scope: XacroScope, own: Iterable[str] = ()
+        self, kind: str, name: str, scope: XacroScope, nearer: Iterable[str] = ()
     ) -> tuple[str, UnknownName]:
-        """Return that a name is undefined, and the known ones. Raises OutOfBudget: finding a
-        similar one takes long.
+        """Return that a name is undefined, and the known ones.
+
+        Raises OutOfBudget: finding a similar one takes long.
         """
-        known: Known = {**dict.fromkeys(own), **scope.definitions()}
+        known: Known = {**dict.fromkeys(nearer), **scope.definitions()}
         self._budget.charge(len(known))
         key = (name, *known)
         if key not in self._similar:
             self._budget.charge(_OF_NAME * len(known))
             values = [
-                it for it in known if isinstance(self._globals.get(it, 0), int | float)
+                candidate
+                for candidate in known
+                if isinstance(self._globals.get(candidate, 0), int | float)
             ]  # no functions
             self._similar[key] = did_you_mean(name, known), near(name, values)
         guess, meant = self._similar[key]
@@ -179,8 +202,9 @@ class Texts:
         place: ScopePlace,
         attribute: str,
     ) -> None:
-        """Bind a name to the value that the text of an attribute has in a scope, or to why it has
-        none.
+        """Bind a name to the value that the text of an attribute has in a scope.
+
+        Where the text has no value, the name is bound to the reason.
         """
         failure: EvaluationFails | Undetermined | None = None
         value: Value = ""
@@ -226,24 +250,12 @@ class Texts:
         command, *args = [word for word in text.split(" ") if word] or [""]
         if not text:
             return "$()"
-        if text.startswith("eval "):
-            raise Undetermined("$(eval ...) is not supported: use ${...}")
-        if (command in ("env", "optenv") and args) or text == "cwd":
-            if args:
-                what = f"the environment variable {args[0]}"
-            else:
-                what = "the folder in which xacro runs"
-            raise Undetermined(f"{what} is known only at run time")
-        if "$" in text or "(" in text:
-            raise EvaluationFails(f"$({text}): no $ and no ( can be inside of $(...)")
-        if command not in ("find", "arg") or len(args) != 1:
-            raise EvaluationFails(f"$({text}): expected $(find PACKAGE) or $(arg NAME)")
-        found: str = self._charge(
-            self.share(args[0]) if command == "find" else self.argument(args[0])
-        )
-        if "$(" in found:
-            return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), found)
-        return found
+        _check_substitution(text, command, args)
+        given = self.share(args[0]) if command == "find" else self.argument(args[0])
+        result: str = self._charge(given)
+        if "$(" in result:
+            return _NESTED_FIND.sub(lambda nested: self.share(nested[1]), result)
+        return result
 
     def share(self, package: str) -> str:
         """Return the text that $(find package) gives."""
@@ -275,8 +287,9 @@ class Texts:
 
 
 def _for_xml(value: str) -> str:
-    """Return a text that is written into XML; raise EvaluationFails for characters that XML cannot
-    hold.
+    """Return a text that is written into XML.
+
+    Raises EvaluationFails for characters that XML cannot hold.
     """
     if not value.isprintable() and _NO_XML.search(value):
         raise EvaluationFails("the value has a character that XML cannot hold")

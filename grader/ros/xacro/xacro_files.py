@@ -89,8 +89,9 @@ class Files:
         )
 
     def path(self, text: str) -> str:
-        """Return the path in the workspace of a file that the innermost file names. Raises
-        Undetermined.
+        """Return the path in the workspace of a file that the innermost file names.
+
+        Raises Undetermined.
         """
         if len(text) > _MAX_PATH:
             raise Undetermined("the path of a file is too long")
@@ -114,8 +115,9 @@ class Files:
         return path
 
     def _extra_ending(self) -> str:
-        """Return what an upload without the package added to the innermost file's name: .txt of
-        a.xacro.txt.
+        """Return what an upload without the package added to the innermost file's name.
+
+        An example is .txt of a.xacro.txt.
         """
         if self._workspace.is_part:
             added = _ADDED.fullmatch(posixpath.basename(self.open[-1]))
@@ -134,8 +136,9 @@ class Files:
         return posixpath.normpath(posixpath.join(folder or "", inside))
 
     def read(self, path: str) -> bytes:
-        """Return the bytes of a file. Raises FileFails for one that does not exist,
-        Undetermined.
+        """Return the bytes of a file.
+
+        Raises FileFails for one that does not exist, and Undetermined.
         """
         try:
             return self._workspace.read(path)
@@ -158,9 +161,7 @@ class Files:
         return self.documents[path]
 
     def _not_found(self, path: str, message: str) -> FileFails:
-        """Return the error for a file that does not exist, with the one that it surely stands
-        for.
-        """
+        """Return the error for a file that does not exist, with the one surely meant."""
         # a path that is not text, or has controls, cannot be written in the file
         paths = [other for other in self._workspace.paths if other.isprintable()]
         self._budget.charge(len(self._workspace.paths))
@@ -181,8 +182,9 @@ class Files:
         return FileFails(f"{message}, but {same[0]}: capital letters count", unknown)
 
     def _not_xml(self, path: str, data: bytes, message: str) -> XmlFails:
-        """Return the error for an included file that is not well-formed XML, with what repairs
-        it.
+        """Return the error for an included file that is not well-formed XML.
+
+        The error has what repairs the file.
         """
         from grader.ros.xml.repair import repair  # late: few files are broken
 
@@ -195,7 +197,7 @@ class Files:
             edits = ()
         conflicts = find_conflicts(source.text)
         assumed = (
-            "; ".join(found.message for found in repaired.assumed[:3])
+            "; ".join(assumption.message for assumption in repaired.assumed[:3])
             or "the first version is read"
         )
         if conflicts:

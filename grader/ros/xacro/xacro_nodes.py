@@ -1,5 +1,6 @@
-"""The elements of a xacro file before and after expansion, each with the place in the source that
-it came from.
+"""The elements of a xacro file before and after expansion.
+
+Each has the place in the source that it came from.
 """
 
 import re
@@ -36,8 +37,10 @@ _CDATA = re.compile(r"<!--.*?-->|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
 
 
 class XacroNode:
-    """An element. `unresolved` holds why attributes are left as written: they are refused, or
-    cannot be determined.
+    """An element of a xacro file.
+
+    `unresolved` holds why attributes are left as written: they are refused, or cannot be
+    determined.
     """
 
     __slots__ = ("attributes", "children", "open", "place", "tag", "unresolved")
@@ -65,16 +68,17 @@ def walk(node: XacroNode) -> Iterator[XacroNode]:
     """Yield an element and all in it, in the order of the text."""
     waiting = [node]
     while waiting:
-        found = waiting.pop()
-        yield found
-        waiting += reversed(found.elements)
+        current = waiting.pop()
+        yield current
+        waiting += reversed(current.elements)
 
 
 def read_nodes(
     data: bytes, path: str, budget: Budget, *, is_repaired: bool = False, edits: Edits = ()
 ) -> XacroNode:
-    """Return the root of an XML file. Raises XMLSyntaxError, and Undetermined for a file with
-    entities of its own.
+    """Return the root of an XML file.
+
+    Raises XMLSyntaxError, and Undetermined for a file with entities of its own.
 
     With `is_repaired`, two faults that xacro refuses do not matter: a misplaced declaration, and no
     xmlns:xacro. The text is read after the `edits`; places are those in the text before.
@@ -90,9 +94,9 @@ def _read(data: bytes, path: str, is_repaired: bool, edits: Edits) -> tuple[Xacr
     """Return the root of an XML file, and what its attributes are charged."""
     source = Source(path, data.decode())
     text, origin = _edited(source, edits)
-    xml = _DECLARATION.sub(lambda found: " " * len(found[0]), text, count=1)
+    xml = _DECLARATION.sub(lambda match: " " * len(match[0]), text, count=1)
     if is_repaired:
-        xml = _MISPLACED.sub(lambda found: " " * len(found[0]), xml)
+        xml = _MISPLACED.sub(lambda match: " " * len(match[0]), xml)
         xml = xml if "xmlns:xacro" in xml else _UNDECLARED.sub(r"\1xacro" + _STAND_IN, xml)
     root = parse_xml(xml.encode("utf-8", "surrogateescape"))
     definitions = root.getroottree().docinfo.internalDTD
@@ -100,18 +104,19 @@ def _read(data: bytes, path: str, is_repaired: bool, edits: Edits) -> tuple[Xacr
         raise Undetermined("entities of a DOCTYPE are not supported")
     if "<![CDATA[" in text and any("$" in section for section in _CDATA.findall(text)):
         raise Undetermined("a CDATA section with $ is not supported")
-    own = Budget()
+    budget = Budget()
     if edits:
         written, count = Source(path, text), sum(1 for _ in root.iter())
         source = Source(
             path, source.text, [origin(written.element(index)[1]) for index in range(count)]
         )
-    return _nodes(root, source, own), own.used
+    return _nodes(root, source, budget), budget.used
 
 
 def _edited(source: Source, edits: Edits) -> tuple[str, Callable[[int], int]]:
-    """Return a text after edits, and what returns the offset before them of a character; one that
-    is moved has its own.
+    """Return a text after edits, and what returns the offset before them of a character.
+
+    A character that is moved has its own offset.
 
     Of edits that overlap, the first counts.
     """
@@ -145,8 +150,9 @@ def _edited(source: Source, edits: Edits) -> tuple[str, Callable[[int], int]]:
 def recovered_nodes(
     data: bytes, path: str, budget: Budget, edits: Edits = ()
 ) -> tuple[XacroNode | None, list[Problem]]:
-    """Return what can be read of a file with broken tags, None if no link can, and what was
-    assumed.
+    """Return what can be read of a file with broken tags, and what was assumed.
+
+    Returns None if no link can be read.
     """
     from grader.ros.xml.repair import repair  # late: few files are broken
 
@@ -155,8 +161,13 @@ def recovered_nodes(
     repaired = repair(text)
     source = Source(path, written.text, [*map(origin, repaired.offsets)])
     assumed = [
-        Problem(found.kind, found.message, source.at(origin(found.offset)), found.subject)
-        for found in repaired.assumed
+        Problem(
+            assumption.kind,
+            assumption.message,
+            source.at(origin(assumption.offset)),
+            assumption.subject,
+        )
+        for assumption in repaired.assumed
     ]
     return _nodes(parse_xml(repaired.xml), source, budget) if repaired.xml else None, assumed
 
@@ -177,8 +188,9 @@ def _nodes(root: Element, source: Source, budget: Budget) -> XacroNode:
 
 
 def _decode(data: bytes, budget: Budget) -> str:
-    """Return the text of a file as UTF-8, which xacro assumes whatever the declaration says; charge
-    its tags.
+    """Return the text of a file as UTF-8, which xacro assumes whatever the declaration says.
+
+    Charges its tags.
     """
     prefixes = data.count(b"xmlns") * data.count(b":") // 8
     budget.charge(

@@ -1,5 +1,6 @@
-"""The slips of a xacro file that xacro expands all the same: tags that lack their prefix, which it
-leaves and ROS 2 ignores.
+"""The slips of a xacro file that xacro expands all the same.
+
+These are tags that lack their prefix, which it leaves and ROS 2 ignores.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -66,9 +67,9 @@ def _calls(roots: Iterable[XacroNode]) -> Mapping[str, _Call]:
                 parameters = read_parameters(node.attributes.get("params", ""), budget)
             except (MacroError, Undetermined, OutOfBudget):
                 continue
-            values = [it for it in parameters if not it.is_block]
-            needed = frozenset(it.name for it in values if it.default is None)
-            known = frozenset(it.name for it in values)
+            values = [parameter for parameter in parameters if not parameter.is_block]
+            needed = frozenset(parameter.name for parameter in values if parameter.default is None)
+            known = frozenset(parameter.name for parameter in values)
             name = node.attributes.get("name", "").removeprefix("xacro:")
             calls[name] = _Call(needed, known, len(parameters) - len(values))
     return calls

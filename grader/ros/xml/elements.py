@@ -45,8 +45,9 @@ def text_in(element: Element) -> str:
 
 
 def matches_value(text: str, expected: _Scalar, tolerance: float) -> bool:
-    """Return whether a text is an expected value: numbers and lists are compared as numbers,
-    true and 1 are equal.
+    """Return whether a text is an expected value.
+
+    Numbers and lists are compared as numbers, true and 1 are equal.
     """
     wanted = xml_text(expected)
     one, other = text.strip().lower(), wanted.strip().lower()
@@ -73,8 +74,9 @@ def xml_text(value: _Scalar) -> str:
 
 
 def readable(text: str) -> str:
-    """Return a text in which paths of installed packages are as xacro writes them: $(find
-    package).
+    """Return a text in which paths of installed packages are as xacro writes them.
+
+    Such a path begins with $(find package).
     """
     return _INSTALLED.sub(r"$(find \1)", text)
 
@@ -85,11 +87,12 @@ def foreign_elements(root: Element) -> list[Element]:
 
 
 def words_of_foreign(root: Element) -> set[str]:
-    """Return the words in the elements for simulators and controllers, such as names of joints and
-    paths.
+    """Return the words in the elements for simulators and controllers.
+
+    Among them are names of joints and paths.
     """
-    found = [inner for element in foreign_elements(root) for inner in element.iter("*")]
+    foreign = [inner for element in foreign_elements(root) for inner in element.iter("*")]
     texts = [
-        text for inner in found for text in (inner.text or "", *map(str, inner.attrib.values()))
+        text for inner in foreign for text in (inner.text or "", *map(str, inner.attrib.values()))
     ]
     return {word for text in texts for word in text.split()}

@@ -1,5 +1,6 @@
-"""XML read by lxml, which may open nothing: no file, no network, no entity; and a URDF as
-TinyXML2 reads it.
+"""XML read by lxml, and a URDF as TinyXML2 reads it.
+
+The parser may open nothing: no file, no network, no entity.
 """
 
 import re
@@ -54,8 +55,9 @@ _PLAIN_START = re.compile(
 
 
 class Unresolved(NamedTuple):
-    """What was not expanded of an element, with why it cannot be determined; empty where xacro
-    refuses it.
+    """What was not expanded of an element, with why it cannot be determined.
+
+    It is empty where xacro refuses it.
     """
 
     attributes: Mapping[str, str]  # those that are left as they are written
@@ -64,8 +66,9 @@ class Unresolved(NamedTuple):
 
 
 class XmlDocument(NamedTuple):
-    """What is read of a URDF's text: its root element, and everything that TinyXML2, XML or
-    xacro rejects in it.
+    """What is read of a URDF's text.
+
+    This is its root element, and everything that TinyXML2, XML or xacro rejects in it.
     """
 
     root: (
@@ -85,8 +88,9 @@ class XmlDocument(NamedTuple):
 
 
 def recover_xml(data: bytes) -> Element | None:
-    """Return the root of what libxml2 can read of a text that is not XML; None if that is
-    nothing.
+    """Return the root of what libxml2 can read of a text that is not XML.
+
+    Returns None if that is nothing.
     """
     parser = etree.XMLParser(
         resolve_entities=False, no_network=True, remove_comments=True, remove_pis=True, recover=True
@@ -110,8 +114,9 @@ def make_element(tag: str, attributes: dict[str, str], parent: Element | None = 
 
 
 def read_document(data: bytes, path: str) -> XmlDocument:
-    """Read the bytes of a URDF; never raises. Text that lxml may not read as TinyXML2 does is
-    translated first.
+    """Read the bytes of a URDF; never raises.
+
+    Text that lxml may not read as TinyXML2 does is translated first.
     """
     if _UTF_16.match(data):
         return _read_utf_16(data, path)
@@ -136,8 +141,9 @@ def read_document(data: bytes, path: str) -> XmlDocument:
 
 
 def _why_repaired(text: str, scanned: "Scan") -> list["Difference"]:
-    """Return why a text is read after the edits that repair it; empty if it is read as it
-    stands.
+    """Return why a text is read after the edits that repair it.
+
+    It is empty if it is read as it stands.
     """
     from grader.ros.xml.repair import unclosed_comments
     from grader.ros.xml.tinyxml2 import Difference
@@ -158,7 +164,7 @@ def _why_repaired(text: str, scanned: "Scan") -> list["Difference"]:
     if scanned.is_refused:
         return scanned.differences
     is_empty = scanned.xml.endswith(b"/>") and len(scanned.offsets) == 1
-    if is_empty and any(found.kind is SEVERAL_ROOTS for found in scanned.differences):
+    if is_empty and any(difference.kind is SEVERAL_ROOTS for difference in scanned.differences):
         message = "the / in the tag of <robot> closes it before its links; ROS 2 finds no link"
         return [Difference(MISMATCHED_TAG, message, scanned.offsets[0])]
     return []
@@ -167,8 +173,9 @@ def _why_repaired(text: str, scanned: "Scan") -> list["Difference"]:
 def _read_repaired(
     text: str, path: str, refused: "list[Difference]", first_tag: int
 ) -> XmlDocument:
-    """Read a text that TinyXML2 refuses as it is after the edits that repair it; places are those
-    in the text.
+    """Read a text after the edits that repair it, since TinyXML2 refuses it as it is.
+
+    Places are those in the text.
     """
     from grader.ros.xml.repair import repair  # late: few files are broken
 
@@ -181,14 +188,17 @@ def _read_repaired(
 
 def _problems(differences: "Iterable[Difference]", source: Source) -> list[Problem]:
     return [
-        Problem(found.kind, found.message, source.at(found.offset), found.subject)
-        for found in differences
+        Problem(
+            difference.kind, difference.message, source.at(difference.offset), difference.subject
+        )
+        for difference in differences
     ]
 
 
 def _read_utf_16(data: bytes, path: str) -> XmlDocument:
-    """Read a text in UTF-16, which TinyXML2 refuses, as what it means; without a byte-order mark it
-    begins with a <.
+    """Read a text in UTF-16, which TinyXML2 refuses, as what it means.
+
+    Without a byte-order mark it begins with a <.
     """
     encoding = "utf-16-le" if data[0] else "utf-16-be"
     if data[0] >= 0xFE:  # a byte-order mark
@@ -203,8 +213,9 @@ def _read_utf_16(data: bytes, path: str) -> XmlDocument:
 
 
 def is_plain(data: bytes) -> bool:
-    """Return whether a text that lxml accepts means the same to TinyXML2, so that no translation is
-    needed.
+    """Return whether a text that lxml accepts means the same to TinyXML2.
+
+    Then no translation is needed.
     """
     return (
         b"\0" not in data
@@ -217,8 +228,9 @@ def is_plain(data: bytes) -> bool:
 
 
 def error_location(error: Exception, source: Source) -> Location:
-    """Return where an XML parser stopped, within the text: libxml2 counts columns beyond the end of
-    a line.
+    """Return where an XML parser stopped, within the text.
+
+    The parser libxml2 counts columns beyond the end of a line.
     """
     line, column = getattr(error, "position", (1, 1))
     line = min(max(line or 1, 1), source.text.count("\n") + 1)
@@ -259,8 +271,9 @@ class XmlFile:
 
 
 def root_of(text: str) -> tuple[Element | None, Source]:
-    """Return the root of a text, as ROS 2 reads it where it is no XML, and the text that its places
-    are in.
+    """Return the root of a text, and the text that its places are in.
+
+    Where it is no XML, it is read as ROS 2 reads it.
     """
     data, source = text.encode("utf-8", "surrogateescape"), Source("", text)
     try:

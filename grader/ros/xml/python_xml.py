@@ -1,5 +1,6 @@
-"""Whether Python's own XML parser reads a text: joint_state_publisher uses it, not TinyXML2 as the
-rest of ROS 2.
+"""Whether Python's own XML parser reads a text.
+
+joint_state_publisher uses it, not TinyXML2 as the rest of ROS 2.
 """
 
 from typing import NamedTuple, NoReturn
@@ -17,8 +18,9 @@ class _DeclaresEntities(Exception):
 
 
 def python_xml_error(text: str) -> _PythonXmlError | None:
-    """Return why `xml.dom.minidom` cannot parse a text; None if it can, or if the text declares
-    entities.
+    """Return why `xml.dom.minidom` cannot parse a text.
+
+    Returns None if it can, or if the text declares entities.
 
     The parser is that of minidom, expat with namespaces; it opens no file, and no entity is
     expanded. The encoding that the text declares does not count, because joint_state_publisher gets

@@ -1,5 +1,4 @@
-"""The edits that repair a text which TinyXML2 refuses, and the robot as it is read after these
-edits.
+"""The edits that repair a text which TinyXML2 refuses, and the robot that is read after them.
 
 Every element but the broken ones is read as it stands. What the text stands for is assumed by the
 format of a URDF: a tag that does not fit closes those that are in its way.
@@ -75,8 +74,9 @@ class _TextEdit(NamedTuple):
 
 
 class _Repair(NamedTuple):
-    """The robot that is read of a text after the changes that repair it; no robot if no link can
-    be read.
+    """The robot that is read of a text after the changes that repair it.
+
+    There is no robot if no link can be read.
     """
 
     xml: bytes
@@ -111,25 +111,27 @@ def repair(text: str) -> _Repair:
 
 
 def unclosed_comments(text: str) -> list[tuple[int, int]]:
-    """Return the offsets of comments that end with -> by mistake: they run to the end of another
-    one or of the text.
+    """Return the offsets of comments that end with -> by mistake.
+
+    They run to the end of another one or of the text.
     """
-    found: list[tuple[int, int]] = []
+    comments: list[tuple[int, int]] = []
     position = text.find("<!--")
-    while position >= 0 and len(found) < _MAX_ASSUMED:
+    while position >= 0 and len(comments) < _MAX_ASSUMED:
         end = text.find("-->", position + 4)
         whole = end if end >= 0 else len(text)
         arrow = _ARROW.search(text, position + 4, whole)
         if arrow is not None and (end < 0 or text.find("<!--", arrow.end(), whole) >= 0):
-            found.append((position, arrow.end()))
+            comments.append((position, arrow.end()))
             whole = arrow.end()
         position = text.find("<!--", whole)
-    return found
+    return comments
 
 
 class _Repairer:
-    """One pass over a text, which notes what becomes of its tags, and which end tags are missing
-    where.
+    """One pass over a text, which notes what becomes of its tags.
+
+    It also notes which end tags are missing where.
     """
 
     def __init__(self, text: str) -> None:
@@ -194,27 +196,28 @@ class _Repairer:
             self._start(tag)
         return end
 
-    def _repair_declaration(self, found: re.Match[str]) -> None:
+    def _repair_declaration(self, match: re.Match[str]) -> None:
         """Remove a declaration that is not at the top, and end one that has no end."""
-        start, end = found.span()
-        if start and found[0].startswith("<?xml ") and self._text[:start].strip("\ufeff \t\r\n"):
+        start, end = match.span()
+        if start and match[0].startswith("<?xml ") and self._text[:start].strip("\ufeff \t\r\n"):
             self._replace(start, end, "")
-        elif found["declaration"]:
-            self._replace(start, end, found[0].rstrip("?> \t\r\n") + "?>")
+        elif match["declaration"]:
+            self._replace(start, end, match[0].rstrip("?> \t\r\n") + "?>")
 
     def _tag(self, start: int) -> tuple[Tag | None, int]:
-        """Return the tag at an offset, and the offset after it; a broken one with the attributes
-        that can be read.
+        """Return the tag at an offset, and the offset after it.
+
+        A broken tag has the attributes that can be read.
         """
         try:
             tag, end = read_tag(self._text, start, lambda *_: None)
         except MalformedTagError as error:
-            found = _BROKEN.match(self._text, start)
-            if found is None:
+            match = _BROKEN.match(self._text, start)
+            if match is None:
                 self._assume("a < without the name of a tag is ignored", start)
                 self._replace(start, start + 1, "")
                 return None, max(error.resume, start + 1)
-            tag, end = self._broken(found), found.end()
+            tag, end = self._broken(match), match.end()
         if tag.form == "empty" and self._has_end(tag, end):
             self._assume(f"<{short(tag.name)} .../> is read as <{short(tag.name)} ...>", start)
             self._replace(
@@ -233,31 +236,16 @@ class _Repairer:
             return tag._replace(form="close"), end
         return tag, end
 
-    def _broken(self, found: re.Match[str]) -> Tag:
-        """Return a broken tag as it is read: a value without a name is that of the attribute
-        that the tag needs.
+    def _broken(self, match: re.Match[str]) -> Tag:
+        """Return a broken tag as it is read.
+
+        A value without a name is that of the attribute that the tag needs.
         """
-        name, rest = found["name"], found["rest"].rstrip()
-        if found["close"]:
-            self._replace(*found.span(), f"</{name}>")
-            return Tag(name, "close", {}, found.start())
-        attributes: dict[str, str] = {}
-        given = [
-            (key, decode("".join(values)))
-            for key, *values in _ATTRIBUTE.findall(rest.removesuffix("/"))
-        ]
-        for key, text in given:
-            known = attributes.setdefault(key, text)
-            other = _other_attribute(name, {one for one, _ in given}, text) if known != text else ""
-            if other:
-                attributes[other] = text
-        value = _NAMELESS.match(rest)
-        if (
-            value is not None
-            and (key := _main_attribute(name)) not in attributes
-            and _is_value_of(key, value[1])
-        ):
-            attributes = {key: decode(value[1]), **attributes}
+        name, rest = match["name"], match["rest"].rstrip()
+        if match["close"]:
+            self._replace(*match.span(), f"</{name}>")
+            return Tag(name, "close", {}, match.start())
+        attributes = _readable_attributes(name, rest)
         is_value_lost = "=" in rest and not attributes
         self._is_lossy |= is_value_lost
         if attributes:
@@ -265,33 +253,28 @@ class _Repairer:
         else:
             what = "without attributes"
         self._assume(
-            f"<{short(name)}> is read {what}", found.start(), name if is_value_lost else ""
+            f"<{short(name)}> is read {what}", match.start(), name if is_value_lost else ""
         )
         form: Literal["open", "empty"] = "empty" if rest.endswith("/") else "open"
         written = "".join(f' {key}="{escape(value)}"' for key, value in attributes.items())
-        self._replace(*found.span(), f"<{name}{written}{'/' if form == 'empty' else ''}>")
-        return Tag(name, form, attributes, found.start())
+        self._replace(*match.span(), f"<{name}{written}{'/' if form == 'empty' else ''}>")
+        return Tag(name, form, attributes, match.start())
 
     def _has_end(self, tag: Tag, end: int) -> bool:
-        """Return whether the content of an element and its own end tag follow, although its tag
-        ends with a slash.
-        """
+        """Return whether content and an own end tag follow a tag that ends with a slash."""
         if tag.name not in CHILDREN or not (tag.name == "robot" or self._is_before_child(tag, end)):
             return False
         other = re.compile(rf"<\s*(/?)\s*{tag.name}(?![\w:.-])").search(self._text, end)
         return other is not None and other[1] == "/"
 
     def _is_before_child(self, tag: Tag, end: int) -> bool:
-        found = _NAME.search(self._text, end)
-        return found is not None and found[1] in CHILDREN.get(tag.name, ())
+        match = _NAME.search(self._text, end)
+        return match is not None and match[1] in CHILDREN.get(tag.name, ())
 
     def _start(self, tag: Tag) -> None:
         if self._robot is None:
             self._robot = tag.offset
-        if tag.name in _TOP:
-            parents = {"robot"}
-        else:
-            parents = {name for name, tags in CHILDREN.items() if tag.name in tags}
+        parents = _parents_of(tag.name)
         around = [opened.name for opened in self._open]
         if (
             around
@@ -299,16 +282,15 @@ class _Repairer:
             and parents.intersection(around)
             and _TAGS.issuperset(around)
         ):
-            self._leave(
-                max(index for index, name in enumerate(around) if name in parents) + 1, tag.offset
-            )
+            last = max(index for index, name in enumerate(around) if name in parents)
+            self._leave(last + 1, tag.offset)
         if tag.form == "open":
             self._open.append(tag)
 
     def _close(self, tag: Tag, end: int) -> None:
-        found = [index for index, opened in enumerate(self._open) if opened.name == tag.name]
-        if found:
-            self._leave(found[-1] + 1, tag.offset)
+        indices = [index for index, opened in enumerate(self._open) if opened.name == tag.name]
+        if indices:
+            self._leave(indices[-1] + 1, tag.offset)
             self._open.pop()
         elif (
             self._open
@@ -372,16 +354,18 @@ class _Repairer:
             )
 
     def _noted(self) -> list[_TextEdit]:
-        """Return all changes in order: of two at one place, the end tags that are inserted come
-        first.
+        """Return all changes in order.
+
+        Of two at one place, the end tags that are inserted come first.
         """
         replaced = [_TextEdit(start, end, new) for start, (end, new) in self._replaced.items()]
         inserted = [_TextEdit(at, at, new) for at, new in self._inserted.items()]
         return sorted(replaced + inserted)
 
     def _robot_after(self, changes: list[_TextEdit], end: int) -> tuple[bytes, list[int]]:
-        """Return the robot that is read after changes of the text before an offset, and where
-        its tags are now.
+        """Return the robot that is read after changes of the text before an offset.
+
+        Also returns where its tags are now.
         """
         if self._robot is None:
             return b"", []
@@ -402,39 +386,70 @@ class _Repairer:
                     length += len(piece)
                 position = change.end
         places.append((length, position))
-        found = scan("".join([*pieces, self._text[position:end]]))
+        scanned = scan("".join([*pieces, self._text[position:end]]))
         offsets = []
-        for offset in found.offsets:
+        for offset in scanned.offsets:
             after, before = places[bisect_right(places, offset, key=lambda place: place[0]) - 1]
             offsets.append(before + offset - after)
-        return found.xml, offsets
+        return scanned.xml, offsets
 
 
 def _is_never_filled(tag: str) -> bool:
-    """Return whether an element has attributes only: <box size="1 1 1"/> is closed where it
-    begins.
+    """Return whether an element has attributes only.
+
+    <box size="1 1 1"/> is closed where it begins.
     """
     return tag in TAGS and bool(TAGS[tag].attributes) and not TAGS[tag].children
 
 
+def _readable_attributes(tag: str, text: str) -> dict[str, str]:
+    """Return the attributes in the text of a broken tag, as they are meant."""
+    attributes: dict[str, str] = {}
+    given = [
+        (key, decode("".join(values)))
+        for key, *values in _ATTRIBUTE.findall(text.removesuffix("/"))
+    ]
+    keys = {key for key, _ in given}
+    for key, value in given:
+        if attributes.setdefault(key, value) != value:
+            other = _other_attribute(tag, keys, value)
+            if other:
+                attributes[other] = value
+    nameless = _NAMELESS.match(text)
+    if nameless is not None:
+        main = _main_attribute(tag)
+        if main not in attributes and _is_value_of(main, nameless[1]):
+            return {main: decode(nameless[1]), **attributes}
+    return attributes
+
+
+def _parents_of(tag: str) -> set[str]:
+    """Return the tags of the elements in which an element of this tag may be."""
+    if tag in _TOP:
+        return {"robot"}
+    return {name for name, tags in CHILDREN.items() if tag in tags}
+
+
 def _main_attribute(tag: str) -> str:
-    """Return the attribute that a value without a name is for: the first that the tag needs, else
-    has.
+    """Return the attribute that a value without a name is for.
+
+    This is the first that the tag needs, else has.
     """
     known = [*REQUIRED.get(tag, ()), *(TAGS[tag].attributes if tag in TAGS else ())]
     return known[0] if known else ""
 
 
 def _other_attribute(tag: str, given: set[str], value: str) -> str:
-    """Return the one attribute, which is not given, that a value is meant for whose name is given
-    twice.
+    """Return the one attribute that a value is meant for whose name is given twice.
+
+    This attribute is not given.
     """
     known = TAGS[tag].attributes if tag in TAGS else {}
     absent = [name for name in known if name not in given and _is_value_of(name, value)]
     needed = [name for name in absent if name in REQUIRED.get(tag, ())]
-    found = needed or absent
-    if len(found) == 1:
-        return found[0]
+    candidates = needed or absent
+    if len(candidates) == 1:
+        return candidates[0]
     return ""
 
 
@@ -446,18 +461,18 @@ def _is_value_of(attribute: str, value: str) -> bool:
 
 def _joined(changes: list[_TextEdit]) -> list[_TextEdit]:
     """Return the changes with inserted end tags as a part of the change that they touch."""
-    found: list[_TextEdit] = []
+    joined: list[_TextEdit] = []
     for change in changes:
-        last = found[-1] if found else None
+        last = joined[-1] if joined else None
         if (
             last is not None
             and last.end == change.start
             and not (last.is_replacement and change.is_replacement)
         ):
-            found[-1] = _TextEdit(last.start, change.end, last.new + change.new)
+            joined[-1] = _TextEdit(last.start, change.end, last.new + change.new)
         else:
-            found.append(change)
-    return found
+            joined.append(change)
+    return joined
 
 
 def _broken_tag(text: str, start: int) -> str:
@@ -465,9 +480,9 @@ def _broken_tag(text: str, start: int) -> str:
     try:
         read_tag(text, start, lambda *_: None)
     except MalformedTagError:
-        found = _BROKEN.match(text, start)
-        if found is not None:
-            return found[0].rstrip()
+        match = _BROKEN.match(text, start)
+        if match is not None:
+            return match[0].rstrip()
         return ""
     return ""
 

@@ -53,13 +53,13 @@ def decode(raw: str) -> str:
     references = _References(source)
     decoded = bytearray()
     read = 0
-    while (found := _KNOWN_REFERENCE.search(source, read)) is not None:
-        _copy(source, read, found.start(), decoded)
+    while (match := _KNOWN_REFERENCE.search(source, read)) is not None:
+        _copy(source, read, match.start(), decoded)
         piece, width = (
-            (_ENTITIES[found[1]], len(found[0])) if found[1] else references.at(found.start())
+            (_ENTITIES[match[1]], len(match[0])) if match[1] else references.at(match.start())
         )
         decoded += piece
-        read = found.start() + width
+        read = match.start() + width
     _copy(source, read, len(source), decoded)
     return bytes(decoded).split(b"\0")[0].decode("utf-8", "surrogateescape")
 
@@ -81,8 +81,9 @@ def _copy(source: bytes, start: int, end: int, decoded: bytearray) -> None:
 
 
 class _References:
-    """The characters that each &# of a value refers to (`XMLUtil::GetCharacterRef`), asked from
-    left to right.
+    """The characters that each &# of a value refers to, asked from left to right.
+
+    They are those of `XMLUtil::GetCharacterRef`.
 
     A numeric reference extends to the next semicolon, and its digits are read backwards from there.
     """
@@ -95,15 +96,16 @@ class _References:
         self._decimal: tuple[int, int] | None = None
 
     def at(self, offset: int) -> tuple[bytes, int]:
-        """Return the bytes that the &# at this offset refers to, and how many bytes it takes
-        itself.
+        """Return the bytes that the &# at this offset refers to.
+
+        Also returns how many bytes it takes itself.
         """
         source = self._source
         if len(source) == offset + 2:
             return b"", 1
         if self._semicolon < offset:
-            found = source.find(b";", offset)
-            self._semicolon = found if found >= 0 else len(source)
+            semicolon = source.find(b";", offset)
+            self._semicolon = semicolon if semicolon >= 0 else len(source)
             self._hexadecimal = self._decimal = None
         if self._semicolon == len(source):
             return b"&", 1
@@ -130,8 +132,9 @@ class _References:
 
 
 def _encode(code: int) -> bytes:
-    """Return a code point as UTF-8, as TinyXML2 does for surrogates and beyond the last; nothing
-    over four bytes.
+    """Return a code point as UTF-8, as TinyXML2 does for surrogates and beyond the last.
+
+    Returns nothing for one over four bytes.
     """
     if code <= _LAST_CODE_POINT:
         return chr(code).encode("utf-8", "surrogatepass")
@@ -148,8 +151,9 @@ def _encode(code: int) -> bytes:
 
 
 def escape(value: str) -> str:
-    """Return a value for double quotes in XML; characters that XML forbids are spelt out, so
-    that names differ.
+    """Return a value for double quotes in XML.
+
+    Characters that XML forbids are spelt out, so that names differ.
     """
     return _ILLEGAL.sub(_spell, value.translate(_ESCAPES))
 
@@ -176,8 +180,9 @@ MAX_NAME_LENGTH = 60  # the longest name that urdfdom knows has 17 letters
 
 
 class Tag(NamedTuple):
-    """One tag; attribute values are decoded. Names that XML or lxml may refuse are `_`: urdfdom
-    ignores them anyway.
+    """One tag; attribute values are decoded.
+
+    Names that XML or lxml may refuse are `_`: urdfdom ignores them anyway.
     """
 
     name: str
@@ -216,8 +221,9 @@ class Difference(NamedTuple):
 
 
 class Scan(NamedTuple):
-    """The first top-level <robot> as XML, with the offset of each of its start tags; both empty if
-    there is none.
+    """The first top-level <robot> as XML, with the offset of each of its start tags.
+
+    Both are empty if there is none.
 
     They are empty as well if TinyXML2 refuses the text: `is_refused`. The XML has no comments, and
     a prefix stands for its namespace.
@@ -231,8 +237,9 @@ class Scan(NamedTuple):
 
 
 class MalformedTagError(Exception):
-    """A tag that TinyXML2 rejects, with the offset of the error, and the one at which reading
-    can go on.
+    """A tag that TinyXML2 rejects, with the offset of the error.
+
+    Also has the offset at which reading can go on.
     """
 
     def __init__(self, message: str, offset: int, resume: int) -> None:
@@ -257,11 +264,11 @@ def read_tag(text: str, start: int, note: _Note) -> tuple[Tag, int]:
     if position > start + 1:
         note("space", "white space after <", start)
     closing = text.startswith("/", position)
-    found = _NAME.match(text, position + 1 if closing else position)
-    if found is None:
+    match = _NAME.match(text, position + 1 if closing else position)
+    if match is None:
         raise MalformedTagError("there is no tag name after <", start, _resume_after(text, start))
-    name = found[0]
-    attributes, position = _read_attributes(text, start, found.end(), name, note)
+    name = match[0]
+    attributes, position = _read_attributes(text, start, match.end(), name, note)
     form: Literal["open", "close", "empty"] = "close" if closing else "open"
     if text.startswith("/", position):
         form, position = "empty", position + 1
@@ -271,8 +278,9 @@ def read_tag(text: str, start: int, note: _Note) -> tuple[Tag, int]:
 
 
 def _resume_after(text: str, position: int) -> int:
-    """Return the offset at which to go on after a malformed tag: after its > or before the next
-    <.
+    """Return the offset at which to go on after a malformed tag.
+
+    This is after its > or before the next <.
     """
     closed, opened = text.find(">", position), text.find("<", position + 1)
     if closed >= 0 and (opened < 0 or closed < opened):
@@ -281,8 +289,9 @@ def _resume_after(text: str, position: int) -> int:
 
 
 def short(text: str) -> str:
-    """Return a name for a message, cut where it is very long; bytes that are not UTF-8 are spelt
-    out.
+    """Return a name for a message, cut where it is very long.
+
+    Bytes that are not UTF-8 are spelt out.
     """
     return cut(text, 40).encode("utf-8", "backslashreplace").decode()
 
@@ -308,8 +317,9 @@ def _read_attributes(
 def _unclosed_quote(
     text: str, start: int, tag: str, attributes: dict[str, str]
 ) -> MalformedTagError | None:
-    """Return the likelier error, if a value contains the next tag because its quote is not
-    closed.
+    """Return the likelier error for a value that contains the next tag.
+
+    Then its quote is not closed.
     """
     unclosed = next(
         (name for name, value in attributes.items() if "\n" in value and "<" in value), None
@@ -399,8 +409,9 @@ def scan(text: str) -> Scan:
 
 
 class _Scanner:
-    """One pass over a text. Where TinyXML2 would stop at an error, it goes on, to find other broken
-    tags.
+    """One pass over a text.
+
+    Where TinyXML2 would stop at an error, it goes on, to find other broken tags.
     """
 
     def __init__(self, text: str) -> None:
@@ -422,11 +433,16 @@ class _Scanner:
         first_tag = self._top_level[0].offset if self._top_level else 0
         if self._errors:
             errors = [
-                found
-                for found in self._differences
-                if found.kind is not xml_problems.NOT_WELL_FORMED
+                difference
+                for difference in self._differences
+                if difference.kind is not xml_problems.NOT_WELL_FORMED
             ]
             return Scan(b"", [], first_tag, errors, is_refused=True)
+        self._note_other_roots()
+        return Scan("".join(self._xml).encode(), self._offsets, first_tag, self._differences)
+
+    def _note_other_roots(self) -> None:
+        """Note the first tag at the top level besides the <robot> that ROS 2 reads."""
         robot = next((tag for tag in self._top_level if tag.name == "robot"), None)
         other = next((tag for tag in self._top_level if tag is not robot), None)
         if robot and other:
@@ -435,7 +451,6 @@ class _Scanner:
                 f"<{short(other.name)}> beside it"
             )
             self._add(xml_problems.SEVERAL_ROOTS, message, other.offset)
-        return Scan("".join(self._xml).encode(), self._offsets, first_tag, self._differences)
 
     def _start(self) -> int | None:
         text = self._text

@@ -1,5 +1,6 @@
-"""The format of a URDF: the elements that urdfdom reads, their attributes, and the elements that
-may be in each.
+"""The format of a URDF: the elements that urdfdom reads.
+
+Each has its attributes, and the elements that may be in it.
 """
 
 from collections.abc import Mapping
@@ -11,8 +12,10 @@ JOINT_TYPES: tuple[str, ...] = get_args(JointType)
 
 
 class _AttributeFormat(NamedTuple):
-    """An attribute: the unit and the parts of its numbers (no parts: text), and what ROS 2 uses
-    where it is not given.
+    """The format of an attribute.
+
+    It is the unit and the parts of its numbers (no parts: text), and what ROS 2 uses where it is
+    not given.
 
     An attribute without a default is required.
     """
@@ -23,8 +26,10 @@ class _AttributeFormat(NamedTuple):
 
 
 class _TagFormat(NamedTuple):
-    """An element: its attributes in usual order, children (also needed, repeated ones), wrong names
-    of attributes.
+    """The format of an element.
+
+    It is its attributes in usual order, children (also needed, repeated ones), wrong names of
+    attributes.
     """
 
     attributes: Mapping[str, _AttributeFormat] = {}
