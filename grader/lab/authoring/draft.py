@@ -146,13 +146,13 @@ def draft(
     Other values of parameters are in it as comments. Without a robot it has no `solution`. Raises
     InputError.
     """
-    found = _chosen_facts(submission, solution, choice)
+    chosen = _chosen_facts(submission, solution, choice)
     subjects: dict[str, Any] = {"submission": submission}
     if solution is not None:
         subjects |= {"urdf": solution.reading, "robot": solution.robot, "reference": solution.robot}
     rows_by_fact: dict[tuple[str, str | None, str], _DraftCriterion] = {}
     omissions: list[Omission] = []
-    for fact in found:
+    for fact in chosen:
         row = fact if isinstance(fact, Omission) else _tried(subjects, fact)
         if isinstance(row, Omission):
             omissions.append(row)
@@ -201,12 +201,16 @@ def _values(
     """Return the values of parameters that the reference certainly gets, by the names of the
     nodes.
     """
-    found: dict[str, list[_DraftCriterion]] = {}
-    facts = (it for it in value_facts(submission) if it.words not in known)
-    for row in (_tried(subjects, it) for it in islice(facts, _MAX_FACTS)):
+    rows_by_subject: dict[str, list[_DraftCriterion]] = {}
+    facts = (
+        candidate_fact
+        for candidate_fact in value_facts(submission)
+        if candidate_fact.words not in known
+    )
+    for row in (_tried(subjects, fact) for fact in islice(facts, _MAX_FACTS)):
         if isinstance(row, _DraftCriterion):
-            found.setdefault(row.fact.about, []).append(row)
-    return found
+            rows_by_subject.setdefault(row.fact.about, []).append(row)
+    return rows_by_subject
 
 
 def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
@@ -224,7 +228,9 @@ def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
             reasons.append(f"an argument must be {error}")
             continue
         if outcome.status == "passed":
-            carried = tuple(it for it in one.carried if _holds(subjects, one, it))
+            carried = tuple(
+                carried_fact for carried_fact in one.carried if _holds(subjects, one, carried_fact)
+            )
             title = cut(one.title or outcome.message, _MAX_TITLE)
             return _DraftCriterion(one._replace(carried=carried), capitalised(title))
         reasons.append(outcome.mistake if outcome.status == "pending" else outcome.message)
@@ -286,7 +292,7 @@ def _rubric_text(
     if of_package:
         title = "The package" if len(head.packages) == 1 else "The packages"
         lines += _part_lines(_PACKAGE, title, "package")
-    shown = {node: found[:_MAX_VALUES] for node, found in values.items()}
+    shown = {node: criteria_of_node[:_MAX_VALUES] for node, criteria_of_node in values.items()}
     named = _with_ids([*of_robot, *of_package, *chain.from_iterable(shown.values())])
     ids = {row.fact.words: name for name, row in named.items()}
     # A criterion refers to no value, which is only a comment.
@@ -400,17 +406,17 @@ def _value_lines(
 
 def _with_ids(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
     """Return the rows by ids of what they are about and their checks, such as upper-arm-mass-is."""
-    found: dict[str, _DraftCriterion] = {}
+    rows_by_name: dict[str, _DraftCriterion] = {}
     numbers: dict[str, int] = {}  # the last that each name got
     for row in rows:
         name = words = (
             re.sub(r"[\W_]+", "-", row.fact.words.lower()).strip("-")[:_MAX_ID].strip("-")
         )
-        while name in found:
+        while name in rows_by_name:
             numbers[words] = numbers.get(words, 1) + 1
             name = f"{words}-{numbers[words]}"
-        found[name] = row
-    return found
+        rows_by_name[name] = row
+    return rows_by_name
 
 
 def _head_lines(head: Head) -> Iterator[str]:
@@ -494,10 +500,12 @@ class _Layout(NamedTuple):
         """Yield what counts instead of a fact, and after which mistakes, if criteria are about
         these.
         """
-        for it in fact.carried:
-            causes = [self.ids[words] for words in dict.fromkeys(it.causes) if words in self.ids]
+        for carried_fact in fact.carried:
+            causes = [
+                self.ids[words] for words in dict.fromkeys(carried_fact.causes) if words in self.ids
+            ]
             if causes:
-                yield {"from": causes, "check": it.check, "with": it.arguments}
+                yield {"from": causes, "check": carried_fact.check, "with": carried_fact.arguments}
 
 
 def _with_lines(table: str, arguments: Mapping[str, Any], width: int = _WIDTH) -> Iterator[str]:

@@ -211,9 +211,14 @@ def _change_layout(tree: Element, _: RewritingRules) -> bool:
 def _use_properties(tree: Element, _: RewritingRules) -> bool:
     """Write numbers that occur more than once as properties of xacro."""
     values = [
-        (it, str(key)) for it in own_elements(tree, "*") for key in it.attrib if PARTS.get(str(key))
+        (element, str(key))
+        for element in own_elements(tree, "*")
+        for key in element.attrib
+        if PARTS.get(str(key))
     ]
-    counts = Counter(number for it, key in values for number in _NUMBER.findall(it.get(key, "")))
+    counts = Counter(
+        number for element, key in values for number in _NUMBER.findall(element.get(key, ""))
+    )
     repeated = [
         number for number, count in counts.items() if count > 1 and len(number) <= _MAX_DIGITS
     ]
@@ -221,13 +226,13 @@ def _use_properties(tree: Element, _: RewritingRules) -> bool:
         return False
     names = {number: f"number_{index}" for index, number in enumerate(repeated)}
 
-    def use(found: re.Match[str]) -> str:
-        if found[0] in names:
-            return f"${{{names[found[0]]}}}"
-        return found[0]
+    def use(number_match: re.Match[str]) -> str:
+        if number_match[0] in names:
+            return f"${{{names[number_match[0]]}}}"
+        return number_match[0]
 
-    for it, key in values:
-        it.set(key, _NUMBER.sub(use, it.get(key, "")))
+    for element, key in values:
+        element.set(key, _NUMBER.sub(use, element.get(key, "")))
     for number, name in names.items():
         tree.insert(0, etree.Element(f"{{{XACRO}}}property", {"name": name, "value": number}))
     return True
@@ -284,7 +289,9 @@ def _counting_form(urdf: Urdf, kept: Collection[str]) -> object:
     robot, root = urdf.reading.robot, urdf.reading.root
     foreign = [
         etree.tostring(child, with_tail=False)
-        for child in sorted(foreign_elements(root), key=lambda it: str(it.tag))
+        for child in sorted(
+            foreign_elements(root), key=lambda child_element: str(child_element.tag)
+        )
     ]
     form = normal_form(
         robot, {*kept, *words_of_foreign(root)}, decimals=2

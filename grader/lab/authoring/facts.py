@@ -115,8 +115,8 @@ def are_joints_free(solution: Solution) -> bool:
     """Return whether joints may have other names: those that files use are compared with those of
     the robot.
     """
-    found = read_agreement(solution.submission.workspace)
-    return found.holds("frames") and found.holds("controllers")
+    agreement = read_agreement(solution.submission.workspace)
+    return agreement.holds("frames") and agreement.holds("controllers")
 
 
 def _link_fact(link: str, check: str, **arguments: Any) -> Fact:
@@ -234,9 +234,9 @@ def _body_facts(link: Link) -> Facts:
         checks = ("shows_box", "shows_cylinder", "shows_sphere", "centre_at")
         what_is_shown = tuple(f"{link.name} {check}" for check in checks)
         known = [
-            CarriedFact(what_is_shown, it.check, it.arguments)
-            for it in shapes
-            if only and it.check == "collides_as"
+            CarriedFact(what_is_shown, shape.check, shape.arguments)
+            for shape in shapes
+            if only and shape.check == "collides_as"
         ]
         shown = "shape" if len(shapes) == 1 else "shapes"
         title = f"{link.name!r} collides with the {shown} that it shows"
@@ -313,8 +313,8 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
         )
     if joint.type not in _WITH_AXIS:
         return
-    own = robot.axis(joint)
-    direction = _rounded(pose.rotate(own), 2)
+    own_axis = robot.axis(joint)
+    direction = _rounded(pose.rotate(own_axis), 2)
     follows = joint.mimic is not None and robot.robot.has_joint(joint.mimic.joint)
     if follows:
         yield _mimic_fact(robot, joint, direction)
@@ -327,7 +327,7 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
     in_own_frame = {
         "link": link,
         "relative_to": link,
-        "direction": _rounded(own, 2),
+        "direction": _rounded(own_axis, 2),
         **either_way,
     }
     yield axis._replace(carried=(CarriedFact((f"{link} frame_at",), "joint_axis", in_own_frame),))

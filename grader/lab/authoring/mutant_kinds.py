@@ -68,7 +68,7 @@ def draw(mutants: Sequence[Mutant], most: int, seed: int) -> list[Mutant]:
     for mutant in mutants:
         families.setdefault(mutant.family, []).append(mutant)
     random = Random(seed)
-    shuffled = [random.sample(found, len(found)) for found in families.values()]
+    shuffled = [random.sample(places, len(places)) for places in families.values()]
     in_turn = chain.from_iterable(zip_longest(*shuffled))
     drawn = [mutant for mutant in in_turn if mutant is not None][:most]
     chosen = set(drawn)
@@ -96,9 +96,9 @@ def why_right(mutant: Mutant) -> str:
     if mutant.family == "file renamed" and ".launch." in mutant.path:
         return "ROS 2 starts a launch file of any name"
     if mutant.family in ("name misspelt", "name exchanged"):
-        found = _FREE_NAMES.search(place.partition(" -> ")[0])
-        if found is not None:
-            return f"nothing refers to the name of <{found[1]}>"
+        match = _FREE_NAMES.search(place.partition(" -> ")[0])
+        if match is not None:
+            return f"nothing refers to the name of <{match[1]}>"
     if mutant.family == "attribute deleted" and _FREE_OF_ROBOT.match(place):
         return "ROS 2 reads no <transmission> outside of <ros2_control>"
     if mutant.family == "string misspelt" and place.endswith((" output", " screen", " log")):

@@ -145,7 +145,9 @@ def _attribute_changes(
         known = names.get(str(element.tag), names.get(name, names["link"]))
         yield MutantEdit("name misspelt", place, *span, misspelt(value))
         at = known.index(value) + 1 if value in known else 0
-        other = next((it for it in (*known[at:], *known[:at]) if it != value), "")
+        other = next(
+            (known_value for known_value in (*known[at:], *known[:at]) if known_value != value), ""
+        )
         if other:
             yield MutantEdit("name exchanged", f"{place} -> {other}", *span, other)
     elif name == "type" and element.tag == "joint":
@@ -161,10 +163,10 @@ def _value_changes(text: str, label: str, span: tuple[int, int], name: str) -> I
     start, end = span
     label = f"{label} {name}".rstrip()
     pieces = list(_NUMBER.finditer(text, start, end))
-    for part, found in zip(_parts(name, len(pieces)), pieces, strict=True):
-        for family, number in _alternatives(float(found[0])):
-            if number != float(found[0]):
-                yield MutantEdit(family, f"{label}{part}", *found.span(), f"{number:.6g}")
+    for part, match in zip(_parts(name, len(pieces)), pieces, strict=True):
+        for family, number in _alternatives(float(match[0])):
+            if number != float(match[0]):
+                yield MutantEdit(family, f"{label}{part}", *match.span(), f"{number:.6g}")
     value = text[start:end].strip()
     if not pieces and value:
         start = text.index(value, start)
@@ -232,9 +234,9 @@ def package_mutants(
     `further` returns more changes of a file; `prefix` is what ids have before the paths in the
     package.
     """
-    for own in package.tree.files:
-        path, label = package.path(own), prefix + own
-        if not _UNUSED.search(own):
+    for file in package.tree.files:
+        path, label = package.path(file), prefix + file
+        if not _UNUSED.search(file):
             name = path.rpartition("/")[2]
             renamed = f"{path.removesuffix(name)}{misspelt(name)}"
             yield Mutant(f"file deleted: {label}", "file deleted", path, 1, is_deleted=True)
@@ -243,21 +245,21 @@ def package_mutants(
             )
         source = Source(path, text(path))
         changes: Iterable[MutantEdit] = ()
-        if own in package.rviz_files:
+        if file in package.rviz_files:
             changes = _rviz(source, label, links)
-        elif own in (MANIFEST, SETUP) or own in package.launch_files:
-            changes = _file_changes(source, label, own)
+        elif file in (MANIFEST, SETUP) or file in package.launch_files:
+            changes = _file_changes(source, label, file)
         yield from _as_mutants(source.text, path, chain(changes, further(source, label)))
 
 
-def _file_changes(source: Source, label: str, own: str) -> Iterator[MutantEdit]:
+def _file_changes(source: Source, label: str, file: str) -> Iterator[MutantEdit]:
     """Yield the changes of a file that builds or starts something, by its format."""
     if source.path.endswith(".py"):
-        yield from _python_changes(PythonFile(source), label, is_setup=own == SETUP)
+        yield from _python_changes(PythonFile(source), label, is_setup=file == SETUP)
         return
     for mutant in mutants(source.text):
         place = mutant.id.partition(": ")[2]
-        if mutant.family in _XML_FAMILIES and (own != MANIFEST or _READ_OF_MANIFEST.match(place)):
+        if mutant.family in _XML_FAMILIES and (file != MANIFEST or _READ_OF_MANIFEST.match(place)):
             yield MutantEdit(
                 mutant.family, f"{label} {place}", mutant.start, mutant.end, mutant.new
             )
@@ -318,11 +320,11 @@ def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator
 def _entries(file: PythonFile) -> Iterator[ast.expr]:
     """Yield the entries of data_files, and the actions of a launch file."""
     given = [argument(call, "data_files") for call in file.calls("setup")]
-    lists = [found.value for found in given if found is not None]
+    lists = [keyword.value for keyword in given if keyword is not None]
     lists += [call.args[0] for call in file.calls("LaunchDescription") if call.args]
-    for found in lists:
-        if isinstance(found, ast.List | ast.Tuple):
-            yield from found.elts
+    for value in lists:
+        if isinstance(value, ast.List | ast.Tuple):
+            yield from value.elts
 
 
 def _short(file: PythonFile, node: ast.expr) -> str:

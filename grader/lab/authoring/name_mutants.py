@@ -46,13 +46,13 @@ def name_changes(
     """
     name = source.path.rpartition("/")[2]
     if name == CMAKE:
-        for found in _INSTALL.finditer(source.text):
-            place = f"{label} {' '.join(found[0].split())[:MAX_LABEL]}"
-            yield MutantEdit("install removed", place, *found.span(), "")
+        for match in _INSTALL.finditer(source.text):
+            place = f"{label} {' '.join(match[0].split())[:MAX_LABEL]}"
+            yield MutantEdit("install removed", place, *match.span(), "")
     elif name == MANIFEST and "dependencies" in families:
-        for found in _DEPENDENCY.finditer(source.text):
+        for match in _DEPENDENCY.finditer(source.text):
             yield MutantEdit(
-                "dependency removed", f"{label} {found[1]} {found[2]}", *found.span(), ""
+                "dependency removed", f"{label} {match[1]} {match[2]}", *match.span(), ""
             )
     elif name.endswith(_YAML):
         yield from _yaml_changes(source, label)

@@ -49,8 +49,10 @@ def node_changes(
                 if use.type.endswith(".GoalHandle") and len(use.path) == 1:
                     continue  # an attribute of rclpy's
                 yield from _misspelt_at(source, label, use.location, use.path[-1])
-            for found in nodes.imports:
-                yield from _misspelt_at(source, label, found.location, found.name.split(".")[-1])
+            for node_import in nodes.imports:
+                yield from _misspelt_at(
+                    source, label, node_import.location, node_import.name.split(".")[-1]
+                )
     if "code" in families and "rclpy" in source.text:
         yield from _code_changes(PythonFile(source), label)
 
@@ -60,9 +62,9 @@ def _cpp_changes(source: Source, label: str) -> Iterator[MutantEdit]:
     callback returns too early.
     """
     for family, pattern in _CPP_STATEMENTS.items():
-        for found in pattern.finditer(source.text):
-            place = f"{label} {' '.join(found[0].split())[:MAX_LABEL]}"
-            yield MutantEdit(family, place, *found.span(), "")
+        for match in pattern.finditer(source.text):
+            place = f"{label} {' '.join(match[0].split())[:MAX_LABEL]}"
+            yield MutantEdit(family, place, *match.span(), "")
 
 
 def _interface_changes(source: Source, label: str) -> Iterator[MutantEdit]:
@@ -74,13 +76,13 @@ def _interface_changes(source: Source, label: str) -> Iterator[MutantEdit]:
             yield MutantEdit("interface not generated", f"{label} {named[1]}", *named.span(1), "")
     if not source.path.endswith(_INTERFACES):
         return
-    for found in _FIELD.finditer(source.text):
-        yield MutantEdit("field renamed", f"{label} {found[1]}", *found.span(1), misspelt(found[1]))
-    for found in _TYPE.finditer(source.text):
-        other = "string" if found[1] != "string" else "int32"
-        yield MutantEdit("field type changed", f"{label} {found[2]}", *found.span(1), other)
-    for found in _SEPARATOR.finditer(source.text):
-        yield MutantEdit("separator removed", label, *found.span(), "")
+    for match in _FIELD.finditer(source.text):
+        yield MutantEdit("field renamed", f"{label} {match[1]}", *match.span(1), misspelt(match[1]))
+    for match in _TYPE.finditer(source.text):
+        other = "string" if match[1] != "string" else "int32"
+        yield MutantEdit("field type changed", f"{label} {match[2]}", *match.span(1), other)
+    for match in _SEPARATOR.finditer(source.text):
+        yield MutantEdit("separator removed", label, *match.span(), "")
 
 
 def _misspelt_at(source: Source, label: str, at: Location, name: str) -> Iterator[MutantEdit]:

@@ -49,12 +49,18 @@ def package_equivalents(
     packages = [*submission.lab_packages.values()]
     for language in (_LAUNCH_IN_XML, _LAUNCH_IN_YAML):
         yield from _as_family(
-            language, (_in_other_language(submission, it, language) for it in packages)
+            language, (_in_other_language(submission, package, language) for package in packages)
         )
-    yield from _as_family(BUILT_BY_CMAKE, (_built_by_cmake(submission, it) for it in packages))
-    yield from _as_family(_UNNAMED, (_without_names(submission, it) for it in packages))
-    yield from _as_family(_LATER, (_with_later_spawners(submission, it) for it in packages))
-    yield from _as_family(_RENAMED, (_with_renamed_files(submission, it, named) for it in packages))
+    yield from _as_family(
+        BUILT_BY_CMAKE, (_built_by_cmake(submission, package) for package in packages)
+    )
+    yield from _as_family(_UNNAMED, (_without_names(submission, package) for package in packages))
+    yield from _as_family(
+        _LATER, (_with_later_spawners(submission, package) for package in packages)
+    )
+    yield from _as_family(
+        _RENAMED, (_with_renamed_files(submission, package, named) for package in packages)
+    )
     yield from _as_family(_SYSTEM_RENAMED, (_with_renamed_system(submission, named, robot_files),))
 
 
@@ -239,10 +245,12 @@ def _without_names(submission: Submission, package: Package) -> _Files:
         for call in file.calls("Node"):
             given = argument(call, "name")
             name, executable = _constant(call, "name"), _constant(call, "executable")
-            own = [it for it in nodes if it.executable == executable and it.node_name == name]
-            if given is None or not name or not own:
+            same_nodes = [
+                node for node in nodes if node.executable == executable and node.node_name == name
+            ]
+            if given is None or not name or not same_nodes:
                 continue
-            if submission.workspace.code.name_of(own[0]._replace(node_name="")) == name:
+            if submission.workspace.code.name_of(same_nodes[0]._replace(node_name="")) == name:
                 spans.append(file.span(given))
         text = file.text
         for start, end in sorted(spans, reverse=True):
@@ -261,11 +269,15 @@ def _with_later_spawners(submission: Submission, package: Package) -> _Files:
         for call in file.calls("LaunchDescription"):
             if call.args and isinstance(call.args[0], ast.List):
                 entries += call.args[0].elts
-        spawners = [it for it in entries if _is_spawner(file, it)]
-        others = [it for it in entries if isinstance(it, ast.Name) and _is_node(file, it)]
-        first = next((it.id for it in others if it not in spawners), "")
+        spawners = [started for started in entries if _is_spawner(file, started)]
+        others = [
+            started
+            for started in entries
+            if isinstance(started, ast.Name) and _is_node(file, started)
+        ]
+        first = next((started.id for started in others if started not in spawners), "")
         text = file.text
-        for entry in sorted(spawners, key=lambda it: file.span(it)[0], reverse=True):
+        for entry in sorted(spawners, key=lambda spawner: file.span(spawner)[0], reverse=True):
             start, end = file.span(entry)
             action = text[start:end]
             later = f"_Timer(period=3.0, actions=[{action}])"
@@ -328,9 +340,9 @@ def _with_renamed_system(
     files: dict[str, str | None] = {}
     for path in robot_files:
         text = _text(submission, path)
-        for found in reversed([*_SYSTEM.finditer(text)]):
-            if not any(found[2] in it for it in named):
-                start, end = found.span(2)
-                text = f"{text[:start]}{found[2]}_2x{text[end:]}"
+        for match in reversed([*_SYSTEM.finditer(text)]):
+            if not any(match[2] in text_in_use for text_in_use in named):
+                start, end = match.span(2)
+                text = f"{text[:start]}{match[2]}_2x{text[end:]}"
                 files[path] = text
     return files

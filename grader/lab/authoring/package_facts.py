@@ -85,8 +85,8 @@ _MAX_TITLE, _MAX_IN_TITLE = 95, 3  # characters; names
 
 def package_facts(submission: Submission) -> Facts:
     """Yield what may be true of the packages that are graded, first of the main one."""
-    found = read_agreement(submission.workspace) if submission.lab_packages else None
-    named = found.files if found is not None and found.holds("files") else frozenset()
+    agreement = read_agreement(submission.workspace) if submission.lab_packages else None
+    named = agreement.files if agreement is not None and agreement.holds("files") else frozenset()
     for package, prefix in _packages(submission):
         facts = _facts_of(submission, package, named, prefix)
         about = f"{_THE_PACKAGE} {package.name}" if prefix else _THE_PACKAGE
@@ -100,7 +100,8 @@ def _packages(submission: Submission) -> Iterator[tuple[Package, str]]:
     others.
     """
     for package in sorted(
-        submission.lab_packages.values(), key=lambda it: it is not submission.package
+        submission.lab_packages.values(),
+        key=lambda lab_package: lab_package is not submission.package,
     ):
         yield package, "" if package is submission.package else f"{package.name} "
 
@@ -137,7 +138,7 @@ def _facts_of(
     yield from _installs(
         package, path.removeprefix(package.path("")) if package.holds(path) else "", named
     )
-    for launch in (it for it in package.launch_files if not it.startswith("test/")):
+    for launch in (file for file in package.launch_files if not file.startswith("test/")):
         yield from _launch_facts(submission, package, launch, prefix)
     yield from _rviz_facts(package)
 
@@ -150,13 +151,21 @@ def measure_facts(solution: Solution) -> Iterator[Fact]:
     for node, name, value in _given(solution.submission):
         words = {*name.split("_")}
         alike = sorted(
-            links, key=lambda it: (not _WHEEL.search(it), -len(words & {*it.split("_")}))
+            links,
+            key=lambda link_name: (
+                not _WHEEL.search(link_name),
+                -len(words & {*link_name.split("_")}),
+            ),
         )
         sizes = _sizes_meant(name, alike)
         if sizes is None or not isinstance(value, float):
             continue
         measure, candidates = sizes
-        fits = (it for it in candidates if _is_measured(solution.robot, measure, it, value))
+        fits = (
+            candidate
+            for candidate in candidates
+            if _is_measured(solution.robot, measure, candidate, value)
+        )
         if (fitting := next(fits, None)) is not None:
             of = enumerated([repr(link) for link in fitting])
             fact = _parameter_fact(node, name, measure=measure, links=[*fitting])
@@ -183,13 +192,13 @@ def naming_facts(solution: Solution) -> Iterator[Fact]:
     for node, name, value in _given(solution.submission):
         items = value if isinstance(value, list) else [value]
         is_naming = _NAMING.search(name.rpartition(".")[2]) is not None
-        if not items or not is_naming or any(it not in names for it in items if _is_text(it)):
+        if not items or not is_naming or any(word not in names for word in items if _is_text(word)):
             continue
         if not all(map(_is_text, items)):
             continue
-        meant = [names[it] for it in items]
+        meant = [names[word] for word in items]
         asked = {"has": meant} if isinstance(value, list) else {"value": meant[0]}
-        shown = enumerated([repr(it) for it in items], _MAX_IN_TITLE)
+        shown = enumerated([repr(word) for word in items], _MAX_IN_TITLE)
         fact = _parameter_fact(node, name, **asked, where_given=True)
         elsewhere = CarriedFact(_OF_NAMING, "package_found", {"name": main})
         title = f"the parameter {name} of {node} names {shown}"
@@ -207,10 +216,12 @@ def value_facts(submission: Submission) -> Iterator[Fact]:
     """
     for node, name, value in _given(submission):
         texts = [
-            it for it in (value if isinstance(value, list) else [value]) if isinstance(it, str)
+            text
+            for text in (value if isinstance(value, list) else [value])
+            if isinstance(text, str)
         ]
         if isinstance(value, Unknown) or any(
-            PREFIX in it or is_of_one_machine(it) or len(it) > _MAX_TEXT for it in texts
+            PREFIX in text or is_of_one_machine(text) or len(text) > _MAX_TEXT for text in texts
         ):
             continue
         title = f"the parameter {name} of {node} is {toml_literal(value)}"
@@ -226,8 +237,10 @@ def _given(submission: Submission) -> Iterator[tuple[str, str, Any]]:
     values.
     """
     for node, given in submission.workspace.parameters.owners.items():
-        for name, found in {name: it for one in given for name, it in one.values.items()}.items():
-            yield node, name, found.value
+        for name, parameter in {
+            name: parameter for one in given for name, parameter in one.values.items()
+        }.items():
+            yield node, name, parameter.value
 
 
 def _parameter_fact(node: str, name: str, **arguments: Any) -> Fact:
@@ -254,8 +267,8 @@ def _sizes_meant(name: str, links: Sequence[str]) -> tuple[str, Iterable[tuple[s
 def _is_measured(robot: Configuration, measure: str, links: tuple[str, ...], value: float) -> bool:
     """Return whether a value is a measure of links."""
     try:
-        found = measures(robot, [*links]).get(measure)
-        return found is not None and abs(found() - value) <= _EXACT
+        measured_length = measures(robot, [*links]).get(measure)
+        return measured_length is not None and abs(measured_length() - value) <= _EXACT
     except (MissingElement, NotDecided):
         return False
 
@@ -264,9 +277,9 @@ def name_facts(submission: Submission) -> Facts:
     """Yield that the names of each family that the packages use agree, or what is odd in them."""
     if submission.package is None:
         return
-    found = read_agreement(submission.workspace)
+    agreement = read_agreement(submission.workspace)
     unbuilt = CarriedFact(_builds(submission), "package_found", {"name": submission.package.name})
-    for family in (it for it in FAMILIES if it in found.families):
+    for family in (known_family for known_family in FAMILIES if known_family in agreement.families):
         fact = _package_fact("names_agree", family, of=family)
         carried = (unbuilt,) if family in _OF_BUILDS else ()
         if family == "values":
@@ -289,7 +302,7 @@ def _measured_words(submission: Submission) -> tuple[str, ...]:
 def _odd(submission: Submission, family: Family) -> Omission | None:
     """Return what certainly does not agree in a family, in one line; None if nothing does not."""
     mismatches = wrong_names(submission.workspace, family, submission.lab_packages.values())
-    wrong = {it.message: it for it in mismatches}
+    wrong = {mismatch.message: mismatch for mismatch in mismatches}
     if not wrong:
         return None
     first = mismatches[0]
@@ -323,7 +336,7 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
                 yield _package_fact(
                     "build_installs", name, kind=kind, name=name, despite_errors=True
                 )._replace(title=f"a build installs {name}")
-    yield from _install_facts(package, rest, {posixpath.splitext(it)[1] for it in elsewhere})
+    yield from _install_facts(package, rest, {posixpath.splitext(file)[1] for file in elsewhere})
 
 
 def _install_facts(
@@ -353,7 +366,7 @@ def _launch_facts(
     mistake of others.
     """
     name, launch = posixpath.basename(path), package.launch(path)
-    included = {posixpath.basename(it.path) for it in launch.passed} - {name}
+    included = {posixpath.basename(file.path) for file in launch.passed} - {name}
     causes = (*_builds(submission), *_STOPPING, *words_of_launches(submission, included))
     installed = {"kind": "launch", "name": name, "despite_errors": True}
     there = CarriedFact(causes, "build_installs", installed)
@@ -399,7 +412,7 @@ def _title_of_nodes(shown: str, nodes: Sequence[str]) -> str:
 
 def _launch_text(package: Package, name: str) -> str:
     """Return what a title calls a launch file: by its name, if there are several."""
-    launches = [it for it in package.launch_files if not it.startswith("test/")]
+    launches = [file for file in package.launch_files if not file.startswith("test/")]
     return "the launch file" if len(launches) == 1 else f"the launch file {name}"
 
 
@@ -409,11 +422,11 @@ def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator
         return
     asked: dict[str, dict[str, str]] = {"publishes": {}, "serves": {}}
     for node in launch.nodes:
-        for found in opened_by(submission.workspace, node) if node.when else ():
-            verb = _OPENING.get(found.endpoint.kind)
-            kind = found.endpoint.type
-            if verb is not None and kind is not None and found.name is not None and found.is_known:
-                asked[verb][found.name] = kind.replace(".", "/")
+        for end in opened_by(submission.workspace, node) if node.when else ():
+            verb = _OPENING.get(end.endpoint.kind)
+            kind = end.endpoint.type
+            if verb is not None and kind is not None and end.name is not None and end.is_known:
+                asked[verb][end.name] = kind.replace(".", "/")
     for verb, names in asked.items():
         if names:
             fact = _package_fact("node_runs", f"{name} {verb}", launch=name, **{verb: names})
@@ -450,7 +463,7 @@ def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
 
 
 def _started(launch: Launch) -> list[str]:
-    return list(dict.fromkeys(it.name for it in launch.nodes if it.when))
+    return list(dict.fromkeys(node.name for node in launch.nodes if node.when))
 
 
 def _nodes_that_start(launch: Launch) -> list[str]:
@@ -461,7 +474,7 @@ def _nodes_that_start(launch: Launch) -> list[str]:
     replaced = dict.fromkeys(node.name for node in launch.nodes if node.when is False)
     names = []
     for name in starting:
-        alike = [it for it in replaced if name.startswith(it) or it.startswith(name)]
+        alike = [other for other in replaced if name.startswith(other) or other.startswith(name)]
         names.append(" or ".join(dict.fromkeys((name, *alike))))
     return names
 
@@ -478,12 +491,12 @@ def _rviz_facts(package: Package) -> Iterator[Fact]:
         of = {"name": name}
         if path in opened:
             of["launch"] = opened[path]
-        found = _package_fact("rviz_found", name, **of)
+        fact = _package_fact("rviz_found", name, **of)
         is_opened = "launch" in of
         shown = (
             "the launch file opens an RViz file" if is_opened else f"there is an RViz file {name}"
         )
-        yield found._replace(title=shown)
+        yield fact._replace(title=shown)
         if rviz.fixed_frame:
             fixed = _package_fact("rviz_fixed_frame", name, **of, frame=rviz.fixed_frame)
             yield fixed._replace(title=f"the Fixed Frame of RViz is {rviz.fixed_frame!r}")

@@ -90,41 +90,45 @@ class Trial:
             raise InputError(f"the rubric {rubric.id} {missing}")
         self.rubric, self.reference = rubric, rubric.solution.submission
         self.report = grade(rubric, self.reference)
-        counting = (found for found in self.report.results if not found.is_adjusted)
-        own = (found for found in counting if found.criterion.check.function not in MANUAL_CHECKS)
-        self.expected: Mapping[str, Result] = {found.criterion.id: found for found in own}
+        counting = (result for result in self.report.results if not result.is_adjusted)
+        automatic = (
+            result for result in counting if result.criterion.check.function not in MANUAL_CHECKS
+        )
+        self.expected: Mapping[str, Result] = {result.criterion.id: result for result in automatic}
 
     @cached_property
     def tested(self) -> list[Criterion]:
         """The criteria that the reference passes."""
         return [
-            found.criterion for found in self.expected.values() if found.outcome.status == "passed"
+            result.criterion
+            for result in self.expected.values()
+            if result.outcome.status == "passed"
         ]
 
     @cached_property
     def kept(self) -> set[str]:
         """The names that the rubric and the text files around the URDF refer to."""
-        found = set(_names_in(self.rubric))
+        names = set(_names_in(self.rubric))
         for path, file in self.reference.whole_tree.files.items():
             if path.lower().endswith(_TEXTS) and file.size <= URDF_LIMIT:
-                found |= set(_WORD.findall(self.text(path)))
-        return found
+                names |= set(_WORD.findall(self.text(path)))
+        return names
 
     @cached_property
     def robot_files(self) -> tuple[str, ...]:
         """The URDF and the xacro files that it includes."""
         if not isinstance(self.reference.urdf, Read):
             return ()
-        found = [self.reference.urdf.path]
+        paths = [self.reference.urdf.path]
         others = [
             path for path in self.reference.whole_tree.files if path.lower().endswith(_OF_ROBOT)
         ]
-        for path in found:  # grows
+        for path in paths:  # grows
             text = self.text(path)
-            found += [
-                other for other in others if other not in found and other.rpartition("/")[2] in text
+            paths += [
+                other for other in others if other not in paths and other.rpartition("/")[2] in text
             ]
-        return tuple(found)
+        return tuple(paths)
 
     def text(self, path: str) -> str:
         """Return the text of a file of the reference."""
@@ -155,7 +159,8 @@ class Trial:
             return True
         results = decide(self.rubric, changed, self.expected)
         return any(
-            it.outcome.status != self.expected[it.criterion.id].outcome.status for it in results
+            result.outcome.status != self.expected[result.criterion.id].outcome.status
+            for result in results
         )
 
     def mutants(self) -> Iterator[Mutant]:
@@ -172,7 +177,9 @@ class Trial:
             robot = urdf.reading.robot if isinstance(urdf, Read) else None
             links = [link.name for link in robot.links] if robot is not None else []
             packages = [
-                it for it in self.reference.lab_packages.values() if it.folder != package.folder
+                lab_package
+                for lab_package in self.reference.lab_packages.values()
+                if lab_package.folder != package.folder
             ]
             for one in (package, *packages):
                 prefix = "" if one is package else f"{one.name}/"
@@ -181,7 +188,9 @@ class Trial:
 
     def _name_changes(self, source: Source, label: str) -> Iterable[MutantEdit]:
         """Return the changes of names and values in a file, if a criterion compares them."""
-        is_compared = any(it.check.name in ("names_agree", "parameter_is") for it in self.tested)
+        is_compared = any(
+            criterion.check.name in ("names_agree", "parameter_is") for criterion in self.tested
+        )
         if is_compared:
             names = name_changes(source, label, self._names, self._families)
             return chain(names, node_changes(self.reference, source, label, self._families))
@@ -190,7 +199,11 @@ class Trial:
     @cached_property
     def _families(self) -> tuple[Family, ...]:
         """The families of names that have to agree."""
-        return tuple(it.arguments["of"] for it in self.tested if it.check.name == "names_agree")
+        return tuple(
+            criterion.arguments["of"]
+            for criterion in self.tested
+            if criterion.check.name == "names_agree"
+        )
 
     @cached_property
     def _names(self) -> list[tuple[Fact, Edit]]:
@@ -225,7 +238,7 @@ class Trial:
         is read again.
         """
         is_of_robot = self._is_of_robot(mutant)
-        subjects = {name: found.criterion.check.subject for name, found in self.expected.items()}
+        subjects = {name: result.criterion.check.subject for name, result in self.expected.items()}
         names = [
             name for name, subject in subjects.items() if not is_of_robot or subject != "package"
         ]
@@ -245,9 +258,9 @@ class Trial:
             return MutantOutcome(mutant, "caught")
         results = self.results(mutant, submission)
         faults = {
-            found.criterion.id: found.outcome.message
-            for found in results
-            if found.outcome.status == "errored"
+            result.criterion.id: result.outcome.message
+            for result in results
+            if result.outcome.status == "errored"
         }
         is_of_robot = self._is_of_robot(mutant)
         if faults:
@@ -258,7 +271,9 @@ class Trial:
             fate = "same"
         else:
             fate = "survived"
-        failed = tuple(found.criterion.id for found in results if found.outcome.status == "failed")
+        failed = tuple(
+            result.criterion.id for result in results if result.outcome.status == "failed"
+        )
         return MutantOutcome(mutant, fate, failed, faults)
 
     def equivalents(self) -> Iterator[Loss]:
@@ -273,14 +288,16 @@ class Trial:
 
     def _file_equivalent(self, family: str, texts: Mapping[str, str | None]) -> Loss:
         """Return what other texts of files lose; None for a file that is not there any more."""
-        criteria = [it for it in self.tested if not _is_of_writing(it, family)]
+        criteria = [criterion for criterion in self.tested if not _is_of_writing(criterion, family)]
         files: dict[str, bytes | None] = {}
         diffs = []
         for path, text in texts.items():
             files[path] = None if text is None else text.encode("utf-8", "surrogateescape")
             diffs.append(_text_diff(path, self.text(path), text or ""))
         changed = with_files(self.reference, files)
-        return Loss(family, self._lost(changed, [it.id for it in criteria]), "\n".join(diffs))
+        return Loss(
+            family, self._lost(changed, [criterion.id for criterion in criteria]), "\n".join(diffs)
+        )
 
     def _robot_equivalents(self, urdf: Read) -> Iterator[Loss]:
         root = urdf.reading.root
@@ -301,15 +318,23 @@ class Trial:
     def _lost(self, submission: Submission, names: Collection[str]) -> Mapping[str, str]:
         """Return the criteria that lose points, with their messages."""
         results = decide(self.rubric, submission, names)
-        return {it.criterion.id: it.outcome.message for it in results if self.is_lost(it)}
+        return {
+            result.criterion.id: result.outcome.message
+            for result in results
+            if self.is_lost(result)
+        }
 
     def _must_pass(self, submission: Submission, family: str) -> Collection[str]:
         """Return the criteria on the robot that must still pass; for a URDF on its own, those that
         need no package.
         """
         others = ("package", "submission") if submission.is_single else ("package",)
-        asked = (it for it in self.tested if it.check.subject not in others)
-        return [it.id for it in asked if family not in it.check.about.breaks_under(it.arguments)]
+        asked = (criterion for criterion in self.tested if criterion.check.subject not in others)
+        return [
+            criterion.id
+            for criterion in asked
+            if family not in criterion.check.about.breaks_under(criterion.arguments)
+        ]
 
 
 def _is_of_writing(criterion: Criterion, family: str) -> bool:
@@ -340,8 +365,14 @@ def _names_in(rubric: Rubric) -> Iterator[str]:
     """Yield every text in the arguments of a rubric's checks, also keys of tables, and the joints
     that it poses.
     """
-    for it in rubric.criteria:
-        yield from _texts_in((it.arguments, it.at, [(one.arguments, one.at) for one in it.carried]))
+    for criterion in rubric.criteria:
+        yield from _texts_in(
+            (
+                criterion.arguments,
+                criterion.at,
+                [(one.arguments, one.at) for one in criterion.carried],
+            )
+        )
 
 
 def _texts_in(value: Any) -> Iterator[str]:
@@ -411,7 +442,7 @@ class RubricTest(NamedTuple):
         """The criteria that the reference does not pass, without extra credit and those for manual
         grading.
         """
-        return tuple(found.criterion.id for found in self.reference.unearned)
+        return tuple(result.criterion.id for result in self.reference.unearned)
 
     @property
     def is_faulty(self) -> bool:
@@ -456,7 +487,7 @@ def run_rubric_test(
         for outcome in grade_all(chosen):
             outcomes.append(outcome)
             if len(outcomes) % _SCORED_EACH == 1:
-                scores = scores_by_kind((it.mutant.family, it.fate) for it in outcomes)
+                scores = scores_by_kind((graded.mutant.family, graded.fate) for graded in outcomes)
             progress(len(samples or ()) + len(outcomes), total, scores)
         rest = _Rest([*trial.equivalents()], *trial.unexamined())
     except KeyboardInterrupt:

@@ -74,12 +74,12 @@ def read_samples(folder: Path) -> list[Sample]:
     """
     if not folder.is_dir():
         raise InputError(f"{printable_path(folder)} is not a folder with samples")
-    found = [_sample(path) for path in sorted(folder.glob(f"*/{_EXPECTED}"))]
-    if not found:
+    samples = [_sample(path) for path in sorted(folder.glob(f"*/{_EXPECTED}"))]
+    if not samples:
         raise InputError(
             f"{printable_path(folder)} has no samples: no folder in it has an {_EXPECTED}"
         )
-    return found
+    return samples
 
 
 def _sample(path: Path) -> Sample:
@@ -94,14 +94,14 @@ def tested_samples(
     rubric: Rubric, samples: list[Sample], show: Callable[[int], None]
 ) -> SampleResults:
     """Return which samples of a rubric differ from what they expect."""
-    own = [sample for sample in samples if sample.rubric in ("", rubric.id)]
+    own_samples = [sample for sample in samples if sample.rubric in ("", rubric.id)]
     different: list[Loss] = []
-    for done, sample in enumerate(own):
+    for done, sample in enumerate(own_samples):
         show(done)
-        found = dict(_differences(sample, rubric))
-        if found:
-            different.append(Loss(sample.folder.name, found))
-    return SampleResults(len(own), len(samples) - len(own), tuple(different))
+        differences = dict(_differences(sample, rubric))
+        if differences:
+            different.append(Loss(sample.folder.name, differences))
+    return SampleResults(len(own_samples), len(samples) - len(own_samples), tuple(different))
 
 
 def _differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
@@ -121,8 +121,8 @@ def _differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
     for name in (name for name in expected if name not in known):
         yield name, f"the rubric has no such criterion{did_you_mean(name, known)}"
     graded = {
-        it.criterion.id: (_actual(it), f": {it.outcome.message}")
-        for it in grade(rubric, submission).results
+        result.criterion.id: (_actual(result), f": {result.outcome.message}")
+        for result in grade(rubric, submission).results
     }
     for name in (name for name, counts in known.items() if counts):
         actual, message = graded.get(name, ("is not graded", ""))

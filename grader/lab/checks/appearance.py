@@ -244,12 +244,12 @@ def _visuals_of_kind(
     none.
     """
     pairs = ((visual, visual.geometry) for visual in visuals(robot, link))
-    found = [(visual, shape) for visual, shape in pairs if isinstance(shape, kind)]
-    if not found:
+    visuals_of_kind = [(visual, shape) for visual, shape in pairs if isinstance(shape, kind)]
+    if not visuals_of_kind:
         other, wanted = main_visual(robot, link).geometry, kind.__name__.lower()
         message = f"{link!r} shows {shape_name(other)}; it should show a {wanted}"
         raise MissingElement(wanted, link, message=message, location=place(other.location))
-    return found
+    return visuals_of_kind
 
 
 def _edges_along_link(visual: Visual, box: Box) -> Vector | None:

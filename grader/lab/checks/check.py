@@ -133,7 +133,10 @@ class Check(NamedTuple):
     def outcome(self, examined: Iterable[object], arguments: Mapping[str, Any]) -> Outcome:
         """Return what it finds in the objects that it examines, with the arguments of a rubric."""
         if not _KEYWORDS.isdisjoint(arguments):
-            arguments = {f"{key}_" if iskeyword(key) else key: it for key, it in arguments.items()}
+            arguments = {
+                f"{key}_" if iskeyword(key) else key: argument
+                for key, argument in arguments.items()
+            }
         return self.function(*examined, **arguments)
 
     @property
@@ -236,7 +239,11 @@ def _arguments(section: str) -> dict[str, str]:
     indented further.
     """
     entries = (re.split(_ARGUMENT, entry) for entry in re.split(r"\n(?=\S)", section))
-    return {_key(found[1]): _one_line(found[2]) for found in entries if len(found) == 3}
+    return {
+        _key(entry_match[1]): _one_line(entry_match[2])
+        for entry_match in entries
+        if len(entry_match) == 3
+    }
 
 
 def _one_line(text: str) -> str:

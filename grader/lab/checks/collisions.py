@@ -132,10 +132,10 @@ def collides_as(
 
     def off(collision: Collision) -> ShapeDifference | None:
         other = PlacedShape(collision.geometry, collision.origin.placed_in())
-        found = placed.mismatch(other, tolerance + SLACK, turned=rpy is not None)
-        if found is None or xyz is not None:
-            return found
-        return found._replace(apart=0.0)
+        mismatch = placed.mismatch(other, tolerance + SLACK, turned=rpy is not None)
+        if mismatch is None or xyz is not None:
+            return mismatch
+        return mismatch._replace(apart=0.0)
 
     solid = _solid_collisions(robot, link, what)
     fitting = next((one for one in solid if _fits(off(one), tolerance)), None)
@@ -224,12 +224,12 @@ def _fail_with_nearest(
     message += f"; the nearest is {_describe_shape(nearest)}"
     if off is None:
         return failed(message, nearest.geometry.location or nearest.location)
-    found = [
+    differences = [
         (f"{in_millimetres(off.apart)} away", off.apart, nearest.origin.location, "xyz"),
         (f"of a size {in_millimetres(off.size)} off", off.size, nearest.geometry.location, None),
         (f"rotated by {in_degrees(off.angle)}", off.turn, nearest.origin.location, "rpy"),
     ]
-    wrong = [row for row in found if not row[1] <= tolerance + SLACK]
+    wrong = [row for row in differences if not row[1] <= tolerance + SLACK]
     text = " and ".join(text for text, *_ in wrong)
     return failed(f"{message} ({text})", place(wrong[0][2], wrong[0][3]) or nearest.location)
 

@@ -122,9 +122,10 @@ def under_the_base(
     faults += [f"the lowest point of {wheel!r} is {height} it" for wheel, height in heights.items()]
     if missing is not None and not faults:
         raise missing
-    verb, found = ("should be", f": {'; '.join(faults)}") if faults else ("is", "")
+    verb, explanation = ("should be", f": {'; '.join(faults)}") if faults else ("is", "")
     message = (
-        f"the frame {link!r} {verb} under {base!r}, level with the bottoms of the wheels{found}"
+        f"the frame {link!r} {verb} under {base!r}, "
+        f"level with the bottoms of the wheels{explanation}"
     )
     actual = (x, y, *lowest.values())
     at = origin_place(robot, base)
@@ -173,16 +174,16 @@ def _measure_each(
     """Return what can be measured of each link; and why one of them cannot, so that it does not
     hide the others.
     """
-    found: dict[str, float] = {}
+    measurements: dict[str, float] = {}
     missing: MissingElement | UnknownShape | None = None
     for link in links:
         try:
-            found[link] = measure(link)
+            measurements[link] = measure(link)
         except (MissingElement, UnknownShape) as error:
             missing = missing or error.with_traceback(
                 None
             )  # a traceback keeps this frame and its values alive
-    return found, missing
+    return measurements, missing
 
 
 def _common_place(

@@ -197,5 +197,9 @@ def _kinds_by_folder(package: Package) -> dict[str, FileKind]:
         folder = posixpath.dirname(path)
         if folder and (path.endswith(endings) or ".launch." in path):
             kinds.setdefault(folder, set()).add(_kind_by_ending(path))
-    of_one_kind = [(folder, found.pop()) for folder, found in kinds.items() if len(found) == 1]
+    of_one_kind = [
+        (folder, kinds_in_folder.pop())
+        for folder, kinds_in_folder in kinds.items()
+        if len(kinds_in_folder) == 1
+    ]
     return {folder: kind for folder, kind in of_one_kind if kind is not None}

@@ -29,7 +29,8 @@ def _breaks_without_direction(arguments: Mapping[str, Any]) -> Collection[str]:
 ABOUT = {
     "joint_limits": About(("limit",), breaks_under=_breaks_without_direction),
     "joint_axis": About(
-        ("axis",), breaks_under=lambda it: () if it.get("either_way") else (MIMIC_TURNED,)
+        ("axis",),
+        breaks_under=lambda arguments: () if arguments.get("either_way") else (MIMIC_TURNED,),
     ),
     "mimics": About(("mimic",), breaks_under=_breaks_without_direction),
     "joint_dynamics": About(("dynamics",)),
@@ -129,8 +130,8 @@ def joint_axis(
     if joint.type == "floating":
         message = f"the joint that moves {link!r} is floating, so it has no axis"
         return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
-    own, T_relative_joint = robot.axis(joint), robot.pose(joint.child, relative_to=relative_to)
-    actual, expected = T_relative_joint.rotate(own), unit(direction) or direction
+    own_axis, T_relative_joint = robot.axis(joint), robot.pose(joint.child, relative_to=relative_to)
+    actual, expected = T_relative_joint.rotate(own_axis), unit(direction) or direction
     off = degrees_between(actual, expected)
     off = min(off, 180.0 - off) if either_way else off
     axis = f"the axis of the joint that moves {link!r}"
@@ -148,9 +149,16 @@ def joint_axis(
     message += f" and passes {in_millimetres(away)} from {point(through)} m"
     message += "" if fine else "; it should pass through that point"
     at = place(joint.origin.location if joint.origin else None, "xyz") or joint.location
-    found = away if isfinite(away) else None
+    measured_distance = away if isfinite(away) else None
     return judged(
-        fine, message, found, 0.0, distance, "m", at=at, detail="" if fine else _joint_detail(joint)
+        fine,
+        message,
+        measured_distance,
+        0.0,
+        distance,
+        "m",
+        at=at,
+        detail="" if fine else _joint_detail(joint),
     )
 
 
@@ -226,9 +234,10 @@ def joint_dynamics(
     """
     joint = robot.moving_joint(link)
     given = joint.dynamics
-    found = given or Dynamics()
+    dynamics = given or Dynamics()
     numbers = _expected_numbers(
-        {"friction": (found.friction, friction), "damping": (found.damping, damping)}, tolerance
+        {"friction": (dynamics.friction, friction), "damping": (dynamics.damping, damping)},
+        tolerance,
     )
     message = f"the joint that moves {link!r} has {'<dynamics>' if given else 'no <dynamics>'}"
     if given is None and not numbers:
@@ -255,22 +264,22 @@ def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tup
 
     The last may not exist. Raises MissingElement for a loop.
     """
-    found: dict[str, tuple[float, float]] = {}
+    ratios: dict[str, tuple[float, float]] = {}
     first, ratio, shift = joint, 1.0, 0.0
     while True:
         if joint.mimic is None:
-            return found
+            return ratios
         name = joint.mimic.joint
         ratio, shift = ratio * joint.mimic.multiplier, ratio * joint.mimic.offset + shift
-        if name == first.name or name in found:
+        if name == first.name or name in ratios:
             message = f"the joint that moves {link!r} mimics itself, directly or through others"
             at = place(joint.mimic.location, "joint")
             raise MissingElement(
                 "mimicked joint", link, message=message, detail=_joint_detail(first), location=at
             )
-        found[name] = ratio, shift
+        ratios[name] = ratio, shift
         if not robot.robot.has_joint(name):
-            return found
+            return ratios
         joint = robot.joint(name)
 
 

@@ -192,9 +192,11 @@ def _stop_at_files(package: Package, places: Sequence[FilePlace], *, built: bool
     """Return the failure of a launch file that stops at a file that it reads; None if it does
     not.
     """
-    if built and (wrong := [it for it in places if it.state == "wrong" and it.stops_launch]):
+    if built and (
+        wrong := [place for place in places if place.state == "wrong" and place.stops_launch]
+    ):
         return _fail_places(package, wrong)._replace(cause="stops")
-    return next(filter(None, (_warning_that_stops(package, it) for it in places)), None)
+    return next(filter(None, (_warning_that_stops(package, place) for place in places)), None)
 
 
 def _check_decided(
@@ -216,7 +218,11 @@ def _check_decided(
             message, "cannot determine statically what the launch file gives its nodes"
         )
     unknown = next(
-        (it.text for it in places if it.state == "unknown" and it.stops_launch and it.file.path),
+        (
+            place.text
+            for place in places
+            if place.state == "unknown" and place.stops_launch and place.file.path
+        ),
         "",
     )
     if unknown:
@@ -388,17 +394,17 @@ def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | 
 
 
 def _pass_places(places: Sequence[FilePlace]) -> Outcome:
-    if any(it.state == "missing" for it in places):
+    if any(place.state == "missing" for place in places):
         return passed("the launch file looks for files of the package")
-    found = dict.fromkeys(it.text for it in places if it.text)
-    if not found:
+    texts = dict.fromkeys(place.text for place in places if place.text)
+    if not texts:
         return passed("the launch file names no file")
-    return passed(f"a build installs {enumerated(found)}, where the launch file looks")
+    return passed(f"a build installs {enumerated(texts)}, where the launch file looks")
 
 
 def _fail_places(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
-    message = "; ".join(dict.fromkeys(it.text for it in wrong))
-    is_local = any(it.is_local for it in wrong)
+    message = "; ".join(dict.fromkeys(place.text for place in wrong))
+    is_local = any(place.is_local for place in wrong)
     if is_local:
         message += (
             f"; use get_package_share_directory({package.name!r}), which returns the installed "

@@ -56,8 +56,8 @@ def _list_assumed(urdf: Reading) -> str:
         if problem.kind is xml_problems.RECOVERED and not problem.subject:
             lines.setdefault(problem.message, []).append(str(problem.location.line))
     texts = []
-    for message, found in lines.items():
-        at = [*dict.fromkeys(found)]
+    for message, assuming in lines.items():
+        at = [*dict.fromkeys(assuming)]
         texts.append(
             f"{message} ({'line' if len(at) == 1 else 'lines'} {enumerated(at, _MAX_ASSUMED)})"
         )

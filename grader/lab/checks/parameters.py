@@ -68,7 +68,9 @@ def parameter_is(
     """
     del package  # without one, there are no parameters
     try:
-        said, found = _value_or_default(submission, node, parameter, or_default=or_default)
+        said, parameter_value = _value_or_default(
+            submission, node, parameter, or_default=or_default
+        )
     except MissingElement:
         if not where_given:
             raise
@@ -76,13 +78,13 @@ def parameter_is(
         other = _written_otherwise(submission, parameter, meant, tolerance)
         if other is None:
             return passed(f"nothing gives {parameter} to {node}")
-        found, said = other, f"a parameter file has {parameter} ="
-    if isinstance(found.value, Unknown):
+        parameter_value, said = other, f"a parameter file has {parameter} ="
+    if isinstance(parameter_value.value, Unknown):
         cause = f"the parameter {parameter} of {node} cannot be determined statically"
-        raise NotDecided(f"{cause}: {found.value.reason}", cause)
+        raise NotDecided(f"{cause}: {parameter_value.value.reason}", cause)
     if measure is not None:
         value = measured(submission, measure, links or [])
-    actual, wanted, fits = found.value, "", True
+    actual, wanted, fits = parameter_value.value, "", True
     if value is not None:
         shown = round(value, _DIGITS) if isinstance(value, float) else value
         wanted, fits = f"should be {_text(shown)}", _equal(actual, value, tolerance)
@@ -96,7 +98,7 @@ def parameter_is(
     message = f"{said} {_text(actual)}"
     if measure is not None:
         wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
-    return passed(message) if fits else failed(f"{message}; it {wanted}", found.location)
+    return passed(message) if fits else failed(f"{message}; it {wanted}", parameter_value.location)
 
 
 def _value_or_default(
@@ -130,8 +132,12 @@ def _written_otherwise(
     certain value.
     """
     written = submission.workspace.installed.written_values(parameter)
-    known = [it for it in written if not isinstance(it.value, Unknown)]
-    has_it = value is None or any(_equal(it.value, value, tolerance) for it in known)
+    known = [
+        value_written for value_written in written if not isinstance(value_written.value, Unknown)
+    ]
+    has_it = value is None or any(
+        _equal(value_written.value, value, tolerance) for value_written in known
+    )
     return None if has_it else next(iter(known), None)
 
 
@@ -141,15 +147,17 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
     """
     workspace = submission.workspace
     given = workspace.parameters.owners.get(node, [])
-    values = [found.values[parameter] for found in given if parameter in found.values]
-    if len({repr(it.value) for it in values}) == 1 and len(values) == len(given):
+    values = [
+        node_values.values[parameter] for node_values in given if parameter in node_values.values
+    ]
+    if len({repr(value.value) for value in values}) == 1 and len(values) == len(given):
         return values[0]
     unknown = (
-        next((found.unknown for found in given if found.unknown), "")
+        next((node_values.unknown for node_values in given if node_values.unknown), "")
         or workspace.launches.unknown_nodes
     )
     if values and not unknown:
-        places = enumerated([it.location.file_and_line for it in values])
+        places = enumerated([value.location.file_and_line for value in values])
         raise NotDecided(
             f"{node} gets different values of {parameter}: {places}",
             "a parameter has several values",
@@ -166,7 +174,9 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
         there = similar_there(node, workspace.parameters.owners)
         message = f"nothing gives parameters to a node {quoted(node)}{there}"
         raise MissingElement("parameters of the node", node, message=message)
-    written = {name: it.location for found in given for name, it in found.values.items()}
+    written = {
+        name: value.location for node_values in given for name, value in node_values.values.items()
+    }
     message = (
         f"{node} does not get the parameter {quoted(parameter)}{similar_there(parameter, written)}"
     )
@@ -178,12 +188,12 @@ def _nameless(workspace: Workspace) -> list[tuple[Package, StartedNode]]:
     """Return the own nodes whose names neither the launch file nor their programs give, with their
     packages.
     """
-    found = []
+    nameless = []
     for _, node in workspace.launches.nodes:
         package = workspace.package_of(node)
         if package is not None and workspace.code.name_of(node) is None:
-            found.append((package, node))
-    return found
+            nameless.append((package, node))
+    return nameless
 
 
 def _equal(actual: Any, wanted: Any, tolerance: float) -> bool:
@@ -234,10 +244,10 @@ def measured(submission: Submission, measure: _Measure, links: list[str]) -> flo
                 ),
             )
         )
-    found = measures(Configuration(robot), links).get(measure)
-    if found is None:
+    measurement = measures(Configuration(robot), links).get(measure)
+    if measurement is None:
         raise MissingElement("measure", links[0], message=f"{quoted(links[0])} has no {measure}")
-    return found()
+    return measurement()
 
 
 def measures(robot: Configuration, links: list[str]) -> Mapping[str, Callable[[], float]]:
@@ -276,7 +286,7 @@ def _measures(robot: Configuration, links: list[str]) -> Iterator[tuple[str, Cal
             case Sphere(radius=radius):
                 yield "radius", lambda: radius
     joint: Joint | None = next(
-        (it for it in reversed(robot.chain(links[0])) if it.type != "fixed"), None
+        (moving for moving in reversed(robot.chain(links[0])) if moving.type != "fixed"), None
     )
     if joint is not None and joint.limit is not None:
         limit = joint.limit

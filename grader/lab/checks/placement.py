@@ -131,11 +131,11 @@ def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome |
     loose = next((joint for joint in path if joint.type != "fixed"), None)
     if loose is None:
         return None
-    own, detail = robot.parent_joints.get(link), f" (joint {loose.name!r})"
-    if own is not None and own in path and loose is not own:
+    parent_joint, detail = robot.parent_joints.get(link), f" (joint {loose.name!r})"
+    if parent_joint is not None and parent_joint in path and loose is not parent_joint:
         reason = f"which moves: a joint above it is {loose.type}; it should be fixed"
-        at = place(own.location, "link", "parent")
-        message = f"{link!r} is a child of {own.parent!r}, {reason}"
+        at = place(parent_joint.location, "link", "parent")
+        message = f"{link!r} is a child of {parent_joint.parent!r}, {reason}"
         return failed(message, at, detail=detail, cause="joint")
     message = f"a joint between {relative_to!r} and {link!r} is {loose.type}; it should be fixed"
     return failed(message, place(loose.location, "type"), detail=detail, cause="joint")

@@ -126,21 +126,21 @@ def _pair_joints(
     """Return the joints of the robot that move links, each with that of the reference, or the
     failure to pair them.
     """
-    own = _find_movers(robot, bases[0], [link for link, _ in pairs])
+    own_movers = _find_movers(robot, bases[0], [link for link, _ in pairs])
     others = _find_movers(reference, bases[1], [link for _, link in pairs])
     shown = _list_names([link for link, _ in pairs])
     if match == "order":
-        if len(own) != len(others):
+        if len(own_movers) != len(others):
             message = (
-                f"{counted(len(own), 'joint')} on the chains to {shown}; there should be "
+                f"{counted(len(own_movers), 'joint')} on the chains to {shown}; there should be "
                 f"{len(others)}"
             )
-            return failed(message, detail=f" (joints {_list_names(own) or 'none'})")
-        joints = [*zip(own.values(), others.values(), strict=True)]
+            return failed(message, detail=f" (joints {_list_names(own_movers) or 'none'})")
+        joints = [*zip(own_movers.values(), others.values(), strict=True)]
     else:
         _check_names(robot, [*others])
         joints = [(robot.joint(name), joint) for name, joint in others.items()]
-        for name, joint in own.items():
+        for name, joint in own_movers.items():
             if name not in others:
                 message = f"a joint on the chains to {shown} has no counterpart in the reference"
                 return failed(message, joint.location, detail=f" (joint {quoted(name)})")
@@ -255,16 +255,16 @@ class _MotionComparison(NamedTuple):
     def _offset(self, positions: tuple[float, ...]) -> _Offset:
         """Return the largest offset at these positions of the joints."""
         pairs = zip(self.joints, positions, strict=True)
-        own = {
+        own_positions = {
             joint.name: position for (joint, _), position in pairs if joint.mimic is None
         }  # a mimic joint follows
-        posed = self.robots[0].at(own)
-        found = []
+        posed = self.robots[0].at(own_positions)
+        offsets = []
         for (name, _), wanted in zip(self.links, self._reference_poses(positions), strict=True):
             pose = posed.pose(name, relative_to=self.bases[0])
             distance = dist(pose.translation, wanted.translation)
-            found.append(_Offset(name, distance, _angle_between(pose, wanted), positions))
-        return max(found, key=lambda offset: (self._times(offset), offset.distance))
+            offsets.append(_Offset(name, distance, _angle_between(pose, wanted), positions))
+        return max(offsets, key=lambda offset: (self._times(offset), offset.distance))
 
     def _reference_poses(self, positions: tuple[float, ...]) -> tuple[Transform, ...]:
         """Return the poses of the reference's links, computed once for all robots that are compared
@@ -324,7 +324,7 @@ def _find_movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[
     Instead of a mimic joint it is the joint that leads it. Raises MissingElement, and NotDecided
     where a mimic is not known.
     """
-    found: dict[str, Joint] = {}
+    movers: dict[str, Joint] = {}
     for link in links:
         chain = robot.between(base, link)
         if len(chain) > _MAX_CHAIN:
@@ -335,8 +335,8 @@ def _find_movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[
         for joint in chain:
             leader = _find_leader(robot.known, joint.known)
             if leader is not None and leader.type != "fixed":
-                found.setdefault(leader.name, leader)
-    return found
+                movers.setdefault(leader.name, leader)
+    return movers
 
 
 def _find_leader(robot: Robot, joint: Joint) -> Joint | None:

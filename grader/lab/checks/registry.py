@@ -158,7 +158,7 @@ def _entry_points() -> dict[str, list["EntryPoint"]]:
         entry_points,
     )  # reading the metadata of all packages takes longer than grading
 
-    found: dict[str, list[EntryPoint]] = {}
+    entries: dict[str, list[EntryPoint]] = {}
     for entry in entry_points(group=ENTRY_POINTS):
-        found.setdefault(entry.name, []).append(entry)
-    return found
+        entries.setdefault(entry.name, []).append(entry)
+    return entries

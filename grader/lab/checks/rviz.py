@@ -139,7 +139,9 @@ def rviz_shows_robot(
     fine = [model for verdict, model in verdicts if verdict.status == "passed"]
     if fine:
         return passed(f"the display {fine[0].name or 'RobotModel'!r} shows the robot")
-    verdict, model = next((it for it in verdicts if it[0].status == "pending"), verdicts[0])
+    verdict, model = next(
+        (pending for pending in verdicts if pending[0].status == "pending"), verdicts[0]
+    )
     return Outcome(verdict.status, verdict.reason, location=model.location, cause=verdict.cause)
 
 
@@ -154,16 +156,18 @@ def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "")
             only `name` decides.
     """
     rviz = _read_rviz(package, name, launch)
-    found = [display for display in rviz.displays if display.kind == kind.rpartition("/")[2]]
+    displays_of_kind = [
+        display for display in rviz.displays if display.kind == kind.rpartition("/")[2]
+    ]
     owner = kind.rpartition("/")[0]
     faults = [
         _class_of_ros1(display) or _why_other_class(display, owner) or _why_off(display)
-        for display in found
+        for display in displays_of_kind
     ]
     if "" in faults:
         return passed(f"a {kind} display is on")
-    if found:
-        return failed(faults[0], found[0].location)
+    if displays_of_kind:
+        return failed(faults[0], displays_of_kind[0].location)
     return _no_display(rviz, kind)
 
 
@@ -189,8 +193,8 @@ def _class_of_ros1(display: "Display") -> str:
 def _why_other_class(display: "Display", package: str) -> str:
     if package in ("", display.package):
         return ""
-    own, wanted = f"{display.package}/{display.kind}", f"{package}/{display.kind}"
-    return f"the class of the {display.kind} display is {own}; it should be {wanted}"
+    class_of_display, wanted = f"{display.package}/{display.kind}", f"{package}/{display.kind}"
+    return f"the class of the {display.kind} display is {class_of_display}; it should be {wanted}"
 
 
 def _why_off(display: "Display") -> str:
@@ -339,18 +343,19 @@ def _judge_prefix(model: "Display", opened: "Launch | None") -> _Verdict:
     slash before them.
     """
     node = model.node.get("TF Prefix")
-    own = node.text or "" if node is not None else ""
+    written_prefix = node.text or "" if node is not None else ""
     # TFLinkUpdater::getLinkTransforms of rviz_default_plugins always adds the slash,
     # robot_state_publisher none.
-    found, prefixes = f"{own}/" if own else "", _frames_of_link(opened, "")
-    if found in prefixes:
+    shown_prefix = f"{written_prefix}/" if written_prefix else ""
+    prefixes = _frames_of_link(opened, "")
+    if shown_prefix in prefixes:
         return _Verdict("passed")
     if None in prefixes:
         return _Verdict("pending", f"{_UNKNOWN_PREFIX}; needs manual grading")
     expected = prefixes[0] or ""
     message = (
-        f"the TF Prefix of the RobotModel display is {own!r}, so it looks for frames like "
-        f"'{found}LINK'; "
+        f"the TF Prefix of the RobotModel display is {written_prefix!r}, "
+        f"so it looks for frames like '{shown_prefix}LINK'; "
     )
     reason = f"{message}robot_state_publisher publishes '{expected}LINK'"
     return _Verdict("failed", reason, "nodes")

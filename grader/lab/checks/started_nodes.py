@@ -172,9 +172,9 @@ def _is_phrase(words: Sequence[str | None], phrase: Sequence[str]) -> bool:
 
 def _is_word(word: str | None, wanted: str) -> bool:
     """Return whether a word is another one: numbers by their value, paths by their ends."""
-    own, other = numbers_in(word or ""), numbers_in(wanted)
+    numbers, other = numbers_in(word or ""), numbers_in(wanted)
     is_path = word is not None and word.startswith(PREFIX) and word.endswith(f"/{wanted}")
-    return word == wanted or is_path or (bool(own) and own == other)
+    return word == wanted or is_path or (bool(numbers) and numbers == other)
 
 
 def _not_included(launch: "Launch", end: str) -> Fault | None:

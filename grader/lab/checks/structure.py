@@ -230,9 +230,9 @@ def _joint_above_root(
     """Return the nearest joint that should not be above a link; of a frame, one may be if the links
     are named.
     """
-    own = robot.parent_joints.get(link)
-    if own is None or not links:
-        return own
+    parent_joint = robot.parent_joints.get(link)
+    if parent_joint is None or not links:
+        return parent_joint
     robot.root_of(link)  # raises for a loop of joints
     wrong = (
         joint for joint in reversed(robot.chain(link)) if not _is_of_frame(robot, joint, links)
@@ -271,12 +271,12 @@ def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
         return True
     if not robot.robot.has_link(link):
         return False
-    own = robot.parent_joints.get(link)
-    if own is None:
+    parent_joint = robot.parent_joints.get(link)
+    if parent_joint is None:
         return any(joint.parent == link for joint in named)
     is_joined = robot.robot.has_link(parent) and robot.root_of(parent) == robot.root_of(link)
     path = robot.between(parent, link) if is_joined else ()
-    return any(joint.known in named for joint in (*path, own))
+    return any(joint.known in named for joint in (*path, parent_joint))
 
 
 def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:
@@ -303,12 +303,12 @@ def _count_parts(robot: Configuration, nouns: Collection[str]) -> Counter[str]:
     leaves one open.
     """
     tree = robot.main_tree
-    found = Counter({"link": len(tree), "joint": max(0, len(tree) - 1)})
+    part_counts = Counter({"link": len(tree), "joint": max(0, len(tree) - 1)})
     if {"link", "joint"}.issuperset(nouns):
-        return found
+        return part_counts
     for link in tree[1:]:
         joint = robot.parent_joints[link]
-        found[f"{joint.type} joint"] += 1
+        part_counts[f"{joint.type} joint"] += 1
         if joint.type != "fixed" and joint.mimic is None:
-            found["moving joint"] += 1
-    return found
+            part_counts["moving joint"] += 1
+    return part_counts

@@ -96,9 +96,9 @@ def _read_ordinal(place: str) -> _Ordinal | None:
     """Return the place among all questions that "required question 1 of 2" names; None for other
     texts.
     """
-    found = _ORDINAL.fullmatch(place.lower())
-    if found:
-        return _Ordinal(tuple(WORDS.findall(found[1])), int(found[2]), int(found[3]))
+    match = _ORDINAL.fullmatch(place.lower())
+    if match:
+        return _Ordinal(tuple(WORDS.findall(match[1])), int(match[2]), int(match[3]))
     return None
 
 
@@ -349,9 +349,15 @@ def _heading_of_file(document: TextDocument, pattern: Pattern) -> Heading:
     """Return a heading for a whole document: its name may be that of a question."""
     name = stem(document.file.name)
     task = read_label(stem(document.file.path)).task
-    found, number = question_of(name.replace("_", " "), (pattern,))
+    matching, number = question_of(name.replace("_", " "), (pattern,))
     return Heading(
-        0, len(document.lines), name, read_label(name), section=task, pattern=found, number=number
+        0,
+        len(document.lines),
+        name,
+        read_label(name),
+        section=task,
+        pattern=matching,
+        number=number,
     )
 
 

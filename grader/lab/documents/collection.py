@@ -125,7 +125,9 @@ class DocumentCollection:
     def read(self) -> tuple[str, ...]:
         """The paths of the documents that were read."""
         return tuple(
-            path for path, found in self._read_files.items() if isinstance(found, TextDocument)
+            path
+            for path, read_document in self._read_files.items()
+            if isinstance(read_document, TextDocument)
         )
 
     def named(self, patterns: Sequence[str]) -> tuple[list[TextDocument], list[_Unread]]:

@@ -102,10 +102,10 @@ def _docx(data: bytes) -> bytes:
     """
     lines: list[str] = []
     text, after = "", list[str]()
-    for name, own, is_in_row in _elements(data):
+    for name, paragraph, is_in_row in _elements(data):
         match name:
             case "t":
-                text += _without_marks(own)
+                text += _without_marks(paragraph)
             case "tab" | "tc":
                 text += "\t"
             case "br" | "cr":

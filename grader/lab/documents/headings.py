@@ -103,18 +103,18 @@ def read_label(text: str) -> Label:
     return Label(task, frozenset(steps), tuple(WORDS.findall(text)))
 
 
-def matches(wanted: Label, found: Label, task: int | None = None) -> bool:
+def matches(wanted: Label, given: Label, task: int | None = None) -> bool:
     """Return whether a label matches the wanted one; `task` is the task of the headings around
     it.
     """
     if wanted.steps or wanted.task is not None:
-        own = found.task if found.task is not None else task
-        if wanted.task is not None and wanted.task != own:
+        own_task = given.task if given.task is not None else task
+        if wanted.task is not None and wanted.task != own_task:
             return False
         if wanted.steps:
-            return wanted.steps <= found.steps
-        return own == wanted.task
-    return bool(wanted.words) and _in_order(wanted.words, found.words)
+            return wanted.steps <= given.steps
+        return own_task == wanted.task
+    return bool(wanted.words) and _in_order(wanted.words, given.words)
 
 
 def stem(path: str) -> str:
@@ -138,12 +138,12 @@ def _numbers(words: list[str]) -> tuple[int | None, set[int]]:
     return task, steps
 
 
-def _in_order(wanted: tuple[str, ...], found: tuple[str, ...]) -> bool:
+def _in_order(wanted: tuple[str, ...], words_of_heading: tuple[str, ...]) -> bool:
     """Return whether the wanted words occur next to each other, each at least as a prefix: cam in
     camera.
     """
-    for start in range(len(found) - len(wanted) + 1):
-        words = found[start : start + len(wanted)]
+    for start in range(len(words_of_heading) - len(wanted) + 1):
+        words = words_of_heading[start : start + len(wanted)]
         if all(map(str.startswith, words, wanted)):
             return True
     return False
@@ -182,7 +182,7 @@ def find_headings(
     `name` is that of the file, which may name a task. `patterns` are the words of further headings,
     besides those of questions.
     """
-    found: list[Heading] = []
+    headings: list[Heading] = []
     known = (*patterns, *_QUESTIONS)
     words = "|".join(
         sorted({re.escape(word) for pattern in known for word in pattern} | _QUESTION_WORDS)
@@ -194,19 +194,21 @@ def find_headings(
         is_fenced ^= _FENCE.match(line) is not None
         if not candidate.match(line, 0, _MAX_LINE):
             continue
-        above = found[-1] if found else None
+        above = headings[-1] if headings else None
         heading = _heading_of(line[:_MAX_LINE], index, known, above, is_marked=not is_fenced)
         if heading is None:
             continue
-        own = heading.label.task
-        if own is not None and not heading.is_mention:
+        own_task = heading.label.task
+        if own_task is not None and not heading.is_mention:
             if not heading.label.steps:
-                section = own
-            elif own != section:
+                section = own_task
+            elif own_task != section:
                 section = None
-            task = own
-        found.append(heading._replace(task=own if own is not None else task, section=section))
-    ending = [heading for heading in found if not heading.is_mention]
+            task = own_task
+        headings.append(
+            heading._replace(task=own_task if own_task is not None else task, section=section)
+        )
+    ending = [heading for heading in headings if not heading.is_mention]
     starts = [heading.start for heading in ending]
     return tuple(
         heading._replace(
@@ -214,7 +216,7 @@ def find_headings(
                 heading, islice(ending, bisect_right(starts, heading.start), None), lines
             )
         )
-        for heading in found
+        for heading in headings
     )
 
 
@@ -275,8 +277,8 @@ def _first_words(plain: str) -> list[str]:
 
 def _label_in(words: list[str]) -> Label:
     """Return the first label in the first words of a line."""
-    found = _LABEL.search(" ".join(words[:_MAX_WORDS]).lower())
-    return read_label(found[0] if found else "")
+    match = _LABEL.search(" ".join(words[:_MAX_WORDS]).lower())
+    return read_label(match[0] if match else "")
 
 
 def question_of(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int | None]:

@@ -56,7 +56,7 @@ def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture
     )
     return tuple(
         _limit_pictures(
-            found for path in paths for found in _read_pictures(path, result, submission)
+            picture for path in paths for picture in _read_pictures(path, result, submission)
         )
     )
 
@@ -96,17 +96,19 @@ def content_of(result: Result, report: Report) -> str:
 
     Without an answer it is the text of the documents that may hold one.
     """
-    found, is_certain = result.outcome.measured, not result.outcome.problem
+    content, is_certain = result.outcome.measured, not result.outcome.problem
     if _has_no_answer(result):
         documents, unread = _loose_documents(result, report.submission)
-        found, is_certain = (
+        content, is_certain = (
             "\n".join(line for one in documents for line in _lines_of(one)),
             not unread,
         )
-    if not (_is_question(result) and isinstance(found, str) and is_certain) or _loose_files(report):
+    if not (_is_question(result) and isinstance(content, str) and is_certain) or _loose_files(
+        report
+    ):
         return ""
-    is_whole = not any(sign in found for sign in (_PICTURE, "![", "]("))
-    return "\n".join(filter(None, map(str.rstrip, found.splitlines()))) if is_whole else ""
+    is_whole = not any(sign in content for sign in (_PICTURE, "![", "]("))
+    return "\n".join(filter(None, map(str.rstrip, content.splitlines()))) if is_whole else ""
 
 
 def loose_lines(result: Result, submission: Submission, *, is_anonymous: bool = False) -> list[str]:
@@ -226,11 +228,11 @@ def _find_page(file: File, result: Result, documents: DocumentCollection | None)
 
 
 def _limit_pictures(
-    found: Iterable[EmbeddedPicture | NotShown],
+    pictures: Iterable[EmbeddedPicture | NotShown],
 ) -> Iterator[EmbeddedPicture | NotShown]:
     """Yield pictures up to the limits for one criterion, then a notice that there are more."""
     left = _MAX_BYTES
-    for count, one in enumerate(found):
+    for count, one in enumerate(pictures):
         left -= len(one.data) if isinstance(one, EmbeddedPicture) else 0
         if count >= _MAX_PICTURES or left < 0:
             yield NotShown(

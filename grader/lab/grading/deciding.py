@@ -36,7 +36,7 @@ def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> I
     grading = _Grading(rubric, submission)
     left = {criterion.id for criterion in rubric.criteria if criterion.id in wanted}
     waiting: list[str] = []  # one that a criterion below may still excuse, and those after it
-    for criterion in (it for it in rubric.criteria if it.id in wanted):
+    for criterion in (asked for asked in rubric.criteria if asked.id in wanted):
         grading.decide(criterion)
         left.discard(criterion.id)
         waiting.append(criterion.id)
@@ -97,7 +97,7 @@ class _Grading:
         result = self.results[name]
         if not result.criterion.carried or not result.is_lost:
             return False
-        return any(not undecided.isdisjoint(it.causes) for it in result.criterion.carried)
+        return any(not undecided.isdisjoint(carried.causes) for carried in result.criterion.carried)
 
     def _carry_from_any(self, result: Result) -> Result:
         for carried in result.criterion.carried:
@@ -200,7 +200,11 @@ class _Grading:
         """Return whether what counts instead passes, if another criterion is the cause of a
         failure.
         """
-        for carried in (it for it in criterion.carried if cause in it.causes):
+        for carried in (
+            carried_failure
+            for carried_failure in criterion.carried
+            if cause in carried_failure.causes
+        ):
             with suppress(MissingElement):
                 if (
                     self._run_check(
@@ -391,27 +395,27 @@ def _missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
     """Return what a submission with evidence lacks, the `URDF` or the `package` of this lab, and
     why.
     """
-    found, robot = {}, submission.robot
+    missing, robot = {}, submission.robot
     if isinstance(submission.urdf, Absent):
-        found["URDF"] = "no URDF was submitted"
+        missing["URDF"] = "no URDF was submitted"
     elif robot is not None and robot.is_another(rubric.links):
         another = another_robot(rubric, robot)
         lacking = f"the robot has {_known_links_text(rubric, robot)}"
-        found["URDF"] = another.mistake if another is not None else lacking
+        missing["URDF"] = another.mistake if another is not None else lacking
     package = submission.package
     if package is None:
-        found["package"] = submission.no_package.message
+        missing["package"] = submission.no_package.message
     elif (
         package.name != rubric.package
         and submission.other_lab
         and package.folder.startswith(submission.other_lab)
     ):
-        found["package"] = (
+        missing["package"] = (
             f"no package was submitted for this lab; {package.name!r} is in the folder of "
             "another lab"
         )
-    if found and not submission.is_single and submission.evidence_files:
-        return found
+    if missing and not submission.is_single and submission.evidence_files:
+        return missing
     return {}
 
 

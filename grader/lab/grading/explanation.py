@@ -60,7 +60,14 @@ def explain(
     if outcome.problem:  # the check has said it
         return outcome
     mistake, dropping = outcome.mistake or outcome.message, _DROPPING.get(part, ())
-    dropped = next((it for it in problems if it.kind in dropping and it.subject == link), None)
+    dropped = next(
+        (
+            reported
+            for reported in problems
+            if reported.kind in dropping and reported.subject == link
+        ),
+        None,
+    )
     if dropped is not None:
         inner = next(_inside(dropped.location, problems, source), dropped)  # because of this
         message = f"{outcome.message}: {inner.message}"
@@ -69,16 +76,18 @@ def explain(
         )
     place = outcome.location
     at_place = [
-        it
-        for it in problems
-        if it.location == place and _explains(it, outcome, is_part=part in _DROPPING)
+        reported
+        for reported in problems
+        if reported.location == place and _explains(reported, outcome, is_part=part in _DROPPING)
     ]
     is_of_looks = "material" in looks_at
     about = [
-        it
-        for it in problems
+        reported
+        for reported in problems
         # A misspelt colour explains no shape.
-        if is_of_looks or it.kind is not urdf_problems.MISSPELT or it.subject not in _LOOKS
+        if is_of_looks
+        or reported.kind is not urdf_problems.MISSPELT
+        or reported.subject not in _LOOKS
     ]
     if part not in _OUTSIDE:
         inside = [*_inside(place, about, source, is_of_link=is_of_looks)]
@@ -113,7 +122,9 @@ def _inside(
     """Yield the problems in the element at a place, or in the link that it is of, that explain what
     is around them.
     """
-    candidates = [it for it in problems if it.kind in _INSIDE and it.location != place]
+    candidates = [
+        reported for reported in problems if reported.kind in _INSIDE and reported.location != place
+    ]
     if place is None or source is None or not candidates:
         return
     offsets = _element_offsets(place, source, is_of_link=is_of_link)

@@ -208,7 +208,7 @@ def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) 
     none.
     """
     if (
-        all(found.files for found in evidence)
+        all(result.files for result in evidence)
         or (documents := submission.readable_documents) is None
     ):
         return ""

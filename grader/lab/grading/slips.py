@@ -110,9 +110,11 @@ class _Readings:
                 changed.append(result)
         loading: list[Result] = []
         if _parts_of(before_submission) != _parts_of(after_submission):
-            loading = [it for it in before.values() if it.criterion.check.function is urdf_loads]
+            loading = [
+                payer for payer in before.values() if payer.criterion.check.function is urdf_loads
+            ]
         failed = [result for result in changed if result.outcome.status == "failed"]
-        return next((it.criterion.id for it in (*loading, *failed, *changed)), None)
+        return next((payer.criterion.id for payer in (*loading, *failed, *changed)), None)
 
     def _paid(self, name: str, paid: Sequence[Slip], slips: Sequence[Slip]) -> Result:
         """Return the failure of a criterion that pays for slips."""

@@ -54,7 +54,9 @@ class Subjects:
             self.source = reading.source
             self.problems = reading.problems
             if reading.is_meant:  # what ROS 2 rejects is corrected
-                remaining = [it for it in reading.problems if it.kind.effect != "rejects"]
+                remaining = [
+                    problem for problem in reading.problems if problem.kind.effect != "rejects"
+                ]
                 self.problems = tuple(remaining)
             if reading.robot is not None:
                 robot = Configuration(reading.robot, is_guarded=bool(reading.unresolved))
@@ -121,9 +123,9 @@ class Subjects:
         0.1 m.
         """
         assert self.robot is not None
-        found = joints_at(self.robot, at)
+        joints = joints_at(self.robot, at)
         return enumerated(
-            [f"{quoted(joint.name)} at {point((value,))} {unit}" for joint, value, unit in found]
+            [f"{quoted(joint.name)} at {point((value,))} {unit}" for joint, value, unit in joints]
         )
 
     def named(self, check: Check, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -141,10 +143,10 @@ class Subjects:
     def _pose_robot(self, robot: Configuration, at: Mapping[str, float]) -> Configuration:
         key = tuple(at.items())
         if key not in self._posed:
-            found = [(_find_joint(robot, name), value) for name, value in key]
+            joints = [(_find_joint(robot, name), value) for name, value in key]
             positions = {
                 joint.name: radians(value) if joint.type in _TURNING else value
-                for joint, value in found
+                for joint, value in joints
             }
             for name in positions:
                 _check_name(robot, name)
@@ -190,10 +192,10 @@ def _find_joint(robot: Configuration, name: str) -> Joint:
     if not robot.robot.has_joint(name):
         named = robot.selected_name(name)
     if named != name and not name.startswith(JOINT_OF):
-        found = robot.parent_joints.get(named)
-        if found is None:
+        joint_above = robot.parent_joints.get(named)
+        if joint_above is None:
             raise MissingElement("joint", name, message=f"no joint moves {name}")
-        return found
+        return joint_above
     joint = robot.joint(named)
     if joint.type not in (*_TURNING, *_SLIDING):
         at = joint.location and joint.location._replace(attribute="type")
@@ -220,11 +222,11 @@ def _check_name(robot: Configuration, name: str) -> None:
     """Raise MissingElement if several joints with this name turn or slide: positions are given by
     the joint's name.
     """
-    found = [
+    joints = [
         joint
         for joint in robot.known.joints
         if joint.name == name and joint.type in (*_TURNING, *_SLIDING)
     ]
-    if len(found) > 1:
-        message = f"{len(found)} joints are called {quoted(name)}; each needs a name of its own"
-        raise MissingElement("own name", name, message=message, location=found[1].location)
+    if len(joints) > 1:
+        message = f"{len(joints)} joints are called {quoted(name)}; each needs a name of its own"
+        raise MissingElement("own name", name, message=message, location=joints[1].location)

@@ -145,7 +145,10 @@ def _package_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Propo
             # Late: a robot on its own needs none.
             from grader.lab.hints.package_edits import package_proposals
 
-            wanted = [(it.check.about.looks_at, it.arguments) for it in criteria]
+            wanted = [
+                (lost_criterion.check.about.looks_at, lost_criterion.arguments)
+                for lost_criterion in criteria
+            ]
             reference = situation.reference_package(name)
             yield from package_proposals(submission.package, reference, wanted)
         yield from _name_edits(situation, criteria)
@@ -312,7 +315,10 @@ def leaves_others(
     one.
     """
     functions = {criterion.check.function for criterion in passing} if shared else set()
-    return any(it.check.function in functions and it.arguments.get("link") in shared for it in lost)
+    return any(
+        criterion.check.function in functions and criterion.arguments.get("link") in shared
+        for criterion in lost
+    )
 
 
 def missing_hints(

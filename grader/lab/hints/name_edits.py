@@ -45,7 +45,7 @@ def name_proposals(
     yield from chain.from_iterable(proposals)
     if family == "topics":
         yield from chain.from_iterable(map(_exchanged_remappings, name_fixes.sources))
-    best = [it for it in chain.from_iterable(proposals) if it.rank == 0]
+    best = [proposal for proposal in chain.from_iterable(proposals) if proposal.rank == 0]
     counts = range(2, len(proposals) + 1) if len(proposals) <= _MAX_WRONG else [len(proposals)]
     for count in counts:
         for chosen in combinations(best, count):

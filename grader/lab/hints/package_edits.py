@@ -218,17 +218,17 @@ def _reword(source: Source, file: PythonFile, wanted: str, what: str) -> Iterato
     if there are few.
     """
     start_of_text = int(source.text.startswith("\ufeff"))
-    own = _TOKEN.findall(source.text[start_of_text:])
+    own_tokens = _TOKEN.findall(source.text[start_of_text:])
     right = _TOKEN.findall(wanted)
-    if len(own) + len(right) > _MAX_TOKENS:
+    if len(own_tokens) + len(right) > _MAX_TOKENS:
         return
-    matcher = SequenceMatcher(None, own, right, autojunk=False)
+    matcher = SequenceMatcher(None, own_tokens, right, autojunk=False)
     changes = [opcode for opcode in matcher.get_opcodes() if opcode[0] != "equal"]
     if len(changes) > _MAX_DIFFERENCES:
         return
     for _, first, last, start, end in changes:
-        offset = start_of_text + len("".join(own[:first]))
-        old, new = "".join(own[first:last]), "".join(right[start:end])
+        offset = start_of_text + len("".join(own_tokens[:first]))
+        old, new = "".join(own_tokens[first:last]), "".join(right[start:end])
         edit = source.edit(offset, offset + len(old), new)
         written = in_backticks([old.strip(_AROUND_TEXTS)])
         yield change([edit], written or _missing_in_words(file, offset, new), what)
@@ -424,7 +424,7 @@ def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
         known, texts = [*files, *patterns], [path]
         if path in task.package.tree.folders:
             above = posixpath.dirname(path)
-            known = [it for it in patterns if posixpath.dirname(it) in (above, path)]
+            known = [pattern for pattern in patterns if posixpath.dirname(pattern) in (above, path)]
             texts.append(f"{above}/*")
         for actual in texts:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
@@ -436,7 +436,7 @@ def _similar(path: str, known: Iterable[str]) -> list[str]:
     """Return known paths, the most similar first."""
     return sorted(
         dict.fromkeys(known),
-        key=lambda it: -SequenceMatcher(None, it, path, autojunk=False).ratio(),
+        key=lambda known_path: -SequenceMatcher(None, known_path, path, autojunk=False).ratio(),
     )
 
 
@@ -444,7 +444,11 @@ def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator
     """Yield edits with which a launch file finds its files: of all together, then of one path
     each.
     """
-    named = [it for it in launch.references[:_MAX_PATHS] if it.path is not None]
+    named = [
+        named_reference
+        for named_reference in launch.references[:_MAX_PATHS]
+        if named_reference.path is not None
+    ]
     ways = []
     for reference in named:
         path = posixpath.normpath(reference.path or "").removeprefix(f"{PREFIX}/")
@@ -523,7 +527,7 @@ def _path_offsets(source: Source) -> Iterator[tuple[int, int]]:
     if not source.path.endswith(".py"):
         yield from (match.span() for match in _PIECE.finditer(source.text))
         return
-    yield from ((it.start, it.end) for it in PythonFile(source).literals)
+    yield from ((literal.start, literal.end) for literal in PythonFile(source).literals)
 
 
 def _moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]:
@@ -571,38 +575,38 @@ def _without(source: Source, start: int, end: int) -> Edit:
     return source.edit(start, end, "")
 
 
-def _missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
+def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that add what the file makes and does not use, or entries of the reference's
     list: one, or all.
 
     A node of a package of which the file has one is not added: that one is wrong.
     """
-    unused = [name for name in own.made if name not in own.used]
+    unused = [name for name in file.made if name not in file.used]
     known: set[str] = set()
-    for item in _items(own):
-        known |= _codes_of_entry(own, item)
-    for call in own.calls("Node"):
-        known |= _package_of(own, call)
+    for item in _items(file):
+        known |= _codes_of_entry(file, item)
+    for call in file.calls("Node"):
+        known |= _package_of(file, call)
     missing = [
-        like.written(item, own.bound)
+        like.written(item, file.bound)
         for item in _items(like)
         if known.isdisjoint(_codes_of_entry(like, item) | _package_of(like, item))
     ]
     for codes_to_add in (unused, missing):
         for code in codes_to_add:
-            yield from _adding(own, [code], what)
+            yield from _adding(file, [code], what)
         if len(codes_to_add) > 1:
-            yield from _adding(own, codes_to_add, what)
+            yield from _adding(file, codes_to_add, what)
 
 
-def _adding(own: PythonFile, codes: Sequence[str], what: str) -> Iterator[Proposal]:
-    edit = _add(own, codes)
+def _adding(file: PythonFile, codes: Sequence[str], what: str) -> Iterator[Proposal]:
+    edit = _add(file, codes)
     if edit is not None:
         names: set[str] = set()
         for code in codes:
-            names |= own.names_in(code)
+            names |= file.names_in(code)
         cause = f"a missing part of `{'data_files' if what == SETUP else _DESCRIPTION}`"
-        yield change([edit, *own.with_imports(sorted(names))], cause, what)
+        yield change([edit, *file.with_imports(sorted(names))], cause, what)
 
 
 def _codes_of_entry(file: PythonFile, item: ast.expr) -> set[str]:

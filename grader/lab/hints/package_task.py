@@ -118,15 +118,15 @@ def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
     names = {posixpath.basename(path) for path in wanted} | task.given
     for path in dict.fromkeys(wanted):
         folder, name = posixpath.split(path)
-        if _kind_of(path) != kind or any(_is_named(it, name, kind) for it in task.files):
+        if _kind_of(path) != kind or any(_is_named(file, name, kind) for file in task.files):
             continue
-        own = [
-            it
-            for it in task.files
-            if kind in (_kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")
+        same_kind = [
+            file
+            for file in task.files
+            if kind in (_kind_of(file), posixpath.dirname(file)) or file.startswith(f"{folder}/")
         ]
         yield from _rename(
-            task, kind, name, [it for it in own if posixpath.basename(it) not in names]
+            task, kind, name, [file for file in same_kind if posixpath.basename(file) not in names]
         )
 
 
@@ -139,9 +139,9 @@ def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> It
     xacro stays xacro.
     """
     spare = {
-        posixpath.basename(it): it
-        for it in files
-        if it.endswith(".xacro") <= name.endswith(".xacro")
+        posixpath.basename(file): file
+        for file in files
+        if file.endswith(".xacro") <= name.endswith(".xacro")
     }
     others = [*spare][:_MAX_NAMES]
     nearest = closest(name, spare)
@@ -160,9 +160,9 @@ def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
     if manifest is None or manifest.name is None:
         return
     shares = [path.split("/")[1] for path in task.package.installed if path.startswith("share/")]
-    own = [manifest.name, setup.name if setup is not None else None]
+    own_names = [manifest.name, setup.name if setup is not None else None]
     similar = [name for name in shares if closest(name, [new])]
-    names = [name for name in dict.fromkeys([*own, *similar]) if name and name != new]
+    names = [name for name in dict.fromkeys([*own_names, *similar]) if name and name != new]
     if not names:
         return
     word = re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, names))})(?![\w.])")
@@ -170,7 +170,7 @@ def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
     for path in (MANIFEST, SETUP, "setup.cfg", *task.package.launch_files[:_MAX_LAUNCH_FILES]):
         source = task.source(path)
         if source is not None:
-            edits += [source.edit(*it.span(), new) for it in word.finditer(source.text)]
+            edits += [source.edit(*match.span(), new) for match in word.finditer(source.text)]
     if f"resource/{new}" not in task.files:
         moved = [name for name in names if f"resource/{name}" in task.files]
         edits += [task.renamed(f"resource/{name}", f"resource/{new}") for name in moved]

@@ -85,16 +85,16 @@ class RobotDifference:
     @cached_property
     def missing(self) -> list[MissingPart]:
         """The links and joints of the reference that the robot does not have."""
-        found: list[MissingPart] = []
+        parts: list[MissingPart] = []
         for step in self._steps:
             if step.verb == "add" and step.own.tag == "robot" and step.like is not None:
                 like: Element = step.like.of
                 if like.tag == "link":
-                    found.append(MissingPart("link", like.get("name") or ""))
+                    parts.append(MissingPart("link", like.get("name") or ""))
                 elif like.tag == "joint":
                     ends = (end_of(like, "child"), like.get("type") or "", end_of(like, "parent"))
-                    found.append(MissingPart("joint", *ends))
-        return found
+                    parts.append(MissingPart("joint", *ends))
+        return parts
 
     @cached_property
     def _steps(self) -> list[Step]:
@@ -144,18 +144,25 @@ class RobotDifference:
         """Name a material as links use it, or give what a link shows the reference's colour if no
         material has it.
         """
-        own = {it.get("name") or "": it for it in self.draft.root.iterchildren("material")}
-        uses = Counter(it.get("name") or "" for it in self.draft.root.iterfind("link//material"))
-        undefined = [name for name, count in uses.items() if count > 1 and name not in own]
-        for name in sorted(own.keys() - uses.keys()):
+        own_materials = {
+            material.get("name") or "": material
+            for material in self.draft.root.iterchildren("material")
+        }
+        uses = Counter(
+            material.get("name") or "" for material in self.draft.root.iterfind("link//material")
+        )
+        undefined = [
+            name for name, count in uses.items() if count > 1 and name not in own_materials
+        ]
+        for name in sorted(own_materials.keys() - uses.keys()):
             meant = near(name, undefined, "material")
             if meant is not None:
-                sets = (Set(own[name], "", "name", meant),)
-                yield self.piece(own[name], "the name of {}", sets=sets)
+                sets = (Set(own_materials[name], "", "name", meant),)
+                yield self.piece(own_materials[name], "the name of {}", sets=sets)
         for used in self.draft.root.iter("material"):
-            yield from self._material(used, own)
+            yield from self._material(used, own_materials)
 
-    def _material(self, used: Element, own: Collection[str]) -> Iterator[Piece]:
+    def _material(self, used: Element, own_names: Collection[str]) -> Iterator[Piece]:
         link = self.reference.link(self.draft.link_of(used))
         shown = next(link.iter("material"), None) if link is not None else None
         if shown is None:
@@ -165,7 +172,7 @@ class RobotDifference:
         colour = child_of(like, "color") if like is not None else None
         if like is None or colour is None:
             return
-        if (used.get("name") or "") not in own:
+        if (used.get("name") or "") not in own_names:
             yield self.piece_of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
             return
         own_name = self._names["material"].get(name, "")
@@ -177,9 +184,14 @@ class RobotDifference:
         """Rename joints as in the reference, also where they are mimicked."""
         every: list[Set] = []
         for new, old in self._names["joint"].items():
-            joint = next(it for it in self.draft.joints() if it.get("name") == old)
-            mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
-            sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
+            joint = next(
+                candidate for candidate in self.draft.joints() if candidate.get("name") == old
+            )
+            mimics = (mimic for mimic in self.draft.root.iter("mimic") if mimic.get("joint") == old)
+            sets = (
+                Set(joint, "", "name", new),
+                *(Set(mimic, "", "joint", new) for mimic in mimics),
+            )
             every += sets
             yield self.piece(joint, f"the name {quoted(old)} of a joint", sets=sets, rank=STRUCTURE)
         if len(every) > 1:
@@ -197,33 +209,33 @@ class RobotDifference:
             values["version"] = version
         return Node("robot", (), values, nodes, draft.root)
 
-    def _pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
-        for values in _values_of_one(found):
+    def _pieces(self, steps_of_one: Sequence[Step]) -> Iterator[Piece]:
+        for values in _values_of_one(steps_of_one):
             yield from self._value_pieces(values)
-        for step in found:
-            own, like = step.own, step.like
-            aliases = TAGS[own.tag].aliases if own.tag in TAGS else {}
+        for step in steps_of_one:
+            own_node, like = step.own, step.like
+            aliases = TAGS[own_node.tag].aliases if own_node.tag in TAGS else {}
             match step.verb:
                 case "rename" | "unset" if new := step.other or aliases.get(step.name):
                     edits: Edits = ()
-                    if new not in own.values:
-                        edits = self.draft.rename_attribute(own.of, step.name, new)
+                    if new not in own_node.values:
+                        edits = self.draft.rename_attribute(own_node.of, step.name, new)
                     cause = f"the name of the attribute {new} of {{}}"
-                    yield self.piece(own.of, cause, edits, rank=SIBLING)
+                    yield self.piece(own_node.of, cause, edits, rank=SIBLING)
                 case "retag" if like is not None:
-                    edits = self.draft.rename_tag(own.of, like.tag)
-                    yield self.piece(own.of, f"the name of the tag <{like.tag}>", edits)
+                    edits = self.draft.rename_tag(own_node.of, like.tag)
+                    yield self.piece(own_node.of, f"the name of the tag <{like.tag}>", edits)
                 case "move" if step.parent is not None and like is not None:
-                    yield self.moved(own.of, step.parent.of)
-                case "add" if like is not None and own.tag != "robot":
-                    yield from self._inner(own.of, like.of)
+                    yield self.moved(own_node.of, step.parent.of)
+                case "add" if like is not None and own_node.tag != "robot":
+                    yield from self._inner(own_node.of, like.of)
                 case "remove":
-                    yield from self._remove(own)
+                    yield from self._remove(own_node)
 
-    def _value_pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
+    def _value_pieces(self, steps_of_one: Sequence[Step]) -> Iterator[Piece]:
         """Yield the values of one element: each alone, and all together."""
-        element: Element = found[0].own.of
-        wanted = {step.name: _wanted_value(step) for step in found}
+        element: Element = steps_of_one[0].own.of
+        wanted = {step.name: _wanted_value(step) for step in steps_of_one}
         values = {name: value for name, value in wanted.items() if value is not None}
         if element.tag in ("link", "joint", "material", "visual", "collision") and "name" in values:
             yield from self._rename(element, values.pop("name"))
@@ -288,11 +300,11 @@ class RobotDifference:
         """
         tag = str(element.tag)
         if tag in ("origin", "axis"):  # one with default values only does not count
-            own = child_of(parent, tag)
+            inner = child_of(parent, tag)
             sets = []
             for key, text in element.attrib.items():
                 name, wanted = str(key), normal(tag, str(key), str(text))
-                written = own.get(name) if own is not None else None
+                written = inner.get(name) if inner is not None else None
                 if normal(tag, name, written) != wanted:
                     sets.append(Set(parent, tag, name, wanted))
             yield from self.each(sets)
@@ -310,15 +322,15 @@ class RobotDifference:
         """Return an element of the reference with the robot's names, an undefined material with its
         colour.
         """
-        own = self._names["material" if element.tag == "material" else "joint"]
+        renamed = self._names["material" if element.tag == "material" else "joint"]
         text = self.reference.text(element)
         if element.tag in ("material", "mimic"):
-            for old, new in own.items():
+            for old, new in renamed.items():
                 text = text.replace(f'"{old}"', f'"{escaped(new)}"')
         if element.tag == "material":
             name = element.get("name") or ""
             defined = self.reference.material(name)
-            if defined is not None and self.draft.material(own.get(name, name)) is None:
+            if defined is not None and self.draft.material(renamed.get(name, name)) is None:
                 return self.reference.text(defined)
         return text
 
@@ -357,10 +369,10 @@ def _cause(sets: Sequence[Set]) -> str:
 
 def _unique(pieces: Iterable[Piece]) -> list[Piece]:
     """Return the pieces that change something, each once."""
-    found: dict[object, Piece] = {}
+    unique: dict[object, Piece] = {}
     for piece in pieces:
-        found.setdefault((piece.sets, piece.edits), piece)
-    return [piece for piece in found.values() if piece.sets or piece.edits]
+        unique.setdefault((piece.sets, piece.edits), piece)
+    return [piece for piece in unique.values() if piece.sets or piece.edits]
 
 
 def normal(tag: str, attribute: str, text: str | None) -> str:
@@ -434,12 +446,12 @@ def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
     known = {joint.name for joint in reference.robot.joints}
     written = {joint.get("name") for joint in draft.joints()}
     for joint in reference.joints():
-        own = draft.joint_of(end_of(joint, "child"))
-        own_name = own.get("name") if own is not None else None
+        own_joint = draft.joint_of(end_of(joint, "child"))
+        own_name = own_joint.get("name") if own_joint is not None else None
         if own_name and own_name not in known and joint.get("name") not in written:
             joints[joint.get("name") or ""] = own_name
-    own_materials = [_node_of(it, {}) for it in draft.root.iterchildren("material")]
-    materials = [_node_of(it, {}) for it in reference.root.iterchildren("material")]
+    own_materials = [_node_of(material, {}) for material in draft.root.iterchildren("material")]
+    materials = [_node_of(material, {}) for material in reference.root.iterchildren("material")]
     called: dict[str, str] = {}
     for node, like in paired(own_materials, materials).both:
         called[like.values.get("name", "")] = node.values.get("name", "")
@@ -447,10 +459,10 @@ def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
     return {"joint": joints, "material": named}
 
 
-def _values_of_one(found: Iterable[Step]) -> Iterator[list[Step]]:
+def _values_of_one(steps_in_order: Iterable[Step]) -> Iterator[list[Step]]:
     """Yield the steps that set values, those of one node that follow each other together."""
     together: list[Step] = []
-    for step in found:
+    for step in steps_in_order:
         is_value = step.verb in ("set", "unset")
         if together and not (is_value and together[0].own is step.own):
             yield together
@@ -465,10 +477,13 @@ def _rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
     """Return what gives a link another name, also where joints name it; nothing where several have
     the old one.
     """
-    own = [link for link in draft.links() if link.get("name") == old]
-    if len(own) != 1:
+    links = [link for link in draft.links() if link.get("name") == old]
+    if len(links) != 1:
         return ()
     ends = [
         (joint, role) for joint in draft.joints() for role in _ENDS if end_of(joint, role) == old
     ]
-    return (Set(own[0], "", "name", new), *(Set(joint, role, "link", new) for joint, role in ends))
+    return (
+        Set(links[0], "", "name", new),
+        *(Set(joint, role, "link", new) for joint, role in ends),
+    )

@@ -74,9 +74,9 @@ class Draft:
         """Return the draft of a robot that could be read."""
         if reading.elements is None or reading.robot is None:
             return None
-        found = cls(reading.elements, reading.robot, reading.source)
-        found.is_broken = reading.root is None
-        return found
+        draft = cls(reading.elements, reading.robot, reading.source)
+        draft.is_broken = reading.root is None
+        return draft
 
     def links(self) -> Iterator[Element]:
         """Yield the links."""
@@ -113,13 +113,13 @@ class Draft:
 
     @cached_property
     def _materials(self) -> dict[str, Element]:
-        own = list(self.root.iterchildren("material"))
+        own_materials = list(self.root.iterchildren("material"))
         materials: dict[str, Element] = {}
         # One without content only names another one.
-        for material in (*own, *self.root.iter("material")):
+        for material in (*own_materials, *self.root.iter("material")):
             if len(material):
                 materials.setdefault(material.get("name") or "", material)
-        for material in own:
+        for material in own_materials:
             materials.setdefault(material.get("name") or "", material)
         return materials
 
@@ -158,8 +158,8 @@ class Draft:
         name = self.link_of(owner) if owner.tag in ("link", "joint") else owner.get("name") or ""
         what = path[0] if len(path) == 1 else f"{path[0]} {path[-1]}"
         if name not in known:
-            own = owner.get("name") if what == "joint" else None
-            return f"the {what} {own!r}" if own else f"the {what}"
+            own_name = owner.get("name") if what == "joint" else None
+            return f"the {what} {own_name!r}" if own_name else f"the {what}"
         if what == "link":
             return f"the link {name!r}"
         return f"the {what} of {name!r}"
@@ -192,7 +192,7 @@ class Draft:
     def corrections(self, names: Sequence[str]) -> list[Proposal]:
         """Return edits that may correct what xacro refuses; `names` are those that may be meant."""
         if self._expanded is not None:
-            return [Proposal(*it) for it in self._expanded.corrections(names)]
+            return [Proposal(*correction) for correction in self._expanded.corrections(names)]
         return []
 
     def numbers(self, element: Element, attribute: str) -> "list[NumberDefinition]":
@@ -383,17 +383,17 @@ class Draft:
 
 def _attribute_text(source: Source, start: int, name: str) -> str | None:
     """Return the text of an attribute of the start tag at an offset, as it is written."""
-    found = markup.attribute(source.text, start, name)
-    if found is None:
+    span = markup.attribute(source.text, start, name)
+    if span is None:
         return None
-    return source.text[found.value_start : found.value_end]
+    return source.text[span.value_start : span.value_end]
 
 
 def end_of(joint: Element, role: str) -> str:
     """Return the name of the link that is the parent or child of a joint."""
-    found = child_of(joint, role)
-    if found is not None:
-        return found.get("link") or ""
+    end_element = child_of(joint, role)
+    if end_element is not None:
+        return end_element.get("link") or ""
     return ""
 
 

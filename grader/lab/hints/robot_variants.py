@@ -69,10 +69,10 @@ def _parts(draft: Draft, link: str) -> Iterator[tuple[str, Element]]:
 
 def _first_parts(draft: Draft, link: str) -> dict[str, Element]:
     """Return the first element at each path."""
-    found: dict[str, Element] = {}
+    parts: dict[str, Element] = {}
     for path, element in _parts(draft, link):
-        found.setdefault(path, element)
-    return found
+        parts.setdefault(path, element)
+    return parts
 
 
 def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
@@ -170,7 +170,9 @@ def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> 
     least = 0.0 if unit == "m" and element.tag != "origin" else -inf  # of a size
     written = values_of(element.get(name))
     # A number like 1e400 has no values.
-    definitions = [it for it in difference.draft.numbers(element, name) if values_of(it.text)]
+    definitions = [
+        number for number in difference.draft.numbers(element, name) if values_of(number.text)
+    ]
     if not definitions:
         for values in plausible(unit, written):
             if min(values) > least:
@@ -186,7 +188,7 @@ def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> 
                 edits = definition.edits_with(format_number(new))
                 if edits:
                     yield difference.piece(element, cause, edits, rank=OWN)
-    lengths = [it for it in definitions if abs(values_of(it.text)[0]) != 1.0]
+    lengths = [number for number in definitions if abs(values_of(number.text)[0]) != 1.0]
     cause = f"the numbers from which the {name} of {{}} is computed"
     for one, other in combinations(lengths, 2):
         edits = ()
@@ -248,7 +250,9 @@ def exchanges(difference: RobotDifference) -> list[Piece]:
 
 def _exchange_ends(draft: Draft, *ends: tuple[Element, str]) -> Edits:
     elements = [child_of(joint, role) for joint, role in ends]
-    return draft.exchange(*[it for it in elements if it is not None], attribute="link")
+    return draft.exchange(
+        *[element for element in elements if element is not None], attribute="link"
+    )
 
 
 def _other_side(link: str) -> str:

@@ -97,13 +97,13 @@ class Trials:
         if _has_new_build_errors(self.submission, edited):
             return {}
         self.is_assumed = _is_assumed(edited) and not _is_assumed(self.submission)
-        found: dict[str, Result] = {}
+        results: dict[str, Result] = {}
         for result in decide(self.rubric, edited, wanted):
             name = result.criterion.id
             if isinstance(wanted, Mapping) and is_worse(wanted[name], result):
                 return {}  # at once: a shape in another one takes long to measure
-            found[name] = result
-        return found
+            results[name] = result
+        return results
 
     def is_of_reference(self, path: str) -> bool:
         """Return whether a file of the robot is the same in the reference, so that the mistake
@@ -157,7 +157,11 @@ def _has_new_problems(before: Submission, after: Submission) -> bool:
         return True  # a macro that is called twice makes two links of one name
     if before.urdf.loaded.verdict == "rejected":
         return False
-    harmful = (it.kind for it in before.urdf.loaded.problems if it.kind.effect in _HARMFUL)
+    harmful = (
+        known_problem.kind
+        for known_problem in before.urdf.loaded.problems
+        if known_problem.kind.effect in _HARMFUL
+    )
     known = set(harmful)
     for problem in after.urdf.loaded.problems:
         if problem.kind.effect in _HARMFUL and problem.kind not in known:
@@ -349,7 +353,7 @@ class HintSearch:
     @property
     def edits(self) -> Edits:
         """The edits of all hints."""
-        return tuple(edit for found in self.found for edit in found.edits)
+        return tuple(edit for hint in self.found for edit in hint.edits)
 
     def run(self) -> "HintSearch":
         """Search until nothing more is found, or the budget is spent."""
@@ -365,7 +369,7 @@ class HintSearch:
         with self.trials.isolated():
             self._name_needed_hints()
         with self.trials.isolated():
-            explained = {name for found in self.found for name in found.gains}
+            explained = {name for hint in self.found for name in hint.gains}
             explained |= self.missing.keys()
             lost = costs_of(self.trials.results)
             for name in explained:
@@ -391,13 +395,15 @@ class HintSearch:
     def _name_needed_hints(self) -> None:
         """Drop from each late hint the earlier hints that it does not need."""
         corrected = tuple(edit for slip in self._slips for edit in slip.edits)
-        for index, found in enumerate(self.found):
+        for index, hint in enumerate(self.found):
 
-            def still_gains(before: Edits, found: FoundHint = found) -> bool:
-                gains, _ = self._gains((*corrected, *before), found.edits, self.trials.results)
-                return found.gains.keys() <= gains.keys()
+            def still_gains(before: Edits, needed_hint: FoundHint = hint) -> bool:
+                gains, _ = self._gains(
+                    (*corrected, *before), needed_hint.edits, self.trials.results
+                )
+                return needed_hint.gains.keys() <= gains.keys()
 
-            self.found[index] = found._replace(after=_leave_out(found.after, still_gains))
+            self.found[index] = hint._replace(after=_leave_out(hint.after, still_gains))
 
     def edits_needed_for(self, name: str) -> tuple[Edits, ...]:
         """Return the edits of hints that a criterion without a hint of its own needs to pass."""
@@ -406,7 +412,7 @@ class HintSearch:
             results = self.trials.graded(edits, [name])
             return name in results and not results[name].is_lost
 
-        return _leave_out([found.edits for found in self.found], passes)
+        return _leave_out([hint.edits for hint in self.found], passes)
 
     @property
     def _lost(self) -> list[str]:
@@ -471,8 +477,12 @@ class HintSearch:
 
     def _best(self, tried: Iterable[_Tried]) -> _Tried | None:
         lost = set(self._lost)
-        left = (it for it in tried if it.passes & lost and it.proposal.edits not in self._refused)
-        return min(left, key=lambda it: self._order(it, lost), default=None)
+        left = (
+            trial
+            for trial in tried
+            if trial.passes & lost and trial.proposal.edits not in self._refused
+        )
+        return min(left, key=lambda trial: self._order(trial, lost), default=None)
 
     def _order(self, one: _Tried, lost: Collection[str]) -> tuple[bool, Decimal, int, int, int]:
         gain = sum((self._criteria[name].points for name in one.passes if name in lost), Decimal(0))
@@ -488,7 +498,9 @@ class HintSearch:
         equal = self._equal_to(best, proof.together, wanted, tried)
         is_of_robot = all(edit.path.endswith((".urdf", ".xacro")) for edit in proof.proposal.edits)
         if equal is not None and (is_of_robot or _is_reverse(proof.proposal, equal.proposal)):
-            name = max((it for it in self._criteria if it in wanted), key=self._weight)
+            name = max(
+                (criterion for criterion in self._criteria if criterion in wanted), key=self._weight
+            )
             self.missing[name] = FoundHint(
                 proof.proposal, {}, "one of several", alternative=equal.proposal
             )
@@ -497,7 +509,7 @@ class HintSearch:
         certainty: Certainty = "preferred" if equal is None else "one of several"
         after: tuple[Edits, ...] = ()
         if proof.is_late:
-            after = tuple(found.edits for found in self.found if found not in self._slips)
+            after = tuple(hint.edits for hint in self.found if hint not in self._slips)
         self.found.append(FoundHint(proof.proposal, proof.gains, certainty, after))
         self.results = proof.results
         self._refused = set()
@@ -534,7 +546,7 @@ class HintSearch:
             return None
         if any(after[name].outcome.status != "passed" for name in gains):
             return None
-        known = {name for found in self.found for name in found.gains}
+        known = {name for hint in self.found for name in hint.gains}
         new_gains = {name: points for name, points in gains.items() if name not in known}
         return _Proof(proposal._replace(edits=edits), new_gains or gains, together, after, is_late)
 
@@ -544,8 +556,8 @@ class HintSearch:
         """Leave out changes of values without which the others gain as much; return the rest
         with what it gains.
         """
-        for edit in [it for it in edits if it.old and it.new]:
-            rest = tuple(it for it in edits if it is not edit)
+        for edit in [named_edit for named_edit in edits if named_edit.old and named_edit.new]:
+            rest = tuple(other for other in edits if other is not edit)
             if not rest:
                 break
             left, results = self._gains(self.edits, rest, self.results)

@@ -59,11 +59,11 @@ class _Pairs(NamedTuple):
     missing: list[Node]
 
 
-def steps(own: Node, like: Node) -> list[Step]:
+def steps(own_node: Node, like: Node) -> list[Step]:
     """Return the steps from a tree to another: what is to move, the values, then what is to be
     added and removed.
     """
-    every_step = [*_steps(own, like)]
+    every_step = [*_steps(own_node, like)]
     spare = [step.own for step in every_step if step.verb == "remove"]
     moved: list[Step] = []
     left: list[Step] = []
@@ -85,37 +85,37 @@ def steps(own: Node, like: Node) -> list[Step]:
     return moved + sorted(kept, key=lambda step: _ORDER.get(step.verb, 0))
 
 
-def _steps(own: Node, like: Node) -> Iterator[Step]:
-    if own.tag != like.tag:
-        yield Step("retag", own, like)
-    yield from _values(own, like)
-    pairs = paired(own.children, like.children)
+def _steps(own_node: Node, like: Node) -> Iterator[Step]:
+    if own_node.tag != like.tag:
+        yield Step("retag", own_node, like)
+    yield from _values(own_node, like)
+    pairs = paired(own_node.children, like.children)
     for pair in pairs.both:
         yield from _steps(*pair)
-    yield from (Step("add", own, node) for node in pairs.missing)
+    yield from (Step("add", own_node, node) for node in pairs.missing)
     yield from (Step("remove", node) for node in pairs.extra)
 
 
-def _values(own: Node, like: Node) -> Iterator[Step]:
-    missing = [name for name in like.values if name not in own.values]
-    for name, value in own.values.items():
+def _values(own_node: Node, like: Node) -> Iterator[Step]:
+    missing = [name for name in like.values if name not in own_node.values]
+    for name, value in own_node.values.items():
         if name in like.values:
             if value != like.values[name]:
-                yield Step("set", own, like, name)
+                yield Step("set", own_node, like, name)
             continue
         meant = closest(name, missing)
         if meant:
-            yield Step("rename", own, like, name, meant)
-        yield Step("unset", own, like, name)
-    yield from (Step("set", own, like, name) for name in missing)
+            yield Step("rename", own_node, like, name, meant)
+        yield Step("unset", own_node, like, name)
+    yield from (Step("set", own_node, like, name) for name in missing)
 
 
-def paired(own: Sequence[Node], like: Sequence[Node]) -> _Pairs:
+def paired(own_nodes: Sequence[Node], like: Sequence[Node]) -> _Pairs:
     """Pair nodes: by tag and all keys, then by each key, then by tag and likeness, then by similar
     tags.
     """
-    pairing = _Pairing(own, like)
-    depth = max((len(node.keys) for node in (*own, *like)), default=0)
+    pairing = _Pairing(own_nodes, like)
+    depth = max((len(node.keys) for node in (*own_nodes, *like)), default=0)
     parts = [slice(0, depth), *(slice(index, index + 1) for index in range(depth))]
     for part in parts:
         pairing.pair_by_keys(part)
@@ -136,9 +136,9 @@ def paired(own: Sequence[Node], like: Sequence[Node]) -> _Pairs:
 class _Pairing:
     """The nodes of two lists that are being paired."""
 
-    def __init__(self, own: Sequence[Node], like: Sequence[Node]) -> None:
-        self.own = own
-        self.extra, self.missing = [*own], [*like]
+    def __init__(self, own_nodes: Sequence[Node], like: Sequence[Node]) -> None:
+        self.own = own_nodes
+        self.extra, self.missing = [*own_nodes], [*like]
         self.both: list[tuple[Node, Node]] = []
 
     def pair(self, node: Node, other: Node) -> None:

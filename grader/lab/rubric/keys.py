@@ -148,7 +148,7 @@ _FEEDBACK = simple_type(
     {"type": ["string", "object"], "additionalProperties": _TEXT.schema},
     lambda value: (
         isinstance(value, str)
-        or (isinstance(value, dict) and all(isinstance(it, str) for it in value.values()))
+        or (isinstance(value, dict) and all(isinstance(text, str) for text in value.values()))
     ),
     lambda value: {"": value} if isinstance(value, str) else value,
 )
@@ -162,10 +162,11 @@ _LAUNCH_ARGUMENTS = simple_type(
     lambda value: (
         isinstance(value, dict)
         and value != {}
-        and all(isinstance(it, _ARGUMENT) for it in value.values())
+        and all(isinstance(argument, _ARGUMENT) for argument in value.values())
     ),
     lambda table: {
-        name: str(it).lower() if isinstance(it, bool) else str(it) for name, it in table.items()
+        name: str(argument).lower() if isinstance(argument, bool) else str(argument)
+        for name, argument in table.items()
     },
 )
 _FALLBACK = toml_type(Literal["failed", "manual"])

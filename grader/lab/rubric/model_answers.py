@@ -28,11 +28,11 @@ def load_with_answers(name: str, file: Path | None = None) -> Rubric:
         return _read_answers(rubric, file)
     if not rubric.answers or missing_answers(rubric):
         return rubric
-    own = _answers_file(rubric)
-    if not own.resolve().is_relative_to(path.parent.resolve()):
-        message = f"the answers file {printable_path(own)} must be in the rubric's folder"
+    own_answers = _answers_file(rubric)
+    if not own_answers.resolve().is_relative_to(path.parent.resolve()):
+        message = f"the answers file {printable_path(own_answers)} must be in the rubric's folder"
         raise RubricError((f"{rubric.place_of(('answers',))}: {message}",))
-    return _read_answers(rubric, own)
+    return _read_answers(rubric, own_answers)
 
 
 def _read_answers(rubric: Rubric, file: Path) -> Rubric:

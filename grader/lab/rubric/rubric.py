@@ -165,7 +165,7 @@ class Rubric:
         names = (
             name for row in self.criteria for name in texts_in(row.arguments.get("relative_to", ()))
         )
-        return max(sorted(Counter(names).items()), key=lambda it: it[1], default=("", 0))[0]
+        return max(sorted(Counter(names).items()), key=lambda pair: pair[1], default=("", 0))[0]
 
     @property
     def sha256(self) -> str:
@@ -368,7 +368,7 @@ def read_correct_rows(data: bytes, path: Path) -> Rubric | None:
             return _made_rubric(valid, data, path, positions, answers=False)
         if not wrong or any(place[:1] != ("criterion",) for place, _ in valid.complaints):
             return None
-        positions = [it for index, it in enumerate(positions) if index not in wrong]
+        positions = [position for index, position in enumerate(positions) if index not in wrong]
     return None
 
 
@@ -425,16 +425,16 @@ def _make_criterion(
     check, arguments = bound[0], dict(bound[1])
     # Nothing that lists or passes on a criterion's arguments may see the model answer.
     answer = arguments.pop("answer", "") if check.function is answered else ""
-    own = {key: value for key, value in row.items() if key not in ("check", "with", "carried")}
-    own |= {
+    fields = {key: value for key, value in row.items() if key not in ("check", "with", "carried")}
+    fields |= {
         "check": check,
         "arguments": arguments,
         "position": position,
         "answer": answer if answers else "",
     }
     texts = texts_in((arguments, *(given for _, _, given, _ in carried)))
-    own["has_selectors"] = any(map(is_selector, texts))
-    return Criterion(**own, carried=tuple(Carried(*one) for one in carried))
+    fields["has_selectors"] = any(map(is_selector, texts))
+    return Criterion(**fields, carried=tuple(Carried(*one) for one in carried))
 
 
 def _adjust(criterion: Criterion, adjustments: Mapping[str, Adjustment]) -> Criterion:

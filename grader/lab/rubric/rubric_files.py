@@ -21,19 +21,19 @@ def files_of(name: str, answers: Path | None = None) -> list[Path]:
     """
     from grader.lab.rubric.rubric import find_rubric, load_rubric  # late: the default needs none
 
-    found = [answers] if answers is not None else []
+    files = [answers] if answers is not None else []
     with suppress(GraderError):
         file = find_rubric(name)
-        found.append(file)
+        files.append(file)
         rubric = load_rubric(name)
         if rubric.answers:
-            found.append(file.parent / rubric.answers)
+            files.append(file.parent / rubric.answers)
         if rubric.reference:
             place = file.parent / rubric.reference
-            found.append(
+            files.append(
                 place / rubric.urdf if place.resolve() in file.resolve().parents else place
             )
-    return found
+    return files
 
 
 def load_named(name: str, answers: Path | None = None) -> "Rubric":

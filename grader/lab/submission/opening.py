@@ -111,7 +111,9 @@ def open_with_packages(path: str) -> Submission:
         submission = open_submission(path, _NO_LAB._replace(distro=distro))
     main = package_around(submission.packages, submission.path) or submission.package
     packages = [
-        it.name for it in submission.packages if it is not main and not is_backup(it.folder)
+        package.name
+        for package in submission.packages
+        if package is not main and not is_backup(package.folder)
     ]
     if main is None or not packages:
         return submission

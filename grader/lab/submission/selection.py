@@ -155,11 +155,11 @@ def _several_packages(
     """Return the packages of a lab that names several, by these names; that of the robot counts for
     a missing one.
     """
-    found = packages_named(packages, lab.packages)
-    missing = [name for name in lab.packages if name not in found]
-    if missing and around is not None and around not in found.values():
-        found[missing[0]] = around
-    return found
+    named = packages_named(packages, lab.packages)
+    missing = [name for name in lab.packages if name not in named]
+    if missing and around is not None and around not in named.values():
+        named[missing[0]] = around
+    return named
 
 
 def _main_package(packages: Mapping[str, Package], lab: Lab, around: Package | None) -> str:
@@ -477,7 +477,7 @@ class UrdfSearch(NamedTuple):
         """
         lab, opening = self.lab, self.opening
         bytes_left, parts_left = _MAX_READ, READING
-        found: dict[str, _ReadCandidate] = {}
+        readings: dict[str, _ReadCandidate] = {}
         for robot in robots:
             bytes_left -= min(robot.size, opening.max_size) + _COST_OF_FILE
             around = package_around(self.packages, robot.path)
@@ -490,17 +490,17 @@ class UrdfSearch(NamedTuple):
                 releases=lab.releases,
             )
             if bytes_left < 0:
-                found[robot.path] = _ReadCandidate(surroundings, is_another=bool(lab.links))
+                readings[robot.path] = _ReadCandidate(surroundings, is_another=bool(lab.links))
                 continue
             try:
                 read = read_as_ros(
                     self.tree.files[robot.path].read(opening.max_size), robot.path, surroundings
                 )
-                found[robot.path] = _count_links(read, surroundings, robot.robot, lab)
+                readings[robot.path] = _count_links(read, surroundings, robot.robot, lab)
             except (InputError, NotDecided):  # it may be the robot of the lab
-                found[robot.path] = _ReadCandidate(surroundings)
+                readings[robot.path] = _ReadCandidate(surroundings)
             parts_left = surroundings.budget.left
-        return found
+        return readings
 
 
 def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) -> _ReadCandidate:
@@ -552,7 +552,7 @@ def _tier_of(robot: RobotFile, urdf: str) -> _Tier:
 def _reason_against(best: _Candidate, other: _Candidate, lab: Lab) -> str:
     """Return why a file is not graded: the first field in which it differs from the best."""
     pairs = zip(_Candidate._fields, best, other, strict=True)
-    field = next(name for name, wanted, found in pairs if wanted != found)
+    field = next(name for name, wanted, given in pairs if wanted != given)
     if field == "place":
         return _ELSEWHERE[other.place]
     return _REASONS[field].format(urdf=lab.urdf)

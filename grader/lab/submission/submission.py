@@ -175,14 +175,16 @@ class Submission(OpenedWorkspace):
         """The hash of the URDF's bytes; of a URDF on its own that includes others, of a list of the
         hashes of all.
         """
-        own = sha256_of(self.urdf.data) if isinstance(self.urdf, Read) else None
-        if own is None or not self.besides:
-            return own
+        own_hash = sha256_of(self.urdf.data) if isinstance(self.urdf, Read) else None
+        if own_hash is None or not self.besides:
+            return own_hash
         hashes = [
             sha256_of(self.whole_tree.files[path].read(MAX_FILE_SIZE)) for path in self.besides
         ]
-        lines = [f"{found} {path}\n" for found, path in zip(hashes, self.besides, strict=True)]
-        return sha256_of("".join([f"{own}\n", *lines]).encode())
+        lines = [
+            f"{file_hash} {path}\n" for file_hash, path in zip(hashes, self.besides, strict=True)
+        ]
+        return sha256_of("".join([f"{own_hash}\n", *lines]).encode())
 
     @property
     def cost(self) -> int:
