@@ -207,7 +207,7 @@ def _pictures_to_add(report: Report, results: Sequence[Result]) -> list[str]:
     """
     wanted = {result.outcome.expected for result in results}
     evidence = [
-        found.evidence.names for found in report.evidence if not (found.files or found.possible)
+        result.evidence.names for result in report.evidence if not (result.files or result.possible)
     ]
     return [picture_name(names) for names in evidence if picture_named(names) not in wanted]
 
@@ -250,13 +250,13 @@ def _unmatched(report: Report) -> list[str]:
 def entries(report: Report, *, everything: bool = False) -> Mapping[str, Entry]:
     """Return the entry of every criterion by its id, in the rubric's order."""
     failed = {failure.id: failure for failure in failures(report)}
-    found = (failed.get(result.criterion.id, Entry(result)) for result in report.results)
+    entries_in_order = (failed.get(result.criterion.id, Entry(result)) for result in report.results)
     filled = {
         one.id: one._replace(blocks=tuple(blocks_of(one, report, everything=everything)))
-        for one in found
+        for one in entries_in_order
     }
     return {
-        name: one._replace(also=tuple(filled[it.id] for it in one.also))
+        name: one._replace(also=tuple(filled[other.id] for other in one.also))
         for name, one in filled.items()
     }
 
@@ -274,10 +274,10 @@ def failures(report: Report) -> tuple[Entry, ...]:
             lambda one: one.because or "",
         )
     )
-    found = [
+    mistakes_found = [
         Entry(one, skipped.get(one.criterion.id, ())) for one in report.results if is_failure(one)
     ]
-    mistakes = [_fixed_together(some) for _, some in alike(found, _shared_edit)]
+    mistakes = [_fixed_together(some) for _, some in alike(mistakes_found, _shared_edit)]
     is_rejected = report.submission.verdict == "rejected"
 
     def rank(mistake: tuple[Entry, ...]) -> tuple[bool, bool, Decimal]:
@@ -352,24 +352,24 @@ def result_line(report: Report) -> str:
         if report.open_points:
             texts.append(f"{_pending_points(report)}.")
         return " ".join(texts)
-    found, decided = report_sections(report), report.max_score - report.pending
-    if decided == 0 and not found.mistakes:
+    sections, decided = report_sections(report), report.max_score - report.pending
+    if decided == 0 and not sections.mistakes:
         return sentence(_pending_points(report)) if report.pending else "Nothing to grade."
     points = f"{format_points(report.score)} of {counted_points(decided)}"
     open_points = (
         f"; {format_points(report.pending)} more {'needs' if report.pending == 1 else 'need'} "
         "manual grading"
     )
-    faulty = [entry for entry in found.mistakes if entry.status == "errored"]
-    mistakes = [entry for entry in found.mistakes if entry.status != "errored"]
+    faulty = [entry for entry in sections.mistakes if entry.status == "errored"]
+    mistakes = [entry for entry in sections.mistakes if entry.status != "errored"]
     reasons = []
     if mistakes:
         reasons.append(
             f"{counted(len(mistakes), 'mistake costs', 'mistakes cost')} {_lost_by(mistakes)}"
         )
-    if found.unbuilt:
+    if sections.unbuilt:
         reasons.append(
-            f"what is not built yet{'' if reasons else ' costs'} {_lost_by(found.unbuilt)}"
+            f"what is not built yet{'' if reasons else ' costs'} {_lost_by(sections.unbuilt)}"
         )
     if faulty:  # no mistake of the student
         reasons.append(
@@ -513,7 +513,10 @@ def closing(report: Report) -> Iterator[Section]:
         ),
         Section(
             "Ignored files",
-            lines=tuple(Line("ignored", printable(it)) for it in first_lines(files, _MAX_LISTED)),
+            lines=tuple(
+                Line("ignored", printable(first_line))
+                for first_line in first_lines(files, _MAX_LISTED)
+            ),
         ),
     )
     yield from (section for section in sections if section.lines)
@@ -530,34 +533,38 @@ def closing_lines(report: Report) -> list[str]:
 
 def _evidence(report: Report) -> Iterator[Line]:
     """Yield the title of each part, then its evidence; last the other pictures."""
-    for part, of_part in groupby(report.evidence, key=lambda found: found.evidence.part):
+    for part, of_part in groupby(report.evidence, key=lambda result: result.evidence.part):
         yield Line("part", printable(report.rubric.part(part).title))
         yield from (
-            Line("found" if found.files else "missing", _evidence_text(found)) for found in of_part
+            Line("found" if result.files else "missing", _evidence_text(result))
+            for result in of_part
         )
     if report.other_pictures:
         yield Line("part", "Other pictures and documents")
         yield from (Line("found", printable(file.words)) for file in report.other_pictures)
 
 
-def _evidence_text(found: EvidenceResult) -> str:
+def _evidence_text(result: EvidenceResult) -> str:
     """Return a piece of evidence with its files, or with those that are perhaps meant."""
-    files = ", ".join(file.words for file in found.files)
-    perhaps = enumerated([file.words for file in found.possible], _MAX_LISTED, "or")
+    files = ", ".join(file.words for file in result.files)
+    perhaps = enumerated([file.words for file in result.possible], _MAX_LISTED, "or")
     return printable(
-        f"{found.evidence.title}: {files or (f'perhaps {perhaps}' if perhaps else 'missing')}"
+        f"{result.evidence.title}: {files or (f'perhaps {perhaps}' if perhaps else 'missing')}"
     )
 
 
 def other_problems(report: Report) -> list[Problem]:
     """Return the problems that no failed criterion has reported."""
     failed = [result for result in report.results if result.outcome.status == "failed"]
-    reported = {(it.outcome.location, it.outcome.problem or it.outcome.message) for it in failed}
-    payers = {it.criterion.id for it in failed}
+    reported = {
+        (result.outcome.location, result.outcome.problem or result.outcome.message)
+        for result in failed
+    }
+    payers = {result.criterion.id for result in failed}
     for paid in report.meant.paid if report.meant is not None else ():
         if paid.payer in payers:
             reported.add((paid.slip.location, paid.slip.assumption))
-    told = [(RECOVERED, "") for it in failed if it.criterion.check.function is urdf_loads]
+    told = [(RECOVERED, "") for result in failed if result.criterion.check.function is urdf_loads]
     left = (problem for problem in report.problems if (problem.kind, problem.subject) not in told)
     return [problem for problem in left if (problem.location, problem.message) not in reported]
 
@@ -568,10 +575,10 @@ def next_command(report: Report) -> str:
     """
     if report.student and not report.rubric.is_copy_of_shipped:  # which the student does not have
         return ""
-    found = report_sections(report)
+    sections = report_sections(report)
     failed = [
         entry.result
-        for entry in (*found.mistakes, *found.unbuilt)
+        for entry in (*sections.mistakes, *sections.unbuilt)
         if entry.result.manual_mark is None
     ]
     first = next(iter((*failed, *report.pending_automatic)), None)

@@ -193,8 +193,8 @@ class Entry(NamedTuple):
         """All criteria of the mistake: this one, those that its edit fixes, and those that are
         skipped because.
         """
-        own = (self.result, *self.skipped)
-        return (*own, *(result for other in self.also for result in other.results))
+        own_results = (self.result, *self.skipped)
+        return (*own_results, *(result for other in self.also for result in other.results))
 
     @property
     def lost(self) -> Decimal:
@@ -286,10 +286,10 @@ def groups(report: Report) -> Iterator[CriteriaGroup]:
 
 def alike(items: Iterable[_T], key: Callable[[_T], _K]) -> list[tuple[_K, tuple[_T, ...]]]:
     """Return each value of a key with the items that have it, in the order of the first ones."""
-    found: dict[_K, list[_T]] = {}
+    items_by_key: dict[_K, list[_T]] = {}
     for item in items:
-        found.setdefault(key(item), []).append(item)
-    return [(value, tuple(some)) for value, some in found.items()]
+        items_by_key.setdefault(key(item), []).append(item)
+    return [(value, tuple(some)) for value, some in items_by_key.items()]
 
 
 def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iterator[Block]:
@@ -388,10 +388,10 @@ def _answers(result: Result) -> Iterator[Answer]:
     """Yield the student's answer to a question, and the model answer if the rubric was loaded with
     its answers.
     """
-    found = tuple(printable(line) for line in answer_lines(result.outcome) if line.strip())
+    lines = tuple(printable(line) for line in answer_lines(result.outcome) if line.strip())
     model = tuple(printable(line) for line in model_lines(result.criterion) if line.strip())
-    if found:
-        yield Answer("Found", found)
+    if lines:
+        yield Answer("Found", lines)
     if model:
         yield Answer("Model answer", model)
 
@@ -448,8 +448,8 @@ def plain_lines(entry: Entry, source_of: SourceOf) -> list[str]:
                 lines.append(text)
             case Location():
                 lines += [location_text(block), *excerpt_lines(block, source_of)]
-            case Answer("Found", found):
-                lines += ["Found:", *(f"  {line}" for line in found)]
+            case Answer("Found", answer_text):
+                lines += ["Found:", *(f"  {line}" for line in answer_text)]
     return lines
 
 

@@ -54,7 +54,7 @@ class InspectedRobot:
     @property
     def problems(self) -> tuple[Problem, ...]:
         """What is wrong with it, and not ignored."""
-        return tuple(it for it in self.reading.problems if it not in self.hidden)
+        return tuple(problem for problem in self.reading.problems if problem not in self.hidden)
 
     @property
     def is_passed(self) -> bool:
@@ -116,8 +116,8 @@ class Inspection:
     @property
     def problems(self) -> tuple[Problem, ...]:
         """The problems of the robots, then those of packages."""
-        found = [problem for robot in self.robots for problem in robot.problems]
-        return (*dict.fromkeys(found), *self.package_problems)
+        robot_problems = [problem for robot in self.robots for problem in robot.problems]
+        return (*dict.fromkeys(robot_problems), *self.package_problems)
 
     def source(self, path: str) -> Source | None:
         """Return the text of a file, for quoting."""
@@ -173,10 +173,10 @@ def look_of(inspection: Inspection) -> str:
     """Return the verdict whose look the whole has: that of the only robot; else the worst of
     all.
     """
-    found = {robot.verdict for robot in inspection.robots}
+    verdicts = {robot.verdict for robot in inspection.robots}
     if inspection.robot is None and not inspection.is_passed:
         return "rejected"
-    return next((it for it in reversed(EFFECTS) if it in found), "clean")
+    return next((verdict for verdict in reversed(EFFECTS) if verdict in verdicts), "clean")
 
 
 def robot_line(robot: InspectedRobot) -> str:

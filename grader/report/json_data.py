@@ -41,7 +41,7 @@ def _harmless(text: str) -> str:
     """
     if not text.isascii() or "\x7f" in text:
         text = _UNPRINTABLE.sub(
-            lambda found: found[0] if found[0].isprintable() else json.dumps(found[0])[1:-1], text
+            lambda match: match[0] if match[0].isprintable() else json.dumps(match[0])[1:-1], text
         )
     return without_tag_commands(text, "\\u005b")
 
@@ -182,11 +182,11 @@ class JsonObject:
 
     def data(self, value: Any) -> dict[str, Any]:
         """Return the object that describes a value."""
-        found = {name: read(value) for name, read in self._readers.items()}
+        values = {name: read(value) for name, read in self._readers.items()}
         for name in self.optional:
-            if not found[name]:
-                del found[name]
-        return found
+            if not values[name]:
+                del values[name]
+        return values
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,8 +235,8 @@ def _reader(kind: KeyType, origin: _Origin) -> Callable[[Any], Any]:
     return lambda value: rounded(get(value))
 
 
-def _optional(of: JsonObject, found: Any) -> dict[str, Any] | None:
-    return of.data(found) if found is not None else None
+def _optional(of: JsonObject, value: Any) -> dict[str, Any] | None:
+    return of.data(value) if value is not None else None
 
 
 def inner(owner: str, keys: Mapping[str, KeyType]) -> dict[str, Key]:

@@ -165,9 +165,9 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _body(self) -> bytes:
         """Return the body of a request, which must be JSON from the page."""
-        own = f"http://{self.headers['Host'].lower()}"
+        own_origin = f"http://{self.headers['Host'].lower()}"
         if (
-            self.headers.get("Origin") != own
+            self.headers.get("Origin") != own_origin
             or self.headers.get("Sec-Fetch-Site", "same-origin") != "same-origin"
         ):
             raise _RefusedError(HTTPStatus.FORBIDDEN, "this request is not from the page")

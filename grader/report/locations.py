@@ -112,8 +112,8 @@ def source_lines(where: Location, source_of: SourceOf, many: int = _AROUND) -> l
 
 def archive_around(path: str) -> str:
     """Return the archive in a submission that a file is in; empty if it is in none."""
-    found = re.match(_ARCHIVE, path)
-    return found[1] if found else ""
+    match = re.match(_ARCHIVE, path)
+    return match[1] if match else ""
 
 
 def diff_lines(edits: Sequence[Edit], source_of: SourceOf) -> list[str]:

@@ -17,13 +17,13 @@ def findings_in_report(report: Report) -> list[Finding]:
     """Return the criteria that lose points or cannot be decided, and the other problems, in the
     order of their places.
     """
-    found = [finding_of_problem(problem) for problem in other_problems(report)]
+    findings = [finding_of_problem(problem) for problem in other_problems(report)]
     undecided = {result.criterion.id for result in report.pending_automatic}
     for entry in entries(report).values():
         is_mistake = is_failure(entry.result) and not entry.result.why_given
         if is_mistake or entry.id in undecided:
-            found.append(_criterion_finding(entry, report))
-    return sorted(found, key=place_of)
+            findings.append(_criterion_finding(entry, report))
+    return sorted(findings, key=place_of)
 
 
 class Mistake(NamedTuple):
@@ -41,7 +41,7 @@ class Mistake(NamedTuple):
 def mistakes_in_report(report: Report) -> list[Mistake]:
     """Return the mistakes in the order of a report, then the criteria that cannot be decided."""
     sections = report_sections(report)
-    found = [
+    mistakes = [
         _mistake(entry, report)
         for entry in (*sections.mistakes, *sections.unbuilt)
         if is_failure(entry.result)
@@ -50,8 +50,8 @@ def mistakes_in_report(report: Report) -> list[Mistake]:
     for result in report.pending_automatic:
         entry = known[result.criterion.id]
         mistake = _mistake(entry, report)
-        found.append(mistake._replace(cost=points_of([result])))
-    return found
+        mistakes.append(mistake._replace(cost=points_of([result])))
+    return mistakes
 
 
 def _mistake(entry: Entry, report: Report) -> Mistake:

@@ -174,7 +174,7 @@ def _write_beside(target: Path, data: bytes, mode: int | None) -> Path:
 def _remove_strays(folder: Path) -> None:
     """Remove the files that writers which were killed have left in a folder."""
     for path in folder.glob(".*.tmp"):
-        if (found := _TEMPORARY.fullmatch(path.name)) and not _is_running(int(found[1] or 0)):
+        if (match := _TEMPORARY.fullmatch(path.name)) and not _is_running(int(match[1] or 0)):
             with suppress(OSError):
                 path.unlink()
 
@@ -255,9 +255,9 @@ def refuse_inputs(option: str, path: Path, inputs: Iterable[Path]) -> None:
     is a folder.
     """
     real = Path(os.path.realpath(path))
-    for found in inputs:
-        if is_same_file(path, found) or (
-            real.exists() and Path(os.path.realpath(found)) in real.parents
+    for input_path in inputs:
+        if is_same_file(path, input_path) or (
+            real.exists() and Path(os.path.realpath(input_path)) in real.parents
         ):
             shown = printable_path(path)
             raise InputError(

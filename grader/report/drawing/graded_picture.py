@@ -110,11 +110,11 @@ def _by_link(
     """Return the criteria by the link that they are about, in the rubric's order; by "" for several
     links, or none.
     """
-    found: dict[str, list[Result]] = {}
+    results_by_link: dict[str, list[Result]] = {}
     for result in lost:
         links = [*_links(result.criterion, robot, solution)]
-        found.setdefault(links[0] if len(links) == 1 else "", []).append(result)
-    return found
+        results_by_link.setdefault(links[0] if len(links) == 1 else "", []).append(result)
+    return results_by_link
 
 
 def _links(

@@ -182,7 +182,9 @@ def frames_of(picture: Picture) -> list[_LinkFrame]:
     for body in scene.bodies:
         sizes[body.link] = min(_smallest_size(body), sizes.get(body.link, inf))
     links = dict.fromkeys([scene.frame, scene.root, *called, *(sizes or scene.poses)])
-    frames = [_LinkFrame(scene.poses[it], sizes.get(it)) for it in links if it in scene.poses]
+    frames = [
+        _LinkFrame(scene.poses[link], sizes.get(link)) for link in links if link in scene.poses
+    ]
     return frames[: _MAX_FRAMES if scene.bodies else _MAX_FRAMES_ALONE]
 
 

@@ -135,7 +135,7 @@ def shortened(script: str) -> str:
     Literals keep each character. Statements end with a semicolon or a brace, as prettier writes
     them.
     """
-    code = _COMMENTS.sub(lambda found: found["literal"] or "", script)
+    code = _COMMENTS.sub(lambda match: match["literal"] or "", script)
     return _SPACES.sub(_shortened_space, code).strip() + "\n"
 
 
@@ -144,15 +144,15 @@ def shortened_style(style: str) -> str:
     it. Literals keep each character.
     """
     short = _SPACES_OF_STYLES.sub(
-        lambda found: found["literal"] or (" " if found["space"] else ""), style
+        lambda match: match["literal"] or (" " if match["space"] else ""), style
     )
     return short.strip().replace(";}", "}")
 
 
-def _shortened_space(found: re.Match[str]) -> str:
-    if found["end"] is not None:
+def _shortened_space(match: re.Match[str]) -> str:
+    if match["end"] is not None:
         return "\n"
-    return found["literal"] or ""
+    return match["literal"] or ""
 
 
 def _source_hash(text: str) -> str:

@@ -29,7 +29,7 @@ def render_github(report: Report, base: Base) -> str:
     """Return the annotations of a report: the score as a notice, then the findings, most points
     first.
     """
-    found = [*_findings(report, base)]
+    findings = [*_findings(report, base)]
     lines = [
         command(
             "notice",
@@ -38,22 +38,25 @@ def render_github(report: Report, base: Base) -> str:
             _overview(report),
         )
     ]
-    return "".join([*lines, *limited_annotations(found, 1)])
+    return "".join([*lines, *limited_annotations(findings, 1)])
 
 
 def _findings(report: Report, base: Base) -> Iterator[Annotation]:
     """Yield what to fix or grade manually, and remarks; `base` is where the submission is in its
     repository.
     """
-    found, source_of = (
+    sections, source_of = (
         report_sections(report),
         cache(report.submission.source),
     )  # reads each file once
-    for entry in (*found.mistakes, *(one for one in found.pending if not is_manual(one.result))):
+    for entry in (
+        *sections.mistakes,
+        *(one for one in sections.pending if not is_manual(one.result)),
+    ):
         yield _entry_finding(entry, source_of, base)
     for title, lines in (
-        (found.unbuilt_title, [*found.unbuilt_lines]),
-        ("Not found", [*found.missing]),
+        (sections.unbuilt_title, [*sections.unbuilt_lines]),
+        ("Not found", [*sections.missing]),
     ):
         if lines:
             yield Annotation(title, "note", "\n".join(line.text for line in lines))

@@ -76,8 +76,11 @@ INSPECTION = JsonObject(
         "robots": Many(_ROBOT),
         "problems": (Many(PROBLEM), "package_problems"),
         "read": (Maybe(_EXTENT), "extent"),
-        "distro": (array(TEXT), lambda it: it.extent.stated.releases if it.extent else ()),
-        "distro_from": (array(TEXT), lambda it: it.extent.stated.places if it.extent else ()),
+        "distro": (array(TEXT), lambda robot: robot.extent.stated.releases if robot.extent else ()),
+        "distro_from": (
+            array(TEXT),
+            lambda robot: robot.extent.stated.places if robot.extent else (),
+        ),
     }
 )
 

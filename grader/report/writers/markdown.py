@@ -166,8 +166,8 @@ def _fold_passed(group: CriteriaGroup) -> str:
 
 def escape(text: str) -> str:
     """Return one line of printable text that Markdown shows as it is."""
-    plain = _ACTIVE.sub(lambda found: _HTML.get(found[0]) or f"\\{found[0]}", text.strip())
-    plain = _OPENING.sub(lambda found: f"{found[0][:-1]}\\{found[0][-1]}", plain)
+    plain = _ACTIVE.sub(lambda match: _HTML.get(match[0]) or f"\\{match[0]}", text.strip())
+    plain = _OPENING.sub(lambda match: f"{match[0][:-1]}\\{match[0][-1]}", plain)
     return _MENTION.sub("\\g<0>\u2060", plain)
 
 
@@ -191,7 +191,7 @@ def _keep_spaces(text: str) -> str:
 
 def code(text: str) -> str:
     """Return printable text as inline code; as plain text if it has too many backticks."""
-    longest = max((len(found[0]) for found in re.finditer(r"`+", text)), default=0)
+    longest = max((len(match[0]) for match in re.finditer(r"`+", text)), default=0)
     if longest >= _MAX_FENCE:
         return escape(text)
     fence = "`" * (longest + 1)
@@ -202,7 +202,7 @@ def code(text: str) -> str:
 def fence(lines: Sequence[str], language: str = "text") -> str:
     """Return printable lines, none of them blank, as a code block that nothing in them can end."""
     fence = "`" * max(
-        (len(found[0]) + 1 for line in lines for found in _FENCE.finditer(line)), default=3
+        (len(match[0]) + 1 for line in lines for match in _FENCE.finditer(line)), default=3
     )
     if len(fence) > _MAX_FENCE:
         return "\n".join(f"    {line}" for line in lines)

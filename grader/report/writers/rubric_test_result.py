@@ -84,10 +84,10 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
 def _kind_lines(test: RubricTest) -> Iterator[str]:
     """Yield the score of each kind, if there are several, and why mutants may survive."""
     if len(test.kinds) > 1:
-        shown = [f"{it.kind} {it.caught}/{it.graded}" for it in test.kinds]
+        shown = [f"{kind.kind} {kind.caught}/{kind.graded}" for kind in test.kinds]
         yield from ("", f"By kind: {', '.join(shown)}")
     given = {row.reason for row in test.reference.rubric.ignored}
-    reasons = Counter(it.reason for it in test.ignored if it.reason not in given)
+    reasons = Counter(mutant.reason for mutant in test.ignored if mutant.reason not in given)
     for reason, count in reasons.items():
         yield from ("", f"{counted(count, 'mutant')} may survive: {reason}.")
 

@@ -73,42 +73,42 @@ _MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
     """Print a report, with `verbose` everything in it."""
-    found = report_sections(report, everything=verbose)
+    sections = report_sections(report, everything=verbose)
     page = Page(console, [])
     if verbose:
-        _show_everything(report, found, page)
+        _show_everything(report, sections, page)
     else:
-        _show_brief(report, found, page)
+        _show_brief(report, sections, page)
     _show_end(report, page)
     page.print()
 
 
-def _show_brief(report: Report, found: ReportSections, page: Page) -> None:
+def _show_brief(report: Report, sections: ReportSections, page: Page) -> None:
     """Add the short report, without its last lines.
 
     While a student has something to fix, what comes later is a line each, without empty rows.
     """
-    is_unfinished = bool(found.mistakes or found.unbuilt) and not report.student
-    is_short = is_unfinished and len(found.mistakes) == 1
+    is_unfinished = bool(sections.mistakes or sections.unbuilt) and not report.student
+    is_short = is_unfinished and len(sections.mistakes) == 1
     _show_start(report, page)
-    _show_mistakes(found.mistakes, report, page)
-    if found.unbuilt:
-        page.title(found.unbuilt_title)
-    for line in found.unbuilt_lines:
+    _show_mistakes(sections.mistakes, report, page)
+    if sections.unbuilt:
+        page.title(sections.unbuilt_title)
+    for line in sections.unbuilt_lines:
         page.inset(line.text)
-    found_line = content.found_line(found.pending) if is_unfinished else ""
+    found_line = content.found_line(sections.pending) if is_unfinished else ""
     if is_unfinished and not found_line:
-        _show_pending(report, found.pending, page)
-    if found.carried:
+        _show_pending(report, sections.pending, page)
+    if sections.carried:
         page.leave_row()
-    for line in found.carried:
+    for line in sections.carried:
         page.line(line.text, _LOOKS[line.role])
     if is_unfinished:
-        _show_later(report, found_line, found.missing, page)
+        _show_later(report, found_line, sections.missing, page)
     else:
-        _show_missing(found.missing, page)
-        _show_pending(report, found.pending, page)
-    for section in found.remarks:
+        _show_missing(sections.missing, page)
+        _show_pending(report, sections.pending, page)
+    for section in sections.remarks:
         page.leave_row()
         _show_remarks(section, page)
     _show_groups(report, page)
@@ -126,11 +126,11 @@ def _show_remarks(section: Section, page: Page) -> None:
         page.item(entry.status, name, f"  {earned_text(entry.result)}: {words}")
 
 
-def _show_later(report: Report, found: str, missing: Sequence[Line], page: Page) -> None:
+def _show_later(report: Report, missing_text: str, missing: Sequence[Line], page: Page) -> None:
     """Add how much is left to submit, what was found for manual grading, and what matches
     nothing.
     """
-    texts = [text for text in (content.hand_in_line(report), found) if text]
+    texts = [text for text in (content.hand_in_line(report), missing_text) if text]
     texts += [line.text for line in missing if line.role == "there"]
     if texts:
         page.leave_row()
@@ -339,11 +339,11 @@ def _show_end(report: Report, page: Page) -> None:
     page.inset(Text.assemble(*parts), indent=0)
 
 
-def _show_everything(report: Report, found: ReportSections, page: Page) -> None:
+def _show_everything(report: Report, sections: ReportSections, page: Page) -> None:
     """Add a report, without its last lines."""
     for line in content.head(report):
         page.line(line.text, _LOOKS[line.role])
-    for section in found.sections:
+    for section in sections.sections:
         _show_section(section, report, page)
     _show_parts(report, page)
     for section in content.closing(report):

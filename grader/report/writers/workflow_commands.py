@@ -24,10 +24,10 @@ class Annotation(NamedTuple):
     place: Mapping[str, str] = {}  # without any the whole submission is meant
 
 
-def limited_annotations(found: Sequence[Annotation], notices: int) -> Iterator[str]:
+def limited_annotations(annotations: Sequence[Annotation], notices: int) -> Iterator[str]:
     """Yield at most as many annotations of each type as GitHub shows, besides some notices."""
     for level, name in _COMMANDS.items():
-        some = [finding for finding in found if finding.level == level]
+        some = [finding for finding in annotations if finding.level == level]
         room = _MAX_ANNOTATIONS - notices * (level == "note")
         listed = some if len(some) <= room else [*some[: room - 1], _rest_finding(some[room - 1 :])]
         yield from (command(name, one.place, one.title, one.text) for one in listed)
@@ -61,9 +61,11 @@ def annotation_text(lines: list[str], where: Location | None, base: Base) -> str
     return "\n".join(lines)
 
 
-def _rest_finding(found: Sequence[Annotation]) -> Annotation:
-    text = "\n".join(("See the report for:", *dict.fromkeys(finding.title for finding in found)))
-    return found[0]._replace(title=f"{len(found)} more", text=text, place={})
+def _rest_finding(annotations: Sequence[Annotation]) -> Annotation:
+    text = "\n".join(
+        ("See the report for:", *dict.fromkeys(finding.title for finding in annotations))
+    )
+    return annotations[0]._replace(title=f"{len(annotations)} more", text=text, place={})
 
 
 def command(name: str, place: Mapping[str, str], title: str, text: str) -> str:
