@@ -141,10 +141,12 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
     if "\0" in text:
         raise InputError(f"{shown} is not a CSV file: it contains a NUL character")
     header = re.match(r'\s*((?:"(?:[^"]++|"")*+"|[^"\r\n])*+)', text)
-    found = re.findall(f"[{_DELIMITERS}]", re.sub(r'"[^"]*"', "", header[1] if header else "")) or [
-        ","
-    ]
-    delimiter = max(dict.fromkeys(found), key=found.count) if is_from_person else found[0]
+    delimiters = re.findall(
+        f"[{_DELIMITERS}]", re.sub(r'"[^"]*"', "", header[1] if header else "")
+    ) or [","]
+    delimiter = (
+        max(dict.fromkeys(delimiters), key=delimiters.count) if is_from_person else delimiters[0]
+    )
     return Table(_split_rows(text, delimiter, shown), delimiter, encoding, bom)
 
 
@@ -171,10 +173,10 @@ def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:
 
 
 def _unquoted(cell: str) -> str:
-    found = _QUOTED.match(cell)
-    if found is None:
+    match = _QUOTED.match(cell)
+    if match is None:
         return cell
-    return found[0][1:-1].replace('""', '"') + cell[found.end() :]
+    return match[0][1:-1].replace('""', '"') + cell[match.end() :]
 
 
 def _split_rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
@@ -185,20 +187,20 @@ def _split_rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
     rows: list[TableRow] = []
     cells: list[str] = []
     while at < len(text) or cells:  # a text that ends after a delimiter has one more empty cell
-        found = pattern.match(text, at)
-        if found is None:
+        match = pattern.match(text, at)
+        if match is None:
             raise InputError(
                 f"{shown} is not a CSV file: a quotation mark in row {len(rows) + 1} is "
                 "never closed"
             )
-        cells.append(found[1])
+        cells.append(match[1])
         count += 1
         if count > _CELL_LIMIT:
             raise InputError(f"{shown} has more than {_CELL_LIMIT} cells, the limit")
-        at = found.end()
-        if found[2] != delimiter:
+        at = match.end()
+        if match[2] != delimiter:
             rows.append(
-                TableRow(len(rows) + 1, line, () if cells == [""] else tuple(cells), found[2])
+                TableRow(len(rows) + 1, line, () if cells == [""] else tuple(cells), match[2])
             )
             line += 1 + sum(len(cell.splitlines()) - 1 for cell in cells if cell[:1] == '"')
             cells = []
@@ -238,7 +240,7 @@ def spelt_out(text: str) -> str:
     """Return text with escapes for controls, lone surrogates and bidirectional marks."""
     if text.isprintable():
         return text
-    return _ESCAPED.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
+    return _ESCAPED.sub(lambda match: f"\\x{ord(match[0]):02x}", text)
 
 
 def _cell_text(value: CellValue) -> str:

@@ -94,9 +94,9 @@ def newest_changes(folder: Path, number: int | None) -> tuple[Snapshot, Snapshot
         )
     for run in reversed(earlier):
         old = snapshot(folder, run)
-        found = list(changes(old, new))
-        if found:
-            return old, new, found
+        changed = list(changes(old, new))
+        if changed:
+            return old, new, changed
     return snapshot(folder, 1), new, []
 
 

@@ -129,8 +129,8 @@ class Gradebook:
                     continue
                 others[key] = total
             named = zip(RunGrade._fields[1:], more, strict=True)
-            if found := {name: value for name, value in named if value}:
-                details[key] = found
+            if present := {name: value for name, value in named if value}:
+                details[key] = present
         return self.run._replace(
             totals=totals,
             others=others,
@@ -176,11 +176,11 @@ class Gradebook:
         submission.
         """
         person: dict[str, Any] = dict(stored.person) if stored is not None else {}
-        found = self._on_roster.get(key)
-        if found is None:
+        listed = self._on_roster.get(key)
+        if listed is None:
             return Student(key, **person, is_on_roster=self.roster is None)
-        return found._replace(
-            **{name: value for name, value in person.items() if not getattr(found, name)}
+        return listed._replace(
+            **{name: value for name, value in person.items() if not getattr(listed, name)}
         )
 
     def report(self, stored: StoredResult) -> Report:
@@ -269,7 +269,7 @@ class Gradebook:
 
     def _lateness(self, student: Student, stored: StoredResult, report: Report) -> Lateness:
         """Return the lateness; what the roster says counts before what the LMS says."""
-        own = self.marks.counting.get((stored.student, DEADLINE))
+        own_deadline = self.marks.counting.get((stored.student, DEADLINE))
         times = student._replace(
             is_late=stored.is_late if student.is_late is None else student.is_late,
             submitted=student.submitted or stored.submitted,
@@ -278,7 +278,11 @@ class Gradebook:
             else student.days_late,
         )
         return lateness(
-            self.rubric, times, report.score, self.due, own.value if own is not None else ""
+            self.rubric,
+            times,
+            report.score,
+            self.due,
+            own_deadline.value if own_deadline is not None else "",
         )
 
     def with_marks(self, report: Report, stored: StoredResult) -> tuple[Report, tuple[str, ...]]:

@@ -195,9 +195,9 @@ def _criteria_figures(
         students = sorted(mistake.student for mistake in equal)
         causes[name].append(_CommonMistake(name, _words(equal), students))
     common = []
-    for name, own in causes.items():
-        count = sum(len(cause.students) for cause in own)
-        common.append(CriterionMistakes(name, count, len(own), own[:_MAX_CAUSES]))
+    for name, own_causes in causes.items():
+        count = sum(len(cause.students) for cause in own_causes)
+        common.append(CriterionMistakes(name, count, len(own_causes), own_causes[:_MAX_CAUSES]))
     common.sort(key=lambda one: (-one.students, one.criterion))
     return rows, common[:_MAX_MISTAKES]
 

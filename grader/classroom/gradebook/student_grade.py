@@ -252,30 +252,30 @@ class StudentGrade:
     @cached_property
     def concerns(self) -> dict[Reason, str]:
         """Why a person should look at this grade, each reason with its details."""
-        reason, found = self.stored.reason if self.stored is not None else "", {*self.known}
+        reason, reasons = self.stored.reason if self.stored is not None else "", {*self.known}
         if any(one.is_faulty for one in self.results):
-            found.add(Reason.FAILED)
+            reasons.add(Reason.FAILED)
         if self.status == "unreadable" and self.pending:
-            found.add(Reason.UNREADABLE)
+            reasons.add(Reason.UNREADABLE)
         if self.status == "graded" and reason:
-            found.add(Reason.SEVERAL)
-        if self.stored is None and found.isdisjoint((Reason.UNCLEAR, Reason.DAMAGED)):
-            found.add(Reason.MISSING)
+            reasons.add(Reason.SEVERAL)
+        if self.stored is None and reasons.isdisjoint((Reason.UNCLEAR, Reason.DAMAGED)):
+            reasons.add(Reason.MISSING)
         if self.has_final:
-            found -= _OBSTACLES - {Reason.GONE}
+            reasons -= _OBSTACLES - {Reason.GONE}
         if self.older:
-            found.add(Reason.OLDER_MARKS)
+            reasons.add(Reason.OLDER_MARKS)
         if self.is_marked_early:
-            found.add(Reason.EARLY_MARK)
+            reasons.add(Reason.EARLY_MARK)
         if self.late.is_guess and self.late.points:
-            found.add(Reason.UNKNOWN_TIME)
+            reasons.add(Reason.UNKNOWN_TIME)
         details = dict.fromkeys((Reason.FAILED, Reason.UNREADABLE, Reason.SEVERAL), reason)
         details[Reason.OLDER_MARKS] = ", ".join(self.older)
         if self.final is not None:
             details[Reason.EARLY_MARK] = (
                 f"{self.final.value} instead of {format_points(self.score)}"
             )
-        return {one: details.get(one, "") for one in Reason if one in found}
+        return {one: details.get(one, "") for one in Reason if one in reasons}
 
     @cached_property
     def obstacle(self) -> Reason | None:

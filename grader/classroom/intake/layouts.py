@@ -143,13 +143,13 @@ def readings_of(name: str, layout: str) -> list[NamedPath]:
     """Return how a name can be read: in Canvas as team and 7, or team_7 and 101, of
     team_7_101_555_lab6.zip.
     """
-    found = [_read_path(one) for one in _PATTERNS[layout].finditer(name)]
+    matches = [_read_path(one) for one in _PATTERNS[layout].finditer(name)]
     is_known = layout == "moodle" or bool(
-        found and not found[0].student.name
+        matches and not matches[0].student.name
     )  # an anonymous student's
     if is_known:
-        return found[:1]
-    return [one for one in found if _NAME_IN_CANVAS.fullmatch(one.student.name)]
+        return matches[:1]
+    return [one for one in matches if _NAME_IN_CANVAS.fullmatch(one.student.name)]
 
 
 def _read_path(match: re.Match[str]) -> NamedPath:
@@ -236,10 +236,14 @@ def _prefix(names: Collection[str], folder: ClassFolder) -> str:
     """Return the prefix of the assignment: the rubric's id, or what precedes the ids of most
     students.
     """
-    knows, own = folder.people.knows, f"{folder.lab.lower()}-"
+    knows, own_prefix = folder.people.knows, f"{folder.lab.lower()}-"
     known = sum(map(knows, names))
-    if known < len(names) and len(own) > 1 and any(_without(own, name) != name for name in names):
-        return own
+    if (
+        known < len(names)
+        and len(own_prefix) > 1
+        and any(_without(own_prefix, name) != name for name in names)
+    ):
+        return own_prefix
     dashes = ((name, dash.end()) for name in names for dash in re.finditer("-", name))
     before = Counter(name[:end].lower() for name, end in dashes if knows(name[end:]))
     prefix, count = max(before.items(), key=lambda item: (item[1], item[0]), default=("", 0))
@@ -251,27 +255,30 @@ def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
     none of its name.
     """
     folder = course.inside("submitted") if "submitted" in course.children.folders else course
-    found: dict[str, list[str]] = defaultdict(list)
+    students_by_name: dict[str, list[str]] = defaultdict(list)
     for student in sorted(folder.children.folders):
         for name in folder.listing.children(folder.start + student).folders:
-            found[name].append(student)
-    if folder.lab in found:
+            students_by_name[name].append(student)
+    if folder.lab in students_by_name:
         wanted = [folder.lab]
     else:
-        wanted = [name for name in found if folded(name) == folded(folder.lab)]
+        wanted = [name for name in students_by_name if folded(name) == folded(folder.lab)]
     if len(wanted) != 1:
         named = (
-            enumerated([printable_path(name) for name in sorted(found)], _MAX_ASSIGNMENTS) or "none"
+            enumerated(
+                [printable_path(name) for name in sorted(students_by_name)], _MAX_ASSIGNMENTS
+            )
+            or "none"
         )
         raise InputError(f"name the assignment to grade with --assignment; there are: {named}")
     lab = wanted[0]
     folder.ignore(
-        {*folder.children.folders}.difference(found[lab]),
+        {*folder.children.folders}.difference(students_by_name[lab]),
         f"has no submission for {printable_path(lab)}",
     )
     folder.ignore(folder.children.files)
     folder.list_refused()
-    for student in found[lab]:
+    for student in students_by_name[lab]:
         path = f"{folder.start}{student}/{lab}"
         time = _time_of(folder, path)
         yield NamedPath(

@@ -95,7 +95,7 @@ def read_class(
     if not folders and rubric_id:
         folders = (rubric_id,)
     labs = LabFolders(folders)
-    found: list[ClassSubmission] = []
+    submissions: list[ClassSubmission] = []
     layouts: dict[str, None] = {}
     for root, (path, (listing, _)) in enumerate(zip(paths, roots, strict=True)):
         lab, is_explicit = assignment or rubric_id, layout != "auto"
@@ -122,8 +122,8 @@ def read_class(
             raise InputError(f"there is no submission in {printable_path(path)}{example}")
         has_teams = is_explicit or chosen != "teams" or any(one.student.group for one in some)
         layouts[chosen if has_teams else "folders"] = None
-        found += some
-    owners.find(found)
+        submissions += some
+    owners.find(submissions)
     return owners.intake(" and ".join(layouts))
 
 
@@ -170,9 +170,9 @@ def _without_gradebook(folder: ClassFolder, path: Path, gradebook: Path | None) 
     """
     if gradebook is None or gradebook.resolve().parent != path.resolve():
         return folder
-    own = [name for name in folder.children.folders if name == gradebook.resolve().name]
-    folder.ignore(own, "is the gradebook")
-    others = [name for name in folder.children.folders if name not in own]
+    own_folders = [name for name in folder.children.folders if name == gradebook.resolve().name]
+    folder.ignore(own_folders, "is the gradebook")
+    others = [name for name in folder.children.folders if name not in own_folders]
     return replace(folder, children=folder.children._replace(folders=others))
 
 
@@ -234,8 +234,8 @@ def _submissions_in(
     folders = frozenset(folder.children.folders)
     older = list[tuple[str, str]]()  # each with the path that counts
     while of_student:  # of a large class not all is kept twice
-        (student, _), own = of_student.popitem()
-        kept = _last_versions(folder, own, older)
+        (student, _), own_entries = of_student.popitem()
+        kept = _last_versions(folder, own_entries, older)
         is_late, submitted = any(one.is_late for one in kept), kept[0].submitted
         yield ClassSubmission(
             student, root, *_paths_and_names(folder, kept, folders), is_late, submitted
@@ -262,12 +262,12 @@ def _last_versions(
 
     `robot-1.urdf` is a later `robot.urdf` only if there is a `robot.urdf`.
     """
-    own = {entry.file for entry in entries}
+    own_files = {entry.file for entry in entries}
     versions: dict[tuple[str, str], list[NamedPath]] = defaultdict(list)
     for entry in entries:
         numbered = _NUMBERED.fullmatch(entry.file) if entry.upload else None
         first = numbered[1] + numbered[2] if numbered else ""
-        versions[entry.plugin, first if first in own else entry.file].append(entry)
+        versions[entry.plugin, first if first in own_files else entry.file].append(entry)
     kept = []
     for _, copies in sorted(versions.items()):
         *others, last = sorted(copies, key=lambda entry: entry.order)
@@ -316,12 +316,12 @@ def _only_file(listing: ClassListing, top: str) -> str:
 
 def _files_below(listing: ClassListing, top: str) -> list[str]:
     """Return the paths of the files below a folder, in order."""
-    found, folders = list[str](), [top]
+    files, folders = list[str](), [top]
     for here in folders:
         children = listing.children(here)
-        found += [f"{here}/{name}" for name in children.files]
+        files += [f"{here}/{name}" for name in children.files]
         folders += [f"{here}/{name}" for name in children.folders]
-    return sorted(found)
+    return sorted(files)
 
 
 class _Owners:
@@ -339,21 +339,21 @@ class _Owners:
         self._visitors: list[ClassSubmission] = []
         self._unmatched: list[str] = []
 
-    def find(self, found: Sequence[ClassSubmission]) -> None:
+    def find(self, submissions: Sequence[ClassSubmission]) -> None:
         """Assign all submissions: what a person has assigned decides, then ids and names, then
         groups.
         """
-        if all(one.student.key.startswith("anon_") for one in found):
+        if all(one.student.key.startswith("anon_") for one in submissions):
             self.notes.append(_ANONYMOUS)
             self._unclear.update(range(len(self.people.students)))
         if not self._has_roster:
-            self._visitors = [*found]
+            self._visitors = [*submissions]
             return
-        self._assign(found)
+        self._assign(submissions)
         claims: dict[int, dict[ClassSubmission, int]] = defaultdict(dict)
         possible: dict[ClassSubmission, tuple[int, ...]] = {}
         for one in sorted(
-            set(found).difference(self._owned.values()),
+            set(submissions).difference(self._owned.values()),
             key=lambda one: (one.student.key, one.root, one.paths),
         ):
             match = self.people.match(one.student)
@@ -395,13 +395,13 @@ class _Owners:
         a team's work.
         """
         inner = self.roots[one.root][0].children(one.paths[0], 1000)
-        return sum(self.people.knows(found["login"]) for found in names_in(inner).values()) > 1
+        return sum(self.people.knows(match["login"]) for match in names_in(inner).values()) > 1
 
-    def _assign(self, found: Iterable[ClassSubmission]) -> None:
+    def _assign(self, submissions: Iterable[ClassSubmission]) -> None:
         """Give students what the roster's column `submission` names."""
         wanted = {index: one for index, one in enumerate(self.people.students) if one.submission}
         places: dict[str, set[ClassSubmission]] = defaultdict(set)
-        for one in found if wanted else ():
+        for one in submissions if wanted else ():
             for path in one.paths:
                 places[self._shown(one, path)].add(one)
         for index, student in wanted.items():

@@ -68,9 +68,9 @@ class MarkImport(NamedTuple):
                 f"the first line of {shown} must name the columns {enumerated(COLUMNS[2:6])}"
             )
         mistakes: list[str] = []
-        found = collect(rows, self.marks_in, mistakes, mistakes).newest
-        new = [mark for key, mark in found.items() if not self._is_same(key, mark)]
-        return new, len(found) - len(new)
+        new_marks = collect(rows, self.marks_in, mistakes, mistakes).newest
+        new = [mark for key, mark in new_marks.items() if not self._is_same(key, mark)]
+        return new, len(new_marks) - len(new)
 
     def _is_same(self, key: Key, mark: Mark) -> bool:
         before = (

@@ -147,18 +147,18 @@ def collect(
     rows: Iterable[tuple[str, Cells]], read: _Reader, mistakes: list[str], ignored: list[str]
 ) -> Marks:
     """Return the marks in rows, each with its place; raises InputError if there are mistakes."""
-    found: dict[Key, list[Mark]] = defaultdict(list)
+    marks_by_key: dict[Key, list[Mark]] = defaultdict(list)
     marks = Marks({}, {}, {}, ignored)
     for place, cells in rows:
         try:
             for mark in read(cells, place):
                 if mark.value or mark.comment:
-                    found[mark.student, mark.criterion].append(mark)
+                    marks_by_key[mark.student, mark.criterion].append(mark)
         except NotCountedError as error:
             ignored.append(printable(f"{place}: {error}"))
         except InputError as error:
             mistakes.append(f"{place}: {error}")
-    for key, those in found.items():
+    for key, those in marks_by_key.items():
         try:
             marks.add(key, those)
         except InputError as error:

@@ -86,14 +86,14 @@ def compare(
     if len(books) > 2:
         raise InputError("name one gradebook, or two")
     if len(books) == 1 and before is None:
-        old, new, found = newest_changes(books[0], after)
+        old, new, changed = newest_changes(books[0], after)
     else:
         old, new = snapshot(books[0], before), snapshot(books[-1], after)
-        found = list(changes(old, new))
+        changed = list(changes(old, new))
     if kind is OutputFormat.JSON:
         from grader.classroom.reports.class_json import render_changes_json
 
-        return render_changes_json(found, (old.run, new.run))
+        return render_changes_json(changed, (old.run, new.run))
     from grader.classroom.reports.class_terminal import render_changes
 
-    return draw(partial(render_changes, found, old, new), screen)
+    return draw(partial(render_changes, changed, old, new), screen)

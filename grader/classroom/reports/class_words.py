@@ -41,7 +41,7 @@ def late_text(grade: StudentGrade) -> str:
     return ""
 
 
-def head_lines(found: ClassStatistics) -> Iterator[str]:
+def head_lines(statistics: ClassStatistics) -> Iterator[str]:
     """Yield how many students were graded and how many not, the grades in one line, what is open,
     and the sections.
     """
@@ -53,21 +53,19 @@ def head_lines(found: ClassStatistics) -> Iterator[str]:
     }
     words["missing"] = "without a submission"
     counts = [
-        f"{found.statuses[status]} {text}"
+        f"{statistics.statuses[status]} {text}"
         for status, text in words.items()
-        if status in found.statuses
+        if status in statistics.statuses
     ]
-    if found.late:
-        counts.append(f"{found.late} late")
+    if statistics.late:
+        counts.append(f"{statistics.late} late")
     yield ", ".join(counts) or "no students"
-    if found.all is not None:
-        yield grades_text(found.maximum, found.all, is_open=bool(found.open))
-    if found.open:
-        yield (
-            f"{counted(found.open, 'grade')} still {'needs' if found.open == 1 else 'need'} "
-            "manual grading"
-        )
-    for name, one in found.sections.items():
+    if statistics.all is not None:
+        yield grades_text(statistics.maximum, statistics.all, is_open=bool(statistics.open))
+    if statistics.open:
+        verb = "needs" if statistics.open == 1 else "need"
+        yield f"{counted(statistics.open, 'grade')} still {verb} manual grading"
+    for name, one in statistics.sections.items():
         yield (
             f"Section {name or '(none)'}: {_means(one.mean, one.median)} "
             f"({counted(one.students, 'student')})"
@@ -87,9 +85,9 @@ def _means(mean: Decimal | float, median: Decimal | float) -> str:
     return f"mean {mean:.1f}, median {median:.1f}"
 
 
-def span(found: ClassStatistics, tenth: int) -> str:
+def span(statistics: ClassStatistics, tenth: int) -> str:
     """Return the grades of a tenth of the maximum: "10 to 20"."""
-    step = found.maximum / len(found.tenths)
+    step = statistics.maximum / len(statistics.tenths)
     return f"{format_points(step * tenth)} to {format_points(step * (tenth + 1))}"
 
 

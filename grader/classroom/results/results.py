@@ -276,8 +276,8 @@ class Results:
         """Yield the newest result of each of some students, None for one without."""
         for values in self._read_values(self._places, keys):
             with self._refuse_damage():
-                found = StoredResult(**values) if values else None
-            yield found
+                result = StoredResult(**values) if values else None
+            yield result
 
     def of(self, key: str) -> StoredResult | None:
         """Return the newest result of a student."""
@@ -292,9 +292,9 @@ class Results:
         return self._texts_of(stored, "answers")
 
     def _texts_of(self, stored: StoredResult, kind: str) -> dict[str, str]:
-        [found] = self._read_values(self._texts, [stored.student])
-        if found and found["digest"] == stored.digest:
-            return dict(found[kind])
+        [values] = self._read_values(self._texts, [stored.student])
+        if values and values["digest"] == stored.digest:
+            return dict(values[kind])
         return {}
 
     def _read_values(

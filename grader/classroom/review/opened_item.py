@@ -115,10 +115,10 @@ def _anonymous(opened: OpenedItem, item: ReviewItem, result: Result) -> OpenedIt
     return opened._replace(message=message, pictures=pictures, paths=(), legend=(), places=())
 
 
-def _without_name(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPicture | NotShown:
-    if isinstance(found, EmbeddedPicture):
-        return found._replace(where=f"picture {number}")
-    return NotShown(f"file {number}", found.reason.replace(found.where, f"file {number}"))
+def _without_name(number: int, picture: EmbeddedPicture | NotShown) -> EmbeddedPicture | NotShown:
+    if isinstance(picture, EmbeddedPicture):
+        return picture._replace(where=f"picture {number}")
+    return NotShown(f"file {number}", picture.reason.replace(picture.where, f"file {number}"))
 
 
 def _with_robot(
@@ -135,11 +135,12 @@ def _with_robot(
         if is_anonymous and space is not None:
             space = without_names(space)
         views = drawing_element(_without_names(picture) if is_anonymous else picture, legend=False)
-    found = dict.fromkeys(
+    problem_places = dict.fromkeys(
         place for result in results if (place := _deciding_place(report, result)) is not None
     )
     shown = (
-        (location_text(one), source_lines(one, report.submission.source, _AROUND)) for one in found
+        (location_text(one), source_lines(one, report.submission.source, _AROUND))
+        for one in problem_places
     )
     places = [*islice(((words, lines) for words, lines in shown if lines), _MAX_PLACES)]
     return opened._replace(views=views, space=space, legend=legend, places=places)
@@ -182,9 +183,9 @@ def _unknown_place(report: Report, criterion: Criterion) -> Location | None:
     check looks at.
     """
     if criterion.check.subject in _OF_ROBOT:
-        found = [one for one in report.problems if one.kind.effect == "undetermined"]
+        problems = [one for one in report.problems if one.kind.effect == "undetermined"]
     else:
-        own = [_UNKNOWN[name] for name in criterion.check.about.looks_at if name in _UNKNOWN]
-        found = [one for one in report.problems if one.code in _UNKNOWN.values()]
-        found.sort(key=lambda one: one.code not in own)
-    return found[0].location if found else None
+        own_codes = [_UNKNOWN[name] for name in criterion.check.about.looks_at if name in _UNKNOWN]
+        problems = [one for one in report.problems if one.code in _UNKNOWN.values()]
+        problems.sort(key=lambda one: one.code not in own_codes)
+    return problems[0].location if problems else None

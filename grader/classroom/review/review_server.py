@@ -78,8 +78,8 @@ class ReviewPage:
             case (_,) if is_item:
                 item = session.item_at(at)
                 place = self._place(at) | {"so_far": session.so_far(item)}
-                found = session.similar(at)[:_MAX_SIMILAR]
-                similar = {self.address(one.position): one for one in found}
+                similar_items = session.similar(at)[:_MAX_SIMILAR]
+                similar = {self.address(one.position): one for one in similar_items}
                 return html_response(
                     pages.item_page(item, open_item(session.book, item), place, similar)
                 )

@@ -81,9 +81,9 @@ class ReviewSession:
 
     def refresh(self) -> None:
         """Read the gradebook again if it has changed. Raises InputError."""
-        found = ((path, path.stat()) for pattern in _READ for path in self.folder.glob(pattern))
+        statuses = ((path, path.stat()) for pattern in _READ for path in self.folder.glob(pattern))
         stamps = [
-            (path, status.st_ino, status.st_size, status.st_mtime_ns) for path, status in found
+            (path, status.st_ino, status.st_size, status.st_mtime_ns) for path, status in statuses
         ]
         if stamps != self._stamps:
             self.book = Gradebook(self.folder)
@@ -226,17 +226,17 @@ class ReviewSession:
         """Return the unmarked items of the same question with similar answers, the most similar
         first.
         """
-        item, found = self.item_at(at), list[SimilarItem]()
-        own = words_of(self._written(item))
+        item, similar_items = self.item_at(at), list[SimilarItem]()
+        own_words = words_of(self._written(item))
         for position, other in self.shown.items():
             is_same = other.criterion.id == item.criterion.id and position != at
             is_alone = not (item.also or self._joined[position].also)
             if is_same and is_alone and other.members[0].state == UNMARKED:
                 text = self._written(other)
-                share = share_of_words(own, words_of(text))
+                share = share_of_words(own_words, words_of(text))
                 if share:
-                    found.append(SimilarItem(position, other, text, share))
-        return sorted(found, key=lambda one: -one.share)
+                    similar_items.append(SimilarItem(position, other, text, share))
+        return sorted(similar_items, key=lambda one: -one.share)
 
     def _written(self, item: ReviewItem) -> str:
         """Return the written answer of an item; empty if it is not, or not only, words."""
@@ -277,7 +277,9 @@ class ReviewSession:
         for one, value in zip([*item.all, *items[1:]], values + values * len(similar), strict=True):
             new |= self._marks_of(one, value, comment)
             replaced += [
-                it.mark for it in one.members if it.mark is not None and it.mark.points is not None
+                member.mark
+                for member in one.members
+                if member.mark is not None and member.mark.points is not None
             ]
         others = [mark for mark in replaced if mark.by != self.by]
         if others and not shown.endswith(CONFIRMED):
@@ -292,14 +294,14 @@ class ReviewSession:
     def _marks_of(self, item: ReviewItem, points: str, comment: str) -> dict[Key, Mark]:
         """Return the new mark of each student of an item. Raises InputError."""
         cells = {"time": "", "by": self.by, "points": points, "comment": comment, "": ""}
-        found = dict[Key, Mark]()
+        marks = dict[Key, Mark]()
         for one in item.members:
             key = one.student.key, item.criterion.id
             mark = mark_in(
                 {**cells, "submission": one.stored.digest}, key, item.criterion.points, ""
             )
-            found[key] = mark._replace(time=self.book.marks.next_time(key))
-        return found
+            marks[key] = mark._replace(time=self.book.marks.next_time(key))
+        return marks
 
     def _check_rows(self) -> None:
         """Raise InputError, once, if rows that this review wrote are no longer in the file."""
@@ -309,11 +311,13 @@ class ReviewSession:
             for key, mark in self.own.items()
             if key not in newest or "" < newest[key].time < mark.time
         ]
-        found = [self.own.pop(key) for key in lost]
-        if found:
-            rows = [f"{one.criterion} {one.value}" for one in found]
+        lost_marks = [self.own.pop(key) for key in lost]
+        if lost_marks:
+            rows = [f"{one.criterion} {one.value}" for one in lost_marks]
             if not self.is_anonymous:
-                rows = [f"{row} of {one.student}" for row, one in zip(rows, found, strict=True)]
+                rows = [
+                    f"{row} of {one.student}" for row, one in zip(rows, lost_marks, strict=True)
+                ]
             shown = printable_path(Path(names.MARKS, self.file.name))
             why = (
                 f"rows of this review are no longer in {shown}, which another program has replaced"

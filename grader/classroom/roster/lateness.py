@@ -37,18 +37,22 @@ class Lateness(NamedTuple):
 
 
 def lateness(
-    rubric: Rubric, times: Student, score: Decimal, deadline: datetime | None = None, own: str = ""
+    rubric: Rubric,
+    times: Student,
+    score: Decimal,
+    deadline: datetime | None = None,
+    own_deadline: str = "",
 ) -> Lateness:
     """Return the lateness of a student's submission with this score.
 
-    The deadline `own` of `grader mark STUDENT deadline` comes first, then the student's, `deadline`
-    and the rubric's.
+    The deadline of `grader mark STUDENT deadline`, `own_deadline`, comes first, then the student's,
+    `deadline` and the rubric's.
     """
     policy = rubric.late
-    if own:
+    if own_deadline:
         is_timed = times.submitted and times.days_late  # without a time no days can be counted
         days_late = None if is_timed else times.days_late
-        times = times._replace(due=own, extension_days=0.0, days_late=days_late)
+        times = times._replace(due=own_deadline, extension_days=0.0, days_late=days_late)
     days, reason, is_guess = _days_late(times, policy, deadline)
     if policy is None or not days:
         return Lateness(days, Decimal(0), reason)

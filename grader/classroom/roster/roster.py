@@ -210,8 +210,8 @@ def _normalise(row: dict[str, str]) -> Iterator[str]:
     wrong, and yield why.
     """
     for field in ("id", "moodle"):
-        if found := _PARTICIPANT.fullmatch(row[field]):
-            row[field], row["moodle"] = "", found[1]
+        if match := _PARTICIPANT.fullmatch(row[field]):
+            row[field], row["moodle"] = "", match[1]
     if not any(map(row.__getitem__, _WHO)):
         yield "has no id, login, name or email address: add one of them"
     if row["due"] and iso_time(row["extension"]):
@@ -356,14 +356,14 @@ class People:
         self._groups: dict[str, list[int]] = defaultdict(list)
         lms_ids, exact, words, names = self._known
         for index, student in enumerate(students):
-            own = (index,)  # kept once for all words that only this student has
+            own_index = (index,)  # kept once for all words that only this student has
             ids = [student.key, student.login, student.sis, student.email, *student.aliases]
             user = student.email.partition("@")[0]
             spellings = (plain(student.name), plain(user), _surname(student.name))
-            _add(own, _lms_ids(student), lms_ids)
-            _add(own, ids, exact)
-            _add(own, map(plain, ids), words)
-            _add(own, (*spellings, *_in_canvas(student.name)), names)
+            _add(own_index, _lms_ids(student), lms_ids)
+            _add(own_index, ids, exact)
+            _add(own_index, map(plain, ids), words)
+            _add(own_index, (*spellings, *_in_canvas(student.name)), names)
             for word in {plain(student.group), letters(student.group)} - {""}:
                 self._groups[word].append(index)
 
@@ -389,16 +389,19 @@ class People:
             users = [f"canvas {user}" for user in claim.aliases]
             return _Match(self._having(users, self._known[_LMS_ID]))
         name = letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
-        found, group = self._person(claim, name), [] if claim.group else self._groups.get(name, [])
-        is_own_name = found.by == _LMS_ID and found.students[0] in self._known[-1].get(name, ())
-        if is_own_name or not {*group}.difference(found.students):
-            return found
-        if found.by == _LMS_ID and claim.canvas:
-            if found.students[0] in group:
+        matched = self._person(claim, name)
+        group = [] if claim.group else self._groups.get(name, [])
+        is_own_name = matched.by == _LMS_ID and matched.students[0] in self._known[-1].get(name, ())
+        if is_own_name or not {*group}.difference(matched.students):
+            return matched
+        if matched.by == _LMS_ID and claim.canvas:
+            if matched.students[0] in group:
                 return _Match(tuple(group), GROUP)
-            return found
-        if found.students or (claim.canvas and any(self.students[index].canvas for index in group)):
-            return _Match(tuple(sorted({*found.students, *group})))
+            return matched
+        if matched.students or (
+            claim.canvas and any(self.students[index].canvas for index in group)
+        ):
+            return _Match(tuple(sorted({*matched.students, *group})))
         return _Match(tuple(group), GROUP)
 
     def _person(self, claim: Student, name: str) -> _Match:
@@ -424,20 +427,20 @@ class People:
         return tuple(sorted({index for word in words for index in table.get(word, ())}))
 
 
-def _add(own: tuple[int], words: Iterable[str], table: dict[str, tuple[int, ...]]) -> None:
+def _add(own_index: tuple[int], words: Iterable[str], table: dict[str, tuple[int, ...]]) -> None:
     """Add the index of a student to a table of those who have a word."""
     for word in filter(None, words):
         composed = unicodedata.normalize("NFC", word)
         if composed not in table:
-            table[composed] = own
-        elif table[composed][-1:] != own:
-            table[composed] += own
+            table[composed] = own_index
+        elif table[composed][-1:] != own_index:
+            table[composed] += own_index
 
 
 def _has_other_lms_id(student: Student, claim: Student) -> bool:
     """Return whether the LMS knows a student by another id than that in a claim."""
     ids = ((student.canvas, claim.canvas), (student.moodle, claim.moodle))
-    return any(own and given and own != given for own, given in ids)
+    return any(own_id and given and own_id != given for own_id, given in ids)
 
 
 def _lms_ids(student: Student) -> list[str]:

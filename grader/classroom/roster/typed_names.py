@@ -43,7 +43,9 @@ def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
         return fitting[0]
     if fitting:
         names = [f" ({printable(student.name)})" if student.name else "" for student in fitting]
-        labels = [f"{student.key!r}{own}" for student, own in zip(fitting, names, strict=True)]
+        labels = [
+            f"{student.key!r}{own_name}" for student, own_name in zip(fitting, names, strict=True)
+        ]
         raise InputError(
             f"{name!r} is ambiguous: it may be {enumerated(labels, _MAX_LISTED, 'or')}; use "
             "one of these ids"

@@ -116,11 +116,11 @@ class Batch:
         self, result: StoredResult, submission: ClassSubmission, current: StoredResult | None
     ) -> bytes:
         """Return the line of a result, empty if the file has it."""
-        found = current if result.verdict == "unchanged" and current is not None else result
+        shown = current if result.verdict == "unchanged" and current is not None else result
         person = {
             name: value for name in _OF_PERSON if (value := getattr(submission.student, name))
         }
-        new = found._replace(
+        new = shown._replace(
             context=self._context,
             root=submission.root,
             paths=submission.paths,

@@ -153,7 +153,7 @@ def _answers_of(report: Report, digest: str) -> tuple[dict[str, str], dict[str, 
 
     It is that of the words, or of the whole submission where more than words is to be looked at.
     """
-    found, written = dict[str, str](), dict[str, str]()
+    automatic, written = dict[str, str](), dict[str, str]()
     for one in report.results:
         if one.outcome.status != "pending":
             continue
@@ -162,8 +162,8 @@ def _answers_of(report: Report, digest: str) -> tuple[dict[str, str], dict[str, 
             written[one.criterion.id] = content[:_MAX_ANSWER]
         if not content and not is_empty(one, report):
             content = digest
-        found[one.criterion.id] = digest_of(content) if content else ""
-    return found, written
+        automatic[one.criterion.id] = digest_of(content) if content else ""
+    return automatic, written
 
 
 def given_up(context: ClassContext, task: Task, error: WorkerError, digest: str) -> StoredResult:
