@@ -44,17 +44,17 @@ def add_hints(
     if level == "none" or not report.has_failures:
         return report, fix
     try:
-        found = hinted(report, submission, level)
+        hinted_report = hinted(report, submission, level)
     except (Exception, OutOfTime) as error:  # noqa: BLE001  a fault of the search must not cost the report
-        own = f"the grader itself failed ({type(error).__name__}); please report it"
-        warn(f"no hints: {error if isinstance(error, MachineError) else own}")
+        own_fault = f"the grader itself failed ({type(error).__name__}); please report it"
+        warn(f"no hints: {error if isinstance(error, MachineError) else own_fault}")
         return report, fix._replace(why_nothing="the search for edits failed")
-    if found.faults:
+    if hinted_report.faults:
         warn(
-            f"some hints are missing: the grader itself failed ({found.faults[0]}); please "
+            f"some hints are missing: the grader itself failed ({hinted_report.faults[0]}); please "
             "report it"
         )
-    return found.report, fixed(found, submission) if is_fixed else fix
+    return hinted_report.report, fixed(hinted_report, submission) if is_fixed else fix
 
 
 def files_to_fix(

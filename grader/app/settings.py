@@ -109,7 +109,7 @@ def _unknown_codes(codes: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Yield the texts that no code begins with, between quotes, and what is wrong with each."""
     known = [kind.code for kind in EVERY_KIND]
     for code in codes:
-        is_code = bool(code) and any(it.startswith(code) for it in known)
+        is_code = bool(code) and any(known_code.startswith(code) for known_code in known)
         if not is_code and code not in RULES:
             guess = did_you_mean(code, known) or did_you_mean(code, RULES)
             yield repr(code), f" is no problem code, its beginning or a rule{guess}"

@@ -77,7 +77,7 @@ def package_files() -> dict[str, bytes]:
     references and examples.
     """
     data = ("rubrics", "examples")  # in a wheel; in a checkout they are outside of the package
-    own = {
+    own_files = {
         path: content
         for path, content in _files_of(_PACKAGE, _PACKAGE).items()
         if path.parts[0] not in data
@@ -86,7 +86,7 @@ def package_files() -> dict[str, bytes]:
         PurePosixPath("rubrics", name, RUBRIC_FILE): path.read_bytes()
         for name, path in shipped_rubrics().items()
     }
-    return {str(_PACKAGE.name / path): data for path, data in (own | rubrics).items()}
+    return {str(_PACKAGE.name / path): data for path, data in (own_files | rubrics).items()}
 
 
 def _files_of(place: Path, root: Path) -> dict[PurePosixPath, bytes]:
@@ -94,14 +94,14 @@ def _files_of(place: Path, root: Path) -> dict[PurePosixPath, bytes]:
     editors and Python.
     """
     paths = [place] if place.is_file() else [path for path in place.rglob("*") if path.is_file()]
-    own = {
+    own_files = {
         PurePosixPath(*path.relative_to(root).parts): path
         for path in paths
         if path.suffix != ".pyc"
     }
     return {
         name: path.read_bytes()
-        for name, path in own.items()
+        for name, path in own_files.items()
         if not any(map(_is_left_out, name.parts))
     }
 
@@ -123,7 +123,9 @@ def requirements(extra: str) -> list[str]:
             f"cannot determine the requirements of the grader: {_DISTRIBUTION} is not "
             "installed; install it with pip"
         ) from None
-    return sorted(own for requirement in declared if (own := _without_extra(requirement, extra)))
+    return sorted(
+        plain for requirement in declared if (plain := _without_extra(requirement, extra))
+    )
 
 
 def _without_extra(requirement: str, extra: str) -> str:

@@ -46,14 +46,14 @@ def quiet_interrupts() -> Iterator[None]:
         else:
             signal.default_int_handler(number, frame)
 
-    def ignored(found: "sys.UnraisableHookArgs") -> None:
+    def ignored(unraisable: "sys.UnraisableHookArgs") -> None:
         nonlocal is_in_hook
-        if issubclass(found.exc_type, KeyboardInterrupt):
+        if issubclass(unraisable.exc_type, KeyboardInterrupt):
             is_in_hook = True
             Timer(_DELAY, _interrupt).start()  # not here: an exception in a hook is printed, too
             is_in_hook = False
-        elif not (arrived and issubclass(found.exc_type, ResourceWarning)):
-            hook(found)
+        elif not (arrived and issubclass(unraisable.exc_type, ResourceWarning)):
+            hook(unraisable)
 
     hook, sys.unraisablehook = sys.unraisablehook, ignored
     signal.signal(signal.SIGINT, interrupt)

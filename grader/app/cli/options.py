@@ -49,12 +49,12 @@ def only_gradebook(named: Path = _NOT_NAMED) -> Path:
         return named
     from grader.classroom.marks.gradebook_folder import CLASS_FILE
 
-    found = sorted(file.parent for file in Path().glob(f"*/{CLASS_FILE}"))
-    if len(found) == 1:
-        return found[0]
-    if found:
+    folders = sorted(file.parent for file in Path().glob(f"*/{CLASS_FILE}"))
+    if len(folders) == 1:
+        return folders[0]
+    if folders:
         raise InputError(
-            f"name one with --gradebook: {enumerated([*map(printable_path, found)], 10, 'or')}"
+            f"name one with --gradebook: {enumerated([*map(printable_path, folders)], 10, 'or')}"
         )
     raise InputError(
         "there is no gradebook here: name one with --gradebook; `grader batch PATH` makes it"

@@ -61,7 +61,7 @@ class _CommandLine(NamedTuple):
     @property
     def loose(self) -> list[int]:
         """The indices of the words that are neither options nor their values."""
-        found = list[int]()
+        positions = list[int]()
         is_value = False
         for index, word in enumerate(self.words[self.start :], self.start):
             if is_value:
@@ -70,8 +70,8 @@ class _CommandLine(NamedTuple):
                 option = self.options.get(word)
                 is_value = option is not None and not option.is_flag
             else:
-                found.append(index)
-        return found
+                positions.append(index)
+        return positions
 
     def replaced(self, start: int, end: int, *words: str) -> list[str]:
         """Return the words with others in place of some of them."""
@@ -219,7 +219,7 @@ def _correct_option(line: _CommandLine, error: Any) -> _Correction | None:
     if not hasattr(error, "possibilities"):
         return None
     wrong = error.option_name
-    at = next((n for n, it in enumerate(line.words) if it.partition("=")[0] == wrong), None)
+    at = next((n for n, word in enumerate(line.words) if word.partition("=")[0] == wrong), None)
     if at is None:
         return None
     why = f"there is no option {wrong}"
@@ -254,7 +254,7 @@ def _correct_extra_words(line: _CommandLine, error: Any) -> _Correction | None:
         why += " (grader batch grades a class)"
     there = [index for index in loose if os.path.lexists(line.words[index])]
     others = {*loose} - {*(there or loose)[:1]}
-    return _Correction(why, [it for n, it in enumerate(line.words) if n not in others])
+    return _Correction(why, [word for n, word in enumerate(line.words) if n not in others])
 
 
 def _correct_repetition(line: _CommandLine, loose: list[int]) -> _Correction | None:

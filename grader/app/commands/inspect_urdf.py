@@ -120,13 +120,13 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
     opened = open_workspace(path, request.max_size, read_arguments(request.arg or ()), stated)
     if opened.is_single:
         return _inspect_file(opened, request, selection, warn)
-    read = [it for it in opened.robots if isinstance(it, Read)]
-    unread = [it for it in opened.robots if isinstance(it, Unreadable)]
+    read = [robot for robot in opened.robots if isinstance(robot, Read)]
+    unread = [robot for robot in opened.robots if isinstance(robot, Unreadable)]
     if not opened.robots and not (opened.packages or opened.ros1_packages):
         raise InputError(
             f"{printable_path(path)} has neither a URDF nor a package: no file in it has a <robot>"
         )
-    for reason in [it.reason for it in unread]:
+    for reason in [robot.reason for robot in unread]:
         warn(reason)
     base = base_of(path, None)
     if request.robot:
@@ -136,10 +136,10 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
         return without_ignored(inspection, opened.whole_tree, _texts_of(chosen), selection)
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
-    robots = tuple(_inspected(opened, it, joints, relative_to) for it in read)
-    found, extent = opened.package_problems(), opened.extent()
-    found += opened.mesh_size_problems()  # last: it takes what is left of the budget
-    inspection = Inspection(opened.id, robots, tuple(found), extent, opened.source, base)
+    robots = tuple(_inspected(opened, robot, joints, relative_to) for robot in read)
+    problems, extent = opened.package_problems(), opened.extent()
+    problems += opened.mesh_size_problems()  # last: it takes what is left of the budget
+    inspection = Inspection(opened.id, robots, tuple(problems), extent, opened.source, base)
     return without_ignored(inspection, opened.whole_tree, [*opened.whole_tree.files], selection)
 
 
@@ -178,14 +178,14 @@ def _notes(urdf: Read) -> Iterator[str]:
 
 def _named(name: str, robots: Sequence[Read]) -> Read:
     """Return the robot with a name, or whose path ends so. Raises GraderError if it is not one."""
-    found = [it for it in robots if f"/{it.path}".endswith(f"/{name.strip('/')}")]
-    if not found:
-        models = [(it, it.loaded.robot) for it in robots]
-        found = [it for it, model in models if model is not None and model.name == name]
-    if len(found) == 1:
-        return found[0]
-    paths = enumerated([it.path for it in found or robots], MAX_NAMED)
-    if found:
+    matches = [robot for robot in robots if f"/{robot.path}".endswith(f"/{name.strip('/')}")]
+    if not matches:
+        models = [(robot, robot.loaded.robot) for robot in robots]
+        matches = [robot for robot, model in models if model is not None and model.name == name]
+    if len(matches) == 1:
+        return matches[0]
+    paths = enumerated([robot.path for robot in matches or robots], MAX_NAMED)
+    if matches:
         raise GraderError(f"--robot: {name!r} means several: {paths}")
     raise GraderError(f"--robot: there is no robot {name!r}; there are: {paths or 'none'}")
 
@@ -194,7 +194,7 @@ def _which_one(path: str, robots: Sequence[Read]) -> str:
     """Return that joints and frames are those of one robot."""
     if not robots:
         return f"{printable_path(path)} has no URDF: there are no joints and no frames"
-    paths = enumerated([it.path for it in robots], MAX_NAMED)
+    paths = enumerated([robot.path for robot in robots], MAX_NAMED)
     return f"name the robot whose joints and frames are meant with --robot: {paths}"
 
 

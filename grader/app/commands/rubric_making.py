@@ -124,8 +124,10 @@ def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | 
                 reason = loading.mistake if loading.status == "pending" else loading.message
                 advice = f"see `grader inspect {shell_quoted(reference)}`"
                 raise InputError(f"{shown} is no reference solution: {reason} ({advice})")
-            for found in (it for it in submission.urdf.problems if it.kind.effect == "drops"):
-                warn(f"{found.location.file_and_line}: {found.code}: {found.message}")
+            for problem in (
+                problem for problem in submission.urdf.problems if problem.kind.effect == "drops"
+            ):
+                warn(f"{problem.location.file_and_line}: {problem.code}: {problem.message}")
     others = [file.path for file in submission.other_candidates if not file.path.endswith(MANIFEST)]
     if others:
         warn(
@@ -141,7 +143,7 @@ def _rubric_head(file: Path, reference: str, submission: Submission) -> Head:
     package, path = submission.package, submission.path or ""
     if package is not None and package.holds(path):
         path = path.removeprefix(package.path(""))
-    names = tuple(it.name for it in submission.lab_packages.values())
+    names = tuple(lab_package.name for lab_package in submission.lab_packages.values())
     schema = f"./{_SCHEMA}" if (file.parent / _SCHEMA).is_file() else ""
     title = words[0].upper() + words[1:]
     return Head(words.replace(" ", "-"), title, place, path, names, schema, submission.distro)
@@ -211,7 +213,9 @@ def test_rubric(
     ):
 
         def progress(done: int, total: int, scores: Sequence[KindScore]) -> None:
-            kinds = ", ".join(f"{it.kind} {100 * it.caught // it.graded} %" for it in scores)
+            kinds = ", ".join(
+                f"{score.kind} {100 * score.caught // score.graded} %" for score in scores
+            )
             show(Progress(total, done, note=kinds))
 
         grade_all = partial(_graded, executor, rubric)

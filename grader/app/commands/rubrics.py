@@ -83,17 +83,17 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
         warn(missing_answers(rubric))
     for message in likely_mistakes(rubric):
         warn(printable(f"warning: {message}"))
-    found = f"{rubric.id}: {rubric_size(rubric)}, no mistakes found"
+    summary = f"{rubric.id}: {rubric_size(rubric)}, no mistakes found"
     if rubric.solution is None:
-        return f"{found}\n", ExitCode.PASSED
+        return f"{summary}\n", ExitCode.PASSED
     failures = reference_failures(rubric)
     if failures.is_failed:
         raise RubricError(tuple(map(printable, failures.lines)))
     if not failures.lines:
-        return f"{found}; its reference gets full marks\n", ExitCode.PASSED
+        return f"{summary}; its reference gets full marks\n", ExitCode.PASSED
     criteria = counted(failures.undecided, "criterion", "criteria")
-    found += f"; its reference does not get full marks: {criteria} cannot be decided on it"
-    return "".join(f"{printable(line)}\n" for line in (found, *failures.lines)), ExitCode.FAILED
+    summary += f"; its reference does not get full marks: {criteria} cannot be decided on it"
+    return "".join(f"{printable(line)}\n" for line in (summary, *failures.lines)), ExitCode.FAILED
 
 
 def _lines_on_the_rest(name: str, warn: Warn) -> list[str]:

@@ -165,5 +165,7 @@ def _broken(
 def _arguments(reading: "Reading") -> list[ArgumentField]:
     """Return the arguments of xacro that a robot has, without those that `--arg` cannot name."""
     declared = getattr(reading.source, "declared_arguments", ())
-    fields = [ArgumentField(it.name, it.default, it.value) for it in declared]
+    fields = [
+        ArgumentField(argument.name, argument.default, argument.value) for argument in declared
+    ]
     return [field for field in fields if "=" not in field.name and not field.name.endswith(":")]

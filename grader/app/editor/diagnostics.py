@@ -76,8 +76,8 @@ def _join_assumptions(findings: Iterable[Finding]) -> list[_Shown]:
     alone = []
     for one in assumed:
         at = one.finding.location
-        hosts = [it for it in shown if _may_be_cause(it.finding, at)]
-        host = min(hosts, key=lambda it: _distance(it.finding, at), default=None)
+        hosts = [candidate for candidate in shown if _may_be_cause(candidate.finding, at)]
+        host = min(hosts, key=lambda candidate: _distance(candidate.finding, at), default=None)
         if host is None:
             alone.append(one)
         else:
@@ -105,13 +105,13 @@ def _join_mistakes(
     left, others = [*shown], []
     for mistake in graded:
         finding = mistake.finding
-        one = next((it for it in left if it.key in mistake.reported), None)
+        one = next((reported for reported in left if reported.key in mistake.reported), None)
         if one is None:
             one = _Shown(finding)
             others.append(one)
-            for it in [it for it in left if _is_same_word(it.finding, finding, source_of)]:
-                left.remove(it)
-                one.notes.append((finding.location, f"{it.finding.rule.id}: {it.message}"))
+            for same in [same for same in left if _is_same_word(same.finding, finding, source_of)]:
+                left.remove(same)
+                one.notes.append((finding.location, f"{same.finding.rule.id}: {same.message}"))
         elif mistake.advice:
             one.notes.append((finding.location, mistake.advice))
         if mistake.names == one.finding.rule.id:
@@ -156,15 +156,15 @@ def _related(
     """Return the other places of a diagnostic: what was meant, the calls of macros, the criteria
     that fail by it.
     """
-    found = []
+    related_places = []
     for name, call in shown.finding.location.calls:
         text = f"the macro {name} is called here"
-        found.append(lsp.DiagnosticRelatedInformation(ranges.place(call), text))
+        related_places.append(lsp.DiagnosticRelatedInformation(ranges.place(call), text))
     related = shown.finding.related
     if related is not None:
         text = "this is what it is compared with"
-        found.append(lsp.DiagnosticRelatedInformation(ranges.place(related), text))
+        related_places.append(lsp.DiagnosticRelatedInformation(ranges.place(related), text))
     for at, text in shown.notes:
         if at.path in look.tree.files:
-            found.append(lsp.DiagnosticRelatedInformation(ranges.place(at), text))
-    return found
+            related_places.append(lsp.DiagnosticRelatedInformation(ranges.place(at), text))
+    return related_places

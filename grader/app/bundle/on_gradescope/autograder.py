@@ -129,11 +129,11 @@ def _report(output: bytes) -> dict[str, Any] | None:
     if len(output) > _MAX_BYTES:
         return None
     try:
-        found = json.loads(output.decode(), parse_constant=_refuse_constant)
+        report = json.loads(output.decode(), parse_constant=_refuse_constant)
     except (ValueError, RecursionError):
         return None
-    if isinstance(found, dict) and isinstance(found.get("score"), int | float):
-        return found
+    if isinstance(report, dict) and isinstance(report.get("score"), int | float):
+        return report
     return None
 
 
