@@ -1,5 +1,6 @@
-"""Write a rubric: try the facts of a reference on it, and write those that it passes in TOML, as a
-person would.
+"""Write a rubric from the facts of a reference.
+
+The facts are tried on the reference. Those that it passes are written in TOML, as a person would.
 
 Each criterion has the usual tolerances of its check; those about one link follow each other under
 its heading.
@@ -113,9 +114,7 @@ class Head(NamedTuple):
 
 
 class _DraftCriterion(NamedTuple):
-    """A criterion of a new rubric: a fact that the reference passes, and what the check says of
-    it.
-    """
+    """A criterion of a new rubric: a fact that the reference passes, and what the check says."""
 
     fact: Fact
     title: str
@@ -170,8 +169,9 @@ def draft(
 def _chosen_facts(
     submission: Submission, solution: Solution | None, choice: DraftChoice
 ) -> list[Fact | Omission]:
-    """Return the facts of a reference that are chosen, without the names that are free. Raises
-    InputError for too many.
+    """Return the facts of a reference that are chosen, without the names that are free.
+
+    Raises InputError for too many.
     """
     started = [*words_of_launches(submission)]
     of_robot: Iterable[Fact | Omission] = ()
@@ -198,9 +198,7 @@ def _chosen_facts(
 def _values(
     subjects: _Subjects, submission: Submission, known: Collection[str]
 ) -> Mapping[str, list[_DraftCriterion]]:
-    """Return the values of parameters that the reference certainly gets, by the names of the
-    nodes.
-    """
+    """Return the values of parameters that the reference certainly gets, by the names of nodes."""
     rows_by_subject: dict[str, list[_DraftCriterion]] = {}
     facts = (
         candidate_fact
@@ -214,8 +212,9 @@ def _values(
 
 
 def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
-    """Return the first of the facts that the reference passes; or what it does not pass, and
-    why.
+    """Return the first of the facts that the reference passes.
+
+    Or what it does not pass, and why.
     """
     reasons = []
     for one in (fact, *fact.otherwise):
@@ -247,8 +246,9 @@ def _holds(subjects: _Subjects, fact: Fact, carried: CarriedFact) -> bool:
 
 
 def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
-    """Return what a check says of the reference; raise WrongValue for an argument that it does
-    not take.
+    """Return what a check says of the reference.
+
+    Raise WrongValue for an argument that it does not take.
     """
     check = find_check(fact.check)
     assert check is not None
@@ -351,8 +351,10 @@ def _weight(row: _DraftCriterion, choice: DraftChoice) -> int:
 
 
 def _shared(shares: Mapping[str, int], groups: Sequence[str], weights: Sequence[int]) -> list[int]:
-    """Return the points of criteria by their weights: those of each group have its share of 100
-    points, or of the least multiple that leaves each criterion one.
+    """Return the points of criteria by their weights.
+
+    Those of each group have its share of 100 points, or of the least multiple that leaves each
+    criterion one.
     """
     counts = Counter(groups)
     multiple = max(-(-counts[group] // share) for group, share in shares.items())
@@ -366,8 +368,9 @@ def _shared(shares: Mapping[str, int], groups: Sequence[str], weights: Sequence[
 
 
 def _apportioned(points: int, weights: Sequence[int]) -> list[int]:
-    """Return whole points by weights, at least one for each; the rest goes to the largest
-    remainders, of equal ones to the first.
+    """Return whole points by weights, at least one for each.
+
+    The rest goes to the largest remainders, of equal ones to the first.
     """
     total = sum(weights)
     exact = [points * weight / total for weight in weights]
@@ -497,8 +500,9 @@ class _Layout(NamedTuple):
             )
 
     def _carried(self, fact: Fact) -> Iterator[Mapping[str, Any]]:
-        """Yield what counts instead of a fact, and after which mistakes, if criteria are about
-        these.
+        """Yield what counts instead of a fact, and after which mistakes.
+
+        Nothing if no criteria are about these.
         """
         for carried_fact in fact.carried:
             causes = [

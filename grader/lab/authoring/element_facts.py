@@ -44,8 +44,9 @@ _Values = dict[str, Any]
 
 
 def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
-    """Yield the values in each element for simulators and controllers; `causes` change the
-    arguments of xacro.
+    """Yield the values in each element for simulators and controllers.
+
+    `causes` change the arguments of xacro.
 
     What a controller needs of a joint is left to the names of controllers.
     """
@@ -101,8 +102,9 @@ def _without_topics(fact: Fact) -> Fact:
 
 
 def _without_files(fact: Fact) -> Fact:
-    """Return a fact without the paths of files, whose names are free: a build has to install
-    them.
+    """Return a fact without the paths of files, whose names are free.
+
+    A build has to install them.
     """
     values = {
         path: value
@@ -113,8 +115,9 @@ def _without_files(fact: Fact) -> Fact:
 
 
 def _by_links(fact: Fact, selectors: Mapping[str, str]) -> Fact:
-    """Return a fact with joints named by the links that they hold; `selectors` has these by the
-    names of joints.
+    """Return a fact with joints named by the links that they hold.
+
+    `selectors` has these by the names of joints.
     """
     at, values = fact.arguments["at"], fact.arguments.get("values", {})
     is_joint, is_of_system = at.endswith("/joint"), at.startswith("ros2_control")
@@ -146,8 +149,9 @@ def _carried_from_names(
 
 
 def _root_without_launch_files(solution: Solution) -> Element | None:
-    """Return the <robot> if no launch file gives arguments to xacro; None where there is no
-    robot.
+    """Return the <robot> if no launch file gives arguments to xacro.
+
+    None where there is no robot.
     """
     urdf, submission = solution.submission.urdf, solution.submission
     if not isinstance(urdf, Read) or not urdf.is_expanded:
@@ -160,8 +164,9 @@ def _root_without_launch_files(solution: Solution) -> Element | None:
 def _carried_from_launch(
     fact: Fact, other: Mapping[str, Any] | None, causes: tuple[str, ...]
 ) -> list[CarriedFact]:
-    """Return what counts instead of a fact if launch files give xacro no arguments: what stays true
-    without them.
+    """Return what counts instead of a fact if launch files give xacro no arguments.
+
+    This is what stays true without them.
     """
     if other == fact.arguments:
         return []
@@ -254,8 +259,9 @@ def _value_words(value: Any) -> str:
 
 
 def _entries(root: Element, covered: Collection[str]) -> Facts:
-    """Yield the values in each element, without the interfaces that are `covered`; or why it is
-    omitted.
+    """Yield the values in each element, or why it is omitted.
+
+    The interfaces that are `covered` are left out.
     """
     for element in foreign_elements(root):
         about = f"<{name_of(element)}>"
@@ -311,8 +317,9 @@ def _drop_covered(values: _Values, covered: Collection[str]) -> None:
 
 
 def _element_values(element: Element) -> Iterator[tuple[str, str, _Values]]:
-    """Yield the plain values in an element, then those in each child that has elements or
-    attributes.
+    """Yield the plain values in an element, then those in its children.
+
+    The children are those that have elements or attributes.
 
     Each has a label, the path of the child, and values by their paths in it.
     """
@@ -359,8 +366,9 @@ def _add(values: _Values, key: str, value: Any) -> None:
 
 
 def _value(text: str) -> str | bool | int | float:
-    """Return the text of an element or attribute as a rubric writes it: a number, true or false,
-    else a string.
+    """Return the text of an element or attribute as a rubric writes it.
+
+    This is a number, true or false, else a string.
     """
     word = readable(text.strip())
     if word in _TRUTH:

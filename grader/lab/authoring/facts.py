@@ -1,5 +1,6 @@
-"""The facts of a reference: what may be true of it, as arguments of checks that are to be tried on
-it.
+"""The facts of a reference: what may be true of it.
+
+They are arguments of checks that are to be tried on it.
 
 Here are those of the robot: its file, links, joints and tree.
 """
@@ -46,8 +47,9 @@ _MAX_TIPS_IN_TITLE = 2
 
 
 class Solution(NamedTuple):
-    """A solution: its submission; its URDF as it was read, and the robot that ROS 2 loads, with the
-    joints at 0.
+    """A solution: its submission, its URDF and its robot.
+
+    The URDF is as it was read, the robot is the one that ROS 2 loads, with the joints at 0.
     """
 
     submission: Submission
@@ -112,8 +114,9 @@ def robot_facts(solution: Solution) -> Facts:
 
 
 def are_joints_free(solution: Solution) -> bool:
-    """Return whether joints may have other names: those that files use are compared with those of
-    the robot.
+    """Return whether joints may have other names.
+
+    Names that files use are compared with those of the robot.
     """
     agreement = read_agreement(solution.submission.workspace)
     return agreement.holds("frames") and agreement.holds("controllers")
@@ -133,8 +136,9 @@ def _rounded(vector: Sequence[float], digits: int = 6) -> list[float]:
 
 
 def _visual_facts(link: Link) -> Facts:
-    """Yield what a link shows; the place and colour of a shape only if no other shape of the link
-    is of its kind.
+    """Yield what a link shows.
+
+    The place and colour of a shape only if no other shape of the link is of its kind.
     """
     if len(link.visuals) > MAX_SHAPES:
         yield Omission(f"{link.name} visuals", f"it has more than {MAX_SHAPES}")
@@ -210,8 +214,9 @@ def _axis(visual: Visual) -> dict[str, Any]:
 
 
 def _body_facts(link: Link) -> Facts:
-    """Yield the mass and inertia of a link, and its collision shapes, or that they are those that
-    it shows.
+    """Yield the mass and inertia of a link, and its collision shapes.
+
+    Or that these are those that it shows.
     """
     if link.inertial is not None:
         least = abs(link.inertial.mass) * _MASS_SHARE
@@ -278,8 +283,9 @@ def _shape_text(collision: Collision) -> str:
 
 
 def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
-    """Yield what may be true of the parent joint of a link; raise MissingElement for an axis of
-    length zero.
+    """Yield what may be true of the parent joint of a link.
+
+    Raise MissingElement for an axis of length zero.
     """
     link, parent = joint.child, joint.parent
     title = f"a {joint.type} joint connects {link!r} to {parent!r}"  # its name is free
@@ -334,8 +340,9 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
 
 
 def _mimic_fact(robot: Configuration, joint: Joint, direction: Sequence[float]) -> Fact:
-    """Return how a joint follows another one: by its motion, as the opposite axis with the opposite
-    multiplier is the same.
+    """Return how a joint follows another one, by its motion.
+
+    The opposite axis with the opposite multiplier is the same.
     """
     mimic = joint.mimic
     assert mimic is not None
@@ -372,8 +379,10 @@ def _range_fact(joint: Joint) -> Fact:
 
 
 def _tree_facts(solution: Solution) -> Iterator[Fact]:
-    """Yield the names of joints that other elements use, the root, the numbers of joints, and how
-    the tips move.
+    """Yield the facts of the whole tree of links.
+
+    These are the names of joints that other elements use, the root, the numbers of joints, and
+    how the tips move.
     """
     robot = solution.robot
     joints, root = robot.parent_joints.values(), robot.main_tree[0]

@@ -1,5 +1,6 @@
-"""The kinds of mutants: for the score of each, to draw a sample over all of them, and why some may
-survive.
+"""The kinds of mutants.
+
+They are for the score of each, to draw a sample over all of them, and for why some may survive.
 """
 
 import re
@@ -59,8 +60,9 @@ def kind_of(family: str) -> str:
 
 
 def draw(mutants: Sequence[Mutant], most: int, seed: int) -> list[Mutant]:
-    """Return at most so many mutants, in their order: of each family as many, as far as there are
-    so many, drawn by the seed.
+    """Return at most so many mutants, in their order.
+
+    Of each family as many, as far as there are so many, drawn by the seed.
     """
     if len(mutants) <= most:
         return [*mutants]
@@ -76,8 +78,10 @@ def draw(mutants: Sequence[Mutant], most: int, seed: int) -> list[Mutant]:
 
 
 def scores_by_kind(outcomes: Iterable[tuple[str, str]]) -> list[KindScore]:
-    """Return the score of each kind; `outcomes` are the families of mutants with what became of
-    them: caught, survived, or what counts for neither.
+    """Return the score of each kind.
+
+    `outcomes` are the families of mutants with what became of them: caught, survived, or what
+    counts for neither.
     """
     caught: dict[str, int] = {}
     counts: dict[str, int] = {}

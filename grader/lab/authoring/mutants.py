@@ -1,5 +1,6 @@
-"""Mutants of a reference: one file with one mistake, for every single edit that a family of
-mistakes allows.
+"""Mutants of a reference: one file with one mistake.
+
+There is one for every single edit that a family of mistakes allows.
 
 Those of a URDF or xacro text come first; then those of a package: a file deleted or renamed, and
 mistakes in package.xml, setup.py, launch files and RViz files.
@@ -48,8 +49,9 @@ class Mutant(NamedTuple):
 
 
 class MutantEdit(NamedTuple):
-    """A change of a text between two offsets: its family, and its place by names, with what
-    tells it from others.
+    """A change of a text between two offsets.
+
+    It has its family, and its place by names, with what tells it from others.
     """
 
     family: str
@@ -60,8 +62,9 @@ class MutantEdit(NamedTuple):
 
 
 def mutants(text: str, path: str = "", hidden: Collection[str] = ()) -> Iterator[Mutant]:
-    """Yield every mutant of a URDF or xacro once; `hidden` are links that must show nothing,
-    which show a box.
+    """Yield every mutant of a URDF or xacro once.
+
+    `hidden` are links that must show nothing, which show a box.
     """
     return _as_mutants(text, path, _changes(text, {f"link {name}" for name in hidden}))
 
@@ -103,8 +106,9 @@ def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
 
 
 def _places(text: str) -> Iterator[tuple[Element, str, int]]:
-    """Yield each element with its offset, and its place by names, which does not change if lines
-    are added.
+    """Yield each element with its offset, and its place by names.
+
+    The place does not change if lines are added.
     """
     root, source = root_of(text)
     if root is None:
@@ -228,8 +232,9 @@ def package_mutants(
     *,
     prefix: str = "",
 ) -> Iterator[Mutant]:
-    """Yield the mutants of a package; `links` are those of its robot, `text` returns that of a
-    file.
+    """Yield the mutants of a package.
+
+    `links` are those of its robot, `text` returns that of a file.
 
     `further` returns more changes of a file; `prefix` is what ids have before the paths in the
     package.
@@ -266,8 +271,9 @@ def _file_changes(source: Source, label: str, file: str) -> Iterator[MutantEdit]
 
 
 def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[MutantEdit]:
-    """Yield changes of the fixed frame, and of each display: disabled, its class or topic
-    misspelt.
+    """Yield changes of the fixed frame, and of each display.
+
+    A display is disabled, or its class or topic is misspelt.
     """
     root = yaml_root(source)
     frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
@@ -293,8 +299,9 @@ def _display_changes(display: YamlNode, label: str) -> Iterator[MutantEdit]:
 
 
 def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator[MutantEdit]:
-    """Yield the changes of a file: an entry of data_files, an action or an import deleted, a string
-    misspelt.
+    """Yield the changes of a Python file.
+
+    An entry of data_files, an action or an import is deleted, a string is misspelt.
     """
     family = "data_files entry deleted" if is_setup else "action removed"
     for item in _entries(file):

@@ -1,5 +1,6 @@
-"""Mutants of what the files of a workspace agree on: names, values in YAML, what CMake installs,
-and dependencies.
+"""Mutants of what the files of a workspace agree on.
+
+These are names, values in YAML, what CMake installs, and dependencies.
 """
 
 import re
@@ -29,8 +30,9 @@ _REVERSED = {"true": "false", "false": "true", "True": "False", "False": "True"}
 def compared_names(
     submission: Submission, families: Iterable[Family]
 ) -> Iterator[tuple[Fact, Edit]]:
-    """Yield the names of these families that files use or define, each with the edit that misspells
-    it there.
+    """Yield the names of these families that files use or define.
+
+    Each has the edit that misspells it there.
     """
     known, name_fixes = frozenset(families), NameFixes(submission.workspace)
     for fact in compared_facts(submission.workspace, known) if known else ():
@@ -41,8 +43,9 @@ def compared_names(
 def name_changes(
     source: Source, label: str, names: Iterable[tuple[Fact, Edit]], families: Iterable[Family]
 ) -> Iterator[MutantEdit]:
-    """Yield the changes of a file of a package: those of its format, then the names in it that are
-    compared.
+    """Yield the changes of a file of a package.
+
+    First those of its format, then the names in it that are compared.
     """
     name = source.path.rpartition("/")[2]
     if name == CMAKE:
@@ -131,8 +134,9 @@ def _node_changes(
 
 
 def _scalar_changes(source: Source, label: str, node: YamlNode) -> Iterator[MutantEdit]:
-    """Yield the change of a text: a truth value is reversed, a number is ten times as large, a word
-    is misspelt.
+    """Yield the change of a text.
+
+    A truth value is reversed, a number is ten times as large, a word is misspelt.
     """
     (start, end), text = node.span, node.text or ""
     if node.quoted:

@@ -58,8 +58,10 @@ def node_changes(
 
 
 def _cpp_changes(source: Source, label: str) -> Iterator[MutantEdit]:
-    """Yield that rclcpp is not initialised, or nothing spins, a parameter is not declared, a
-    callback returns too early.
+    """Yield the changes of a node in C++.
+
+    rclcpp is not initialised, nothing spins, a parameter is not declared, or a callback returns
+    too early.
     """
     for family, pattern in _CPP_STATEMENTS.items():
         for match in pattern.finditer(source.text):
@@ -68,8 +70,10 @@ def _cpp_changes(source: Source, label: str) -> Iterator[MutantEdit]:
 
 
 def _interface_changes(source: Source, label: str) -> Iterator[MutantEdit]:
-    """Yield that each field is misspelt or of another type, each separator removed, and each
-    interface not generated.
+    """Yield the changes of an interface.
+
+    Each field is misspelt or of another type, each separator is removed, and each interface is
+    not generated.
     """
     if source.path.endswith(CMAKE):
         for named in _GENERATED.finditer(source.text):
@@ -124,8 +128,9 @@ def _code_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
 
 
 def _call_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
-    """Yield that a statement of rclpy is missing, a quality of service is another one, or a call of
-    a service waits.
+    """Yield the changes of calls of rclpy.
+
+    A statement is missing, a quality of service is another one, or a call of a service waits.
     """
     for node in file.nodes:
         match node:

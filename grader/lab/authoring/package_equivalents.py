@@ -83,8 +83,10 @@ def _text(submission: Submission, path: str) -> str:
 
 
 def _in_other_language(submission: Submission, package: Package, language: str) -> _Files:
-    """Return the one launch file of a package in another language, and the build file that installs
-    it; nothing where not all of it is known, or where another file names it.
+    """Return the one launch file of a package in another language.
+
+    And the build file that installs it. Nothing where not all of it is known, or where another
+    file names it.
     """
     paths = [path for path in package.launch_files if not path.startswith("test/")]
     if len(paths) != 1 or not paths[0].endswith(".launch.py"):
@@ -145,8 +147,9 @@ def _node_table(node: StartedNode) -> dict[str, Any] | None:
 
 
 def _parameter_rows(node: StartedNode) -> list[dict[str, Any]] | None:
-    """Return the parameters of a node as rows of a launch file; None where not all of them are
-    plain.
+    """Return the parameters of a node as rows of a launch file.
+
+    None where not all of them are plain.
     """
     rows: list[dict[str, Any]] = []
     for given in node.parameters or ():
@@ -189,8 +192,9 @@ def _launch_xml(nodes: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _built_by_cmake(submission: Submission, package: Package) -> _Files:
-    """Return the files of a package that CMake builds in place of setup.py; nothing where it has
-    programs or modules, or is no package of Python.
+    """Return the files of a package that CMake builds in place of setup.py.
+
+    Nothing where it has programs or modules, or is no package of Python.
     """
     setup = package.path(SETUP)
     manifest = package.manifest
@@ -307,8 +311,9 @@ def _is_spawner(file: PythonFile, entry: ast.expr) -> bool:
 
 
 def _with_renamed_files(submission: Submission, package: Package, named: Collection[str]) -> _Files:
-    """Return the files of parameters and worlds under other names, with all files that name
-    them.
+    """Return the files of parameters and worlds under other names.
+
+    And all files that name them.
     """
     files: dict[str, str | None] = {}
     texts: dict[str, str] = {}

@@ -1,5 +1,6 @@
-"""The facts of the packages of a reference: files, builds, launch and RViz files, names and
-parameters.
+"""The facts of the packages of a reference.
+
+They are about files, builds, launch and RViz files, names and parameters.
 """
 
 import posixpath
@@ -96,8 +97,9 @@ def package_facts(submission: Submission) -> Facts:
 
 
 def _packages(submission: Submission) -> Iterator[tuple[Package, str]]:
-    """Yield the packages, each with what the words of its facts begin with: the main one, and the
-    others.
+    """Yield the packages, the main one first.
+
+    Each comes with what the words of its facts begin with.
     """
     for package in sorted(
         submission.lab_packages.values(),
@@ -144,8 +146,9 @@ def _facts_of(
 
 
 def measure_facts(solution: Solution) -> Iterator[Fact]:
-    """Yield the parameters of nodes that are a radius in the robot, or a distance between two
-    links.
+    """Yield the parameters of nodes that are measures of the robot.
+
+    A measure is a radius in the robot, or a distance between two links.
     """
     links = [link.name for link in solution.robot.robot.links]
     for node, name, value in _given(solution.submission):
@@ -233,8 +236,9 @@ def value_facts(submission: Submission) -> Iterator[Fact]:
 
 
 def _given(submission: Submission) -> Iterator[tuple[str, str, Any]]:
-    """Yield the parameters that nodes get, by the names of the nodes and their own, and their
-    values.
+    """Yield the values of the parameters that nodes get.
+
+    Each comes after the name of the node and its own.
     """
     for node, given in submission.workspace.parameters.owners.items():
         for name, parameter in {
@@ -244,8 +248,9 @@ def _given(submission: Submission) -> Iterator[tuple[str, str, Any]]:
 
 
 def _parameter_fact(node: str, name: str, **arguments: Any) -> Fact:
-    """Return a fact about a parameter, which costs nothing if a mistake of names keeps it from the
-    node.
+    """Return a fact about a parameter.
+
+    It costs nothing if a mistake of names keeps the parameter from the node.
     """
     where_given = {"node": node, "parameter": name, **arguments, "where_given": True}
     carried = (CarriedFact(_OF_PARAMETERS, "parameter_is", where_given),)
@@ -254,8 +259,9 @@ def _parameter_fact(node: str, name: str, **arguments: Any) -> Fact:
 
 
 def _sizes_meant(name: str, links: Sequence[str]) -> tuple[str, Iterable[tuple[str, ...]]] | None:
-    """Return what a parameter measures by its name, and of which links it may be; None for any
-    other parameter.
+    """Return what a parameter measures by its name, and of which links it may be.
+
+    None for any other parameter.
     """
     if "radius" in name:
         return "radius", ((link,) for link in links)
@@ -289,8 +295,9 @@ def name_facts(submission: Submission) -> Facts:
 
 
 def _measured_words(submission: Submission) -> tuple[str, ...]:
-    """Return the words of the parameters that may be measures of the robot, each of which is a fact
-    of its own.
+    """Return the words of the parameters that may be measures of the robot.
+
+    Each of these is a fact of its own.
     """
     words = []
     for node, name, _ in _given(submission):
@@ -342,8 +349,9 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
 def _install_facts(
     package: Package, paths: Sequence[str], known: Collection[str]
 ) -> Iterator[Fact]:
-    """Yield that a build installs a file of each ending, from whatever folder; not of the `known`
-    endings, of which others are installed anyway.
+    """Yield that a build installs a file of each ending, from whatever folder.
+
+    Not of the `known` endings, of which others are installed anyway.
     """
     endings: dict[str, None] = {}
     for path in paths:
@@ -362,8 +370,9 @@ def _install_facts(
 def _launch_facts(
     submission: Submission, package: Package, path: str, prefix: str
 ) -> Iterator[Fact]:
-    """Yield what may be true of a launch file, which costs nothing if it starts nothing by a
-    mistake of others.
+    """Yield what may be true of a launch file.
+
+    It costs nothing if the file starts nothing by a mistake of others.
     """
     name, launch = posixpath.basename(path), package.launch(path)
     included = {posixpath.basename(file.path) for file in launch.passed} - {name}
@@ -387,8 +396,9 @@ def _launch_facts(
 
 
 def _complete_fact(launch: Launch, name: str, shown: str) -> Fact:
-    """Return that a launch file is there, installed, and finds the files that it names; of one of
-    which not all are known, that none is in a wrong place.
+    """Return that a launch file is there, installed, and finds the files that it names.
+
+    Of one of which not all files are known, that none is in a wrong place.
     """
     fact = _package_fact("launch_complete", name, name=name)
     title = f"a build installs {shown}"
@@ -435,8 +445,9 @@ def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator
 
 
 def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
-    """Yield what a launch file starts in addition, and no more, if one of its boolean arguments is
-    turned round.
+    """Yield what a launch file starts if one of its boolean arguments is turned round.
+
+    This is what it starts in addition, and no more.
     """
     launch, name = package.launch(path), posixpath.basename(path)
     before = _started(launch)
@@ -467,8 +478,9 @@ def _started(launch: Launch) -> list[str]:
 
 
 def _nodes_that_start(launch: Launch) -> list[str]:
-    """Return the nodes that start, with what a condition replaces: joint_state_publisher for its
-    GUI, for example.
+    """Return the nodes that start, with what a condition replaces.
+
+    An example is joint_state_publisher, which is replaced by its GUI.
     """
     starting = _started(launch)
     replaced = dict.fromkeys(node.name for node in launch.nodes if node.when is False)
@@ -480,8 +492,9 @@ def _nodes_that_start(launch: Launch) -> list[str]:
 
 
 def _rviz_facts(package: Package) -> Iterator[Fact]:
-    """Yield what may be true of each RViz file, which is also found by the first launch file that
-    opens it.
+    """Yield what may be true of each RViz file.
+
+    It is also found by the first launch file that opens it.
     """
     opened: dict[str, str] = {}
     for path in package.launch_files:

@@ -1,5 +1,6 @@
-"""What is wrong with a rubric that is valid: what its reference does not pass, and what an edit
-likely forgot.
+"""What is wrong with a rubric that is valid.
+
+This is what its reference does not pass, and what an edit likely forgot.
 """
 
 import re
@@ -50,8 +51,9 @@ _ROUNDED = {
 
 
 class _Failures(NamedTuple):
-    """What the reference does not pass: lines that say it, whether it fails one, and how many
-    are only undecided.
+    """What the reference does not pass.
+
+    It has the lines that say it, whether it fails one, and how many are only undecided.
     """
 
     lines: tuple[str, ...]
@@ -60,8 +62,9 @@ class _Failures(NamedTuple):
 
 
 def reference_failures(rubric: Rubric) -> _Failures:
-    """Return what the reference does not pass of the automatic criteria, and of the checks in
-    `carried` tables.
+    """Return what the reference does not pass.
+
+    Of the automatic criteria, and of the checks in `carried` tables.
 
     Criteria with one message share a line.
     """
@@ -100,8 +103,9 @@ def _path_of(criterion: Criterion) -> TomlPath:
 
 
 def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]:
-    """Yield what counts instead of a criterion where an error is carried forward, if the
-    reference does not pass it.
+    """Yield what counts instead of a criterion, if the reference does not pass it.
+
+    It counts where an error is carried forward.
     """
     assert rubric.solution is not None
     for criterion in (
@@ -126,8 +130,9 @@ def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]
 
 
 def _unresolved_selectors(rubric: Rubric) -> Iterator[tuple[TomlPath, str]]:
-    """Yield the place of each criterion that names a link by a place that not exactly one has,
-    and why.
+    """Yield the place of each criterion whose link cannot be told, and why.
+
+    It names the link by a place that not exactly one has.
     """
     assert rubric.solution is not None
     for criterion in rubric.criteria:
@@ -175,8 +180,9 @@ def _unknown_causes_note(rubric: Rubric) -> tuple[TomlPath, str] | None:
 
 
 def _is_changed_copy(rubric: Rubric) -> bool:
-    """Return whether a rubric has the id of one of the grader's and most of its criteria, but
-    not quite the same.
+    """Return whether a rubric is a changed copy of one of the grader's.
+
+    It has its id and most of its criteria, but not quite the same.
     """
     if rubric.id not in shipped_rubrics() or rubric.is_shipped:
         return False
@@ -215,8 +221,9 @@ def _warnings_about(
 
 
 def _measured_sizes(arguments: Mapping[str, Any]) -> Iterator[float]:
-    """Yield how large what a check measures is: lengths, a mass, a range, or the distance of a
-    place.
+    """Yield how large what a check measures is.
+
+    This is lengths, a mass, a range, or the distance of a place.
     """
     yield from (number for key in _SIZES for number in _numbers(arguments.get(key)) if number > 0)
     ends = [*_numbers([arguments.get("lower"), arguments.get("upper")])]
@@ -254,8 +261,9 @@ def _numbers(value: Any) -> Iterator[float]:
 
 
 def _unknown_measures(sentence: str, numbers: Sequence[float]) -> list[str]:
-    """Return the measures in a sentence that are none of these numbers, as exact as they are
-    written.
+    """Return the measures in a sentence that are none of these numbers.
+
+    They are compared as exactly as they are written.
     """
     unknown_measures = []
     for text, unit in _MEASURE.findall(sentence):
@@ -268,8 +276,9 @@ def _unknown_measures(sentence: str, numbers: Sequence[float]) -> list[str]:
 
 
 def _other_angles(key: str, unit: str, values: list[float]) -> Iterator[str]:
-    """Yield that angles seem to be radians where degrees are asked, or degrees where radians
-    are.
+    """Yield that angles seem to be in another unit than is asked.
+
+    These are radians in place of degrees, or degrees in place of radians.
     """
     for value in values:
         if "in degrees" in unit and _is_like_radians(value):
@@ -282,8 +291,9 @@ def _other_angles(key: str, unit: str, values: list[float]) -> Iterator[str]:
 
 
 def _is_like_radians(value: float) -> bool:
-    """Return whether a number is a multiple of 45 degrees in radians; with more decimals of 15, of
-    1.
+    """Return whether a number is a multiple of 45 degrees in radians.
+
+    With more decimals of 15, of 1.
     """
     digits = len(f"{value:.10g}".partition(".")[2])
     step = radians({2: 45, 3: 15}.get(digits, 1))

@@ -1,5 +1,6 @@
-"""Test a rubric: mutants of its reference must lose points, equivalents nothing, samples what they
-declare.
+"""Test a rubric.
+
+Mutants of its reference must lose points, equivalents nothing, samples what they declare.
 
 `Trial` grades changed copies of the reference; `run_rubric_test` counts what becomes of them.
 """
@@ -135,8 +136,9 @@ class Trial:
         return (content(self.reference, path) or b"").decode("utf-8", "surrogateescape")
 
     def unexamined(self) -> tuple[list[str], int]:
-        """Return the files that may be emptied or removed without a difference for any criterion,
-        and how many were tried.
+        """Return the files that no criterion needs, and how many were tried.
+
+        They may be emptied or removed without a difference for any criterion.
         """
         files = self.reference.whole_tree.files.items()
         tried = [path for path, file in files if file.size and not _NO_PART_OF_LAB.search(path)][
@@ -150,8 +152,9 @@ class Trial:
         return any(self._differs(path, data) for data in (b"", None))
 
     def _differs(self, path: str, data: bytes | None) -> bool:
-        """Return whether a criterion has another status with other bytes of a file; None removes
-        it.
+        """Return whether a criterion has another status with other bytes of a file.
+
+        None removes it.
         """
         try:
             changed = with_files(self.reference, {path: data})
@@ -210,8 +213,9 @@ class Trial:
         return [*compared_names(self.reference, self._families)]
 
     def _is_looked_at(self, mutant: Mutant) -> bool:
-        """Return whether a criterion may look at a mutant of a package: some look at its name or at
-        meshes only.
+        """Return whether a criterion may look at a mutant of a package.
+
+        Some look at its name or at meshes only.
         """
         subjects = {criterion.check.subject for criterion in self.tested}
         if "package" in subjects:
@@ -234,8 +238,9 @@ class Trial:
             return None
 
     def results(self, mutant: Mutant, submission: Submission) -> list[Result]:
-        """Return the results of the criteria that a mutant can change: of the robot only the URDF
-        is read again.
+        """Return the results of the criteria that a mutant can change.
+
+        Of the robot only the URDF is read again.
         """
         is_of_robot = self._is_of_robot(mutant)
         subjects = {name: result.criterion.check.subject for name, result in self.expected.items()}
@@ -325,8 +330,9 @@ class Trial:
         }
 
     def _must_pass(self, submission: Submission, family: str) -> Collection[str]:
-        """Return the criteria on the robot that must still pass; for a URDF on its own, those that
-        need no package.
+        """Return the criteria on the robot that must still pass.
+
+        For a URDF on its own, those that need no package.
         """
         others = ("package", "submission") if submission.is_single else ("package",)
         asked = (criterion for criterion in self.tested if criterion.check.subject not in others)
@@ -349,8 +355,9 @@ def _is_of_writing(criterion: Criterion, family: str) -> bool:
 
 
 def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Submission:
-    """Return the reference with another text of its robot; a URDF that becomes xacro is graded on
-    its own.
+    """Return the reference with another text of its robot.
+
+    A URDF that becomes xacro is graded on its own.
     """
     data = equivalent.text.encode()
     if not equivalent.is_xacro or (urdf.is_expanded and urdf.as_it_stands is None):
@@ -362,8 +369,9 @@ def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Sub
 
 
 def _names_in(rubric: Rubric) -> Iterator[str]:
-    """Yield every text in the arguments of a rubric's checks, also keys of tables, and the joints
-    that it poses.
+    """Yield every text in the arguments of a rubric's checks, and the joints that it poses.
+
+    Keys of tables are texts, too.
     """
     for criterion in rubric.criteria:
         yield from _texts_in(
@@ -429,8 +437,9 @@ class RubricTest(NamedTuple):
 
     @property
     def score(self) -> Decimal:
-        """The mutation score: the share of the mutants that lose points, in percent, without those
-        that are ignored.
+        """The mutation score: the percentage of the mutants that lose points.
+
+        Those that are ignored do not count.
         """
         count = self.caught + len(self.survivors)
         if count:
@@ -439,8 +448,9 @@ class RubricTest(NamedTuple):
 
     @property
     def lost(self) -> tuple[str, ...]:
-        """The criteria that the reference does not pass, without extra credit and those for manual
-        grading.
+        """The criteria that the reference does not pass.
+
+        Without extra credit and those for manual grading.
         """
         return tuple(result.criterion.id for result in self.reference.unearned)
 
@@ -466,8 +476,9 @@ def run_rubric_test(
     most: int = _MAX_MUTANTS,
     seed: int = 0,
 ) -> RubricTest:
-    """Return the test of a rubric. Raises InputError without a readable reference, RubricError for
-    wrong samples.
+    """Return the test of a rubric.
+
+    Raises InputError without a readable reference, RubricError for wrong samples.
 
     `grade_all` grades mutants elsewhere, as `mutant_outcomes` does: all of at most `most`, else a
     sample that the seed draws.
@@ -513,8 +524,9 @@ def _counted(
     samples: SampleResults | None,
     rest: "_Rest | None",
 ) -> RubricTest:
-    """Return the result of a test: `outcomes` are those of the mutants that were graded, in any
-    order.
+    """Return the result of a test.
+
+    `outcomes` are those of the mutants that were graded, in any order.
     """
     places = {mutant: place for place, mutant in enumerate(every)}
     graded = sorted(outcomes, key=lambda outcome: places[outcome.mutant])
@@ -577,8 +589,9 @@ def _unused_patterns(rubric: Rubric, mutants: Sequence[Mutant]) -> tuple[str, ..
 
 
 def _survivor(trial: Trial, mutant: Mutant) -> _Survivor:
-    """Return a mutant that loses nothing, with the reason for which the rubric ignores it, or for
-    which it is right.
+    """Return a mutant that loses nothing, with a reason.
+
+    This is why the rubric ignores it, or why it is right.
     """
     reason = why_right(mutant)
     for row in trial.rubric.ignored:
@@ -605,7 +618,8 @@ def _text_diff(path: str, before: str, after: str) -> str:
 
 
 def _matches(mutant: Mutant, pattern: str) -> bool:
-    """Return whether a pattern is a mutant's id or matches it: brackets in an id are a set of
-    characters to fnmatch.
+    """Return whether a pattern is a mutant's id or matches it.
+
+    Brackets in an id are a set of characters to fnmatch.
     """
     return mutant.id == pattern or fnmatchcase(mutant.id, pattern)

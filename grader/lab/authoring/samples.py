@@ -43,8 +43,9 @@ class Loss(NamedTuple):
 
 
 class SampleResults(NamedTuple):
-    """How many samples were graded, how many belong to another rubric, and what differs from their
-    expected.toml.
+    """How many samples were graded, and what differs from their expected.toml.
+
+    It also says how many belong to another rubric.
     """
 
     tried: int
@@ -69,8 +70,9 @@ class Sample:
 
 
 def read_samples(folder: Path) -> list[Sample]:
-    """Return the samples in a folder by name. Raises RubricError for a broken expected.toml,
-    InputError without any.
+    """Return the samples in a folder by name.
+
+    Raises RubricError for a broken expected.toml, InputError without any.
     """
     if not folder.is_dir():
         raise InputError(f"{printable_path(folder)} is not a folder with samples")
@@ -105,8 +107,9 @@ def tested_samples(
 
 
 def _differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
-    """Yield what differs from the expected report: a criterion that is not adjusted, or `verdict`,
-    and a message.
+    """Yield what differs from the expected report.
+
+    Each is a criterion that is not adjusted, or `verdict`, and a message.
     """
     try:
         submission = open_submission(str(sample.folder / sample.path), rubric.lab)

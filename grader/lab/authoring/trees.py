@@ -21,8 +21,9 @@ _FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
 
 
 def copied(root: Element) -> Element:
-    """Return a copy of a tree without comments; paths of meshes that $(find package) gave become
-    package:// ones.
+    """Return a copy of a tree without comments.
+
+    Paths of meshes that $(find package) gave become package:// ones.
 
     Its root declares the namespace of xacro.
     """
@@ -114,8 +115,9 @@ def parent_joint(tree: Element, link: str) -> Element | None:
 
 
 def move_frame(tree: Element, link: Element, change: Transform) -> None:
-    """Move a link's frame by `change`, given in the frame, and everything in the link back: nothing
-    else moves.
+    """Move a link's frame by `change`, given in the frame.
+
+    Everything in the link is moved back: nothing else moves.
     """
     name = link.get("name", "")
     held = parent_joint(tree, name)
@@ -149,8 +151,9 @@ def add_joint(tree: Element, name: str, parent: str, child: str, transform: Tran
 
 
 def own_elements(tree: Element, *tags: str) -> Iterator[Element]:
-    """Yield the elements with these tags that ROS 2 reads: not those inside of elements for a
-    simulator.
+    """Yield the elements with these tags that ROS 2 reads.
+
+    Those inside of elements for a simulator are left out.
     """
     for child in tree:
         if child.tag not in FOREIGN:
@@ -158,8 +161,9 @@ def own_elements(tree: Element, *tags: str) -> Iterator[Element]:
 
 
 def split_joint(tree: Element, joint: Element, first: Transform, *, is_first: bool) -> None:
-    """Put an empty link into a joint, at `first` in the parent's frame; `is_first` if the upper
-    half keeps the name.
+    """Put an empty link into a joint, at `first` in the parent's frame.
+
+    `is_first` if the upper half keeps the name.
     """
     middle, parent, child = fresh(tree, "link"), end(joint, "parent"), end(joint, "child")
     etree.SubElement(tree, "link", {"name": middle})

@@ -240,8 +240,9 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
 def _visuals_of_kind(
     robot: Configuration, link: str, kind: type[_Shown]
 ) -> list[tuple[Visual, _Shown]]:
-    """Return the visuals of a link that show a shape of a kind; raise MissingElement where there is
-    none.
+    """Return the visuals of a link that show a shape of a kind.
+
+    Raise MissingElement where there is none.
     """
     pairs = ((visual, visual.geometry) for visual in visuals(robot, link))
     visuals_of_kind = [(visual, shape) for visual, shape in pairs if isinstance(shape, kind)]
@@ -253,8 +254,9 @@ def _visuals_of_kind(
 
 
 def _edges_along_link(visual: Visual, box: Box) -> Vector | None:
-    """Return the edge lengths of a box along its link's axes, in metres; None where they are not
-    along them.
+    """Return the edge lengths of a box along its link's axes, in metres.
+
+    None where they are not along them.
     """
     size = box.size
     rotation = rotation_from_rpy(visual.origin.rpy)

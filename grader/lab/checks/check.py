@@ -1,5 +1,6 @@
-"""A check: what a rubric names, what its signature and docstring say, and what it declares to
-hints and pictures.
+"""A check: what a rubric names.
+
+It has what its signature and docstring say, and what it declares to hints and pictures.
 """
 
 import inspect
@@ -118,8 +119,9 @@ class Check(NamedTuple):
     about: About = About()  # what its module declares of it
 
     def for_arguments(self, arguments: Mapping[str, Any]) -> "Check":
-        """Return the check as it is called with these arguments, which may decide what is
-        examined.
+        """Return the check as it is called with these arguments.
+
+        They may decide what is examined.
         """
         if self.about.function_for is not None:
             function = self.about.function_for(arguments)
@@ -156,8 +158,9 @@ class Check(NamedTuple):
 
 
 def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
-    """Return the check that a function is: its signature is the schema of the rubric's `with`
-    table.
+    """Return the check that a function is.
+
+    Its signature is the schema of the rubric's `with` table.
 
     An argument whose key is a keyword of Python, such as `not`, has an underscore behind it in the
     function: `not_`. Raises InputError for a signature that is no schema.
@@ -200,14 +203,17 @@ def _key(name: str) -> str:
 
 
 def _is_subject(parameter: inspect.Parameter) -> bool:
-    """Return whether a parameter after the first is another object that is examined: it is no
-    keyword-only argument.
+    """Return whether a parameter after the first is another object that is examined.
+
+    Such a parameter is no keyword-only argument.
     """
     return parameter.kind is parameter.POSITIONAL_OR_KEYWORD and parameter.name in _SUBJECTS
 
 
 class Documentation(NamedTuple):
-    """The paragraphs of a docstring before its first section, a fact first; the meaning of each
+    """The parts of a docstring.
+
+    They are the paragraphs before its first section, a fact first, and the meaning of each
     argument.
     """
 
@@ -221,8 +227,9 @@ class Documentation(NamedTuple):
 
 
 def documentation(function: Callable[..., Any]) -> Documentation:
-    """Return what the docstring of a function says; a function without one, or without `Args:`, has
-    empty parts.
+    """Return what the docstring of a function says.
+
+    A function without one, or without `Args:`, has empty parts.
     """
     text, *sections = re.split(_SECTION, inspect.getdoc(function) or "")
     named = dict(zip(sections[::2], sections[1::2], strict=True))
@@ -235,8 +242,9 @@ def documentation(function: Callable[..., Any]) -> Documentation:
 
 
 def _arguments(section: str) -> dict[str, str]:
-    """Return the entries of an `Args:` section by name; an entry continues on lines that are
-    indented further.
+    """Return the entries of an `Args:` section by name.
+
+    An entry continues on lines that are indented further.
     """
     entries = (re.split(_ARGUMENT, entry) for entry in re.split(r"\n(?=\S)", section))
     return {

@@ -155,8 +155,9 @@ def collides_as(
 
 
 def _solid_collisions(robot: Configuration, link: str, expected: str) -> tuple[Collision, ...]:
-    """Return the collision shapes of a link that have a size; raise MissingElement if there is
-    none.
+    """Return the collision shapes of a link that have a size.
+
+    Raise MissingElement if there is none.
     """
     solid = tuple(
         collision for collision in robot.link(link).collisions if not collision.geometry.is_empty
@@ -174,8 +175,9 @@ def _fits(off: ShapeDifference | None, tolerance: float) -> bool:
 
 
 def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> ShapeDifference | None:
-    """Return how far two shapes differ; None for shapes of different kinds, and for different
-    meshes.
+    """Return how far two shapes differ.
+
+    None for shapes of different kinds, and for different meshes.
     """
     shown = PlacedShape(visual.geometry, visual.origin.placed_in())
     solid = PlacedShape(collision.geometry, collision.origin.placed_in())
@@ -185,8 +187,9 @@ def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> ShapeDi
 def _judge_unmatched(
     link: str, lonely: Sequence[Visual], others: Sequence[Collision], tolerance: float
 ) -> Outcome:
-    """Return the outcome for visuals without a collision shape, and collision shapes without a
-    visual.
+    """Return the outcome for shapes without a counterpart.
+
+    These are visuals without a collision shape, and collision shapes without a visual.
     """
     shown_meshes = [visual.geometry for visual in lonely if isinstance(visual.geometry, Mesh)]
     meshes = [collision.geometry for collision in others if isinstance(collision.geometry, Mesh)]
@@ -218,8 +221,9 @@ def _rank_mismatch(off: ShapeDifference | None) -> tuple[bool, float]:
 def _fail_with_nearest(
     message: str, nearest: Collision, off: ShapeDifference | None, tolerance: float
 ) -> Outcome:
-    """Return a failure that says how the nearest shape differs from the one that should be, at the
-    place to look at.
+    """Return a failure that says how the nearest shape differs from the one that should be.
+
+    Its location is the place to look at.
     """
     message += f"; the nearest is {_describe_shape(nearest)}"
     if off is None:

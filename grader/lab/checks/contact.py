@@ -101,8 +101,9 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
 
 
 def _overhang(above: list[PlacedShape], below: PlacedShape) -> float:
-    """Return how far shapes reach beyond the outline of the one below, seen from above, in
-    metres.
+    """Return how far shapes reach beyond the outline of the one below, in metres.
+
+    The outline is seen from above.
     """
     directions = [X_AXIS, _LEFT]
     if isinstance(below.geometry, Box):  # its own edges: it may be turned about the vertical

@@ -206,8 +206,9 @@ def _judge(
     *,
     by_mass: bool = True,
 ) -> Outcome:
-    """Return the outcome for faults; `fine` has the numbers of a robot without any. If it is
-    decided by the centre of mass, the message says what is assumed of that.
+    """Return the outcome for faults; `fine` has the numbers of a robot without any.
+
+    If it is decided by the centre of mass, the message says what is assumed of that.
     """
     shown = faults[0] if faults else fine
     text = "; ".join(fault.text for fault in faults) or message

@@ -171,8 +171,9 @@ def above_others(
 def _measure_each(
     links: Sequence[str], measure: Callable[[str], float]
 ) -> tuple[dict[str, float], MissingElement | UnknownShape | None]:
-    """Return what can be measured of each link; and why one of them cannot, so that it does not
-    hide the others.
+    """Return what can be measured of each link, and why one of them cannot.
+
+    Such a link does not hide the others.
     """
     measurements: dict[str, float] = {}
     missing: MissingElement | UnknownShape | None = None
@@ -193,8 +194,9 @@ def _common_place(
     relative_to: str,
     tolerance: float,
 ) -> LazyLocation | None:
-    """Return where to look if heights are off: the origin of the frame if all are off alike, else
-    of the first link.
+    """Return where to look if heights are off.
+
+    This is the origin of the frame if all are off alike, else of the first link.
     """
     first, value = next(iter(wrong.items()))
     alike = len(wrong) == len(lowest) > 1 and all(

@@ -1,5 +1,6 @@
-"""Checks of the mass of a link, and of its inertia against that of a uniform solid of its
-shapes.
+"""Checks of the mass and the inertia of a link.
+
+The inertia is compared with that of a uniform solid of its shapes.
 """
 
 from math import isfinite

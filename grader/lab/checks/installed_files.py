@@ -1,5 +1,6 @@
-"""What a build of a package installs of its files, and why it does not: for the checks of packages
-and of launch files.
+"""What a build of a package installs of its files, and why it does not.
+
+For the checks of packages and of launch files.
 """
 
 import posixpath
@@ -61,8 +62,9 @@ def build_error(package: Package, *, where_there: bool = False) -> Outcome | Non
 
 
 def files_of_kind(package: Package, kind: FileKind, name: str) -> Sequence[str]:
-    """Return the file of a package that has this name, else all of the kind that are no part of
-    another one.
+    """Return the file of a package that has this name.
+
+    Without one, all of the kind that are no part of another one.
     """
     if kind == "launch":
         chosen = package.launch_file(name)

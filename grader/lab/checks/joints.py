@@ -1,5 +1,6 @@
-"""Checks of the joint that moves a link, the last one above it that is not fixed: limits, axis,
-mimic, dynamics.
+"""Checks of the joint that moves a link: limits, axis, mimic, dynamics.
+
+It is the last joint above the link that is not fixed.
 
 The numbers of an element of a joint are compared with the expected ones together, in one outcome.
 """
@@ -259,8 +260,9 @@ def _is_reversed(
 
 
 def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:
-    """Return the joints that a joint mimics, directly and through others, each with the multiplier
-    and offset to it.
+    """Return the joints that a joint mimics, directly and through others.
+
+    Each has the multiplier and offset to it.
 
     The last may not exist. Raises MissingElement for a loop.
     """
@@ -290,8 +292,9 @@ def _range_text(lower: float, upper: float) -> str:
 def _wrong_type(
     joint: Joint, link: str, lower: float, upper: float, tolerance: float
 ) -> Outcome | None:
-    """Return the failure of limits that are as expected, but in metres instead of degrees or the
-    other way round.
+    """Return the failure of limits that are as expected in another unit.
+
+    They are in metres instead of degrees, or the other way round.
     """
     limit = joint.limit
     assert limit is not None
@@ -350,8 +353,9 @@ def _compare_numbers(
     element: LazyLocation | None,
     of: str | None = None,
 ) -> Outcome:
-    """Compare numbers of an element, which are in the unit `of` if they have one tolerance; NaN
-    fails.
+    """Compare numbers of an element, which are in the unit `of` if they have one tolerance.
+
+    NaN fails.
     """
     faults = {number.fault: number.attribute for number in reversed(numbers) if number.is_wrong}
     message = "; ".join((message, *reversed(faults)))

@@ -1,5 +1,7 @@
-"""Checks of a launch file: its name, the nodes that it starts, and whether a build installs the
-files that it names.
+"""Checks of a launch file.
+
+They are about its name, the nodes that it starts, and whether a build installs the files that it
+names.
 """
 
 import posixpath
@@ -153,8 +155,9 @@ def node_runs(
 
 
 def _names_in(launch: "Launch", names: Iterable[str]) -> list[str]:
-    """Return names of nodes as a launch file has them: a build may install a script with .py, or
-    without.
+    """Return names of nodes as a launch file has them.
+
+    A build may install a script with .py, or without.
     """
     known = {node.name for node in launch.nodes}
     others = {
@@ -189,8 +192,9 @@ def _fail_missing(
 
 
 def _stop_at_files(package: Package, places: Sequence[FilePlace], *, built: bool) -> Outcome | None:
-    """Return the failure of a launch file that stops at a file that it reads; None if it does
-    not.
+    """Return the failure of a launch file that stops at a file that it reads.
+
+    None if it does not.
     """
     if built and (
         wrong := [place for place in places if place.state == "wrong" and place.stops_launch]
@@ -205,8 +209,9 @@ def _check_decided(
     faults: Sequence[Fault],
     places: Sequence[FilePlace],
 ) -> None:
-    """Raise NotDecided if it is not known whether the launch file starts the nodes as they are
-    wanted.
+    """Raise NotDecided if the started nodes are not known.
+
+    It has to be known whether the launch file starts them as they are wanted.
     """
     reason = f": {launch.unknown[0].message}" if launch.unknown else ""
     if missing:
@@ -336,8 +341,9 @@ def _check_starts(launch: "Launch") -> None:
 def _faulty_program(
     package: Package, launch: "Launch", choices: Sequence[Sequence[str]]
 ) -> MissingElement | None:
-    """Return the fault of a wanted node that certainly ends at once: setup.py names no function for
-    its program.
+    """Return the fault of a wanted node that certainly ends at once.
+
+    setup.py names no function for its program.
     """
     from grader.ros.package.entry_points import certain_fault  # late: most start nodes of ROS 2
 
@@ -371,8 +377,9 @@ def _may_start(launch: "Launch", missing: Sequence[Sequence[str]]) -> bool:
 
 
 def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | None]":
-    """Return why a launch file does not start nodes that should be started, in a sentence, and
-    where to look.
+    """Return why a launch file does not start nodes that should be started.
+
+    The reason is a sentence; where to look comes with it.
     """
     for node in launch.forgotten:
         if node.name in missing:
@@ -454,8 +461,9 @@ def _path_of(package: Package, name: str) -> str:
 
 
 def _launch_of(package: Package, name: str) -> "Launch":
-    """Return a launch file, evaluated. Raises MissingElement, and NotDecided for one that is not
-    read.
+    """Return a launch file, evaluated.
+
+    Raises MissingElement, and NotDecided for one that is not read.
     """
     path = _path_of(package, name)
     launch = package.launch(path)

@@ -48,8 +48,9 @@ def urdf_loads(urdf: Reading) -> Outcome:
 
 
 def _list_assumed(urdf: Reading) -> str:
-    """Return what is assumed about a file that ROS 2 rejects, each with its lines; empty if nothing
-    is.
+    """Return what is assumed about a file that ROS 2 rejects, each with its lines.
+
+    Empty if nothing is.
     """
     lines: dict[str, list[str]] = {}
     for problem in urdf.problems:

@@ -1,5 +1,6 @@
-"""Checks that need manual grading: the grader finds answers and pictures, and a person marks
-them.
+"""Checks that need manual grading.
+
+The grader finds answers and pictures, and a person marks them.
 """
 
 import re
@@ -137,8 +138,9 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
 
 
 def picture_named(names: Sequence[str]) -> str:
-    """Return words for the picture that the first of these labels names: a picture named
-    `Task3_Step3.png`.
+    """Return words for the picture that the first of these labels names.
+
+    An example is a picture named `Task3_Step3.png`.
     """
     return f"a picture named `{picture_name(names)}`"
 

@@ -1,5 +1,6 @@
-"""Checks of the meshes of a link: which file, where a build puts it, its scale and its pose. No
-mesh is loaded.
+"""Checks of the meshes of a link: which file, where a build puts it, its scale and its pose.
+
+No mesh is loaded.
 """
 
 from collections.abc import Iterator, Sequence

@@ -1,5 +1,6 @@
-"""The check of parameters: the values that nodes get, wherever they are written, also measured on
-the robot.
+"""The check of parameters: the values that nodes get, wherever they are written.
+
+They are also measured on the robot.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -104,8 +105,9 @@ def parameter_is(
 def _value_or_default(
     submission: Submission, node: str, parameter: str, *, or_default: bool
 ) -> tuple[str, ParameterValue]:
-    """Return the value that a node gets, or else its default, after the words for that. Raises
-    MissingElement and NotDecided, as `value_of` does.
+    """Return the value that a node gets, or else its default, after the words for that.
+
+    Raises MissingElement and NotDecided, as `value_of` does.
     """
     try:
         return f"{node} gets {parameter} =", value_of(submission, node, parameter)
@@ -128,8 +130,9 @@ def _measured_if_there(
 def _written_otherwise(
     submission: Submission, parameter: str, value: Any, tolerance: float
 ) -> ParameterValue | None:
-    """Return what parameter files have for a parameter, of whatever node, if none of them has a
-    certain value.
+    """Return what parameter files have for a parameter, of whatever node.
+
+    Only if none of them has a certain value.
     """
     written = submission.workspace.installed.written_values(parameter)
     known = [
@@ -142,8 +145,9 @@ def _written_otherwise(
 
 
 def value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:
-    """Return the value that a node gets. Raises MissingElement if it gets none, NotDecided where
-    that is not known.
+    """Return the value that a node gets.
+
+    Raises MissingElement if it gets none, NotDecided where that is not known.
     """
     workspace = submission.workspace
     given = workspace.parameters.owners.get(node, [])
@@ -185,8 +189,9 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
 
 
 def _nameless(workspace: Workspace) -> list[tuple[Package, StartedNode]]:
-    """Return the own nodes whose names neither the launch file nor their programs give, with their
-    packages.
+    """Return the own nodes that have no name, with their packages.
+
+    Neither the launch file nor their programs give one.
     """
     nameless = []
     for _, node in workspace.launches.nodes:
@@ -227,8 +232,9 @@ def _text(value: Any) -> str:
 
 
 def measured(submission: Submission, measure: _Measure, links: list[str]) -> float:
-    """Return a measure of the robot, in metres or radians. Raises MissingElement for a link that is
-    not there.
+    """Return a measure of the robot, in metres or radians.
+
+    Raises MissingElement for a link that is not there.
     """
     robot = submission.needed_urdf().robot
     if robot is None:
@@ -251,8 +257,9 @@ def measured(submission: Submission, measure: _Measure, links: list[str]) -> flo
 
 
 def measures(robot: Configuration, links: list[str]) -> Mapping[str, Callable[[], float]]:
-    """Return what can be measured of one link, or of two: a radius, a distance, the limits of a
-    joint.
+    """Return what can be measured of one link, or of two.
+
+    This is a radius, a distance, or the limits of a joint.
 
     Args:
         robot: The robot.
@@ -262,8 +269,9 @@ def measures(robot: Configuration, links: list[str]) -> Mapping[str, Callable[[]
 
 
 def _place(robot: Configuration, link: str, relative_to: str) -> Vector:
-    """Return the centre of a cylinder or sphere that a joint turns without end, or where the link's
-    frame is.
+    """Return the centre of a cylinder or sphere that a joint turns without end.
+
+    For another link, where its frame is.
     """
     joint = robot.parent_joints.get(link)
     if joint is not None and joint.type == "continuous" and robot.robot.link(link).visuals:

@@ -112,8 +112,9 @@ def centre_at(
 def _with_orientation(
     placed: Outcome, turned: float, angle: float, wanted: str, at: LazyLocation | None
 ) -> Outcome:
-    """Return the outcome of a position, or its failure where the orientation is more than `angle`
-    degrees off.
+    """Return the outcome of a position, or the failure of its orientation.
+
+    The orientation may be at most `angle` degrees off.
     """
     if turned <= angle + SLACK:
         return placed
@@ -124,8 +125,9 @@ def _with_orientation(
 
 
 def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome | None:
-    """Return the failure of a link that moves in another link's frame; None where only fixed joints
-    lie between.
+    """Return the failure of a link that moves in another link's frame.
+
+    None where only fixed joints lie between.
     """
     path = robot.between(relative_to, link)
     loose = next((joint for joint in path if joint.type != "fixed"), None)
@@ -144,8 +146,9 @@ def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome |
 def _origin_by(
     robot: Configuration, link: str, visual: Visual, relative_to: str, off: Vector
 ) -> LazyLocation | None:
-    """Return the origin that puts a visual off: its own if it moves the visual along that line,
-    else the joint's.
+    """Return the origin that puts a visual off.
+
+    This is its own if it moves the visual along that line, else the joint's.
 
     In the frame of its own link, nothing but the visual's own origin moves it.
     """

@@ -1,5 +1,6 @@
-"""The check of the problems that the reader finds in a URDF, and in the xacro that it is written
-in.
+"""The check of the problems that the reader finds in a URDF.
+
+Also of those in the xacro that it is written in.
 """
 
 from collections.abc import Sequence

@@ -179,8 +179,9 @@ def _no_display(rviz: "RvizFile", kind: str) -> Outcome:
 
 
 def _class_of_ros1(display: "Display") -> str:
-    """Return what is wrong with a display's class: RViz of ROS 2 has no class rviz/..., and none
-    without a package.
+    """Return what is wrong with a display's class.
+
+    RViz of ROS 2 has no class rviz/..., and none without a package.
     """
     right = f"in ROS 2 it is {_PLUGINS}/{display.kind}"
     if not display.package:
@@ -251,8 +252,9 @@ def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> _Verd
 
 
 def _judge_topic(actual: str, topic: str, names: "_Names") -> _Verdict:
-    """Return whether a RobotModel display reads the robot, by the nodes that are started or else by
-    the topic.
+    """Return whether a RobotModel display reads the robot.
+
+    This is known by the nodes that are started or else by the topic.
     """
     described, shown = names.described, names.shown(actual)
     if described is None or (described and None in shown):
@@ -274,8 +276,9 @@ def _judge_topic(actual: str, topic: str, names: "_Names") -> _Verdict:
 
 
 class _Names(NamedTuple):
-    """The nodes that a launch file certainly starts: who publishes the robot and its joints, and
-    who shows it.
+    """The nodes that a launch file certainly starts.
+
+    It says who publishes the robot and its joints, and who shows it.
     """
 
     publishers: "Sequence[StartedNode]" = ()
@@ -317,8 +320,9 @@ class _Names(NamedTuple):
 
     @property
     def unheard(self) -> str:
-        """Why transforms do not get from the joints to RViz; empty if they do, or if this is not
-        known.
+        """Why transforms do not get from the joints to RViz.
+
+        Empty if they do, or if this is not known.
         """
         without_description = [node for node in self.joints if not node.has_description]
         for name, sources, readers in (
@@ -339,8 +343,9 @@ def _listed(topics: set[str] | set[str | None]) -> str:
 
 
 def _judge_prefix(model: "Display", opened: "Launch | None") -> _Verdict:
-    """Return whether a RobotModel display finds the links' frames: it puts its TF Prefix and a
-    slash before them.
+    """Return whether a RobotModel display finds the links' frames.
+
+    It puts its TF Prefix and a slash before them.
     """
     node = model.node.get("TF Prefix")
     written_prefix = node.text or "" if node is not None else ""

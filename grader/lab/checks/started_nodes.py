@@ -1,5 +1,6 @@
-"""What a rubric asks of the nodes that a launch file starts: which not, their remappings, arguments
-and topics.
+"""What a rubric asks of the nodes that a launch file starts.
+
+This is which are not started, their remappings, arguments and topics.
 
 What cannot be determined is a fault that is not sure.
 """
@@ -33,8 +34,9 @@ _Topics = Sequence[str] | Mapping[str, str] | None  # a table has their types
 
 
 class Wanted(NamedTuple):
-    """What a rubric asks besides the nodes that are started: the arguments of the check
-    node_runs.
+    """What a rubric asks besides the nodes that are started.
+
+    These are the arguments of the check node_runs.
     """
 
     absent: Sequence[str] | None
@@ -48,8 +50,9 @@ class Wanted(NamedTuple):
 
 
 class Fault(NamedTuple):
-    """What is not as a rubric asks; or, if it is not `is_certain`, what may not be so, after
-    "whether".
+    """What is not as a rubric asks.
+
+    If it is not `is_certain`, what may not be so, after "whether".
     """
 
     message: str
@@ -109,8 +112,9 @@ def _started_although(launch: "Launch", names: Iterable[str]) -> Iterator[Fault]
 
 
 def _ill_started(launch: "Launch", names: Sequence[str], wanted: Wanted) -> Fault | None:
-    """Return what is wrong with a node, if it is started, and none of its name has the remappings
-    and arguments.
+    """Return what is wrong with a node that is started.
+
+    None of its name has the remappings and arguments.
     """
     findings = [(node, _fault_of(node, wanted)) for node in launch.nodes if node.name in names]
     if not findings or any(fault is None and node.when for node, fault in findings):

@@ -1,5 +1,6 @@
-"""Checks of the tree of links: its root, its joints, their types and names, and how many there
-are.
+"""Checks of the tree of links.
+
+They are about its root, its joints, their types and names, and how many there are.
 """
 
 from collections import Counter
@@ -212,8 +213,9 @@ def counts(
 
 
 def _fail_unknown_type(wrong: Joint, link: str, parent: str, *, may_be_wanted: bool) -> Outcome:
-    """Fail for a joint whose type does not exist; raise MissingElement where it may be the one that
-    is asked for.
+    """Fail for a joint whose type does not exist.
+
+    Raise MissingElement where it may be the one that is asked for.
     """
     kind = f"the type {wrong.type!r}, which does not exist" if wrong.type else "no type"
     message = f"a joint between {parent!r} and {link!r} has {kind}"
@@ -227,8 +229,9 @@ def _fail_unknown_type(wrong: Joint, link: str, parent: str, *, may_be_wanted: b
 def _joint_above_root(
     robot: Configuration, link: str, links: Collection[str] | None
 ) -> Joint | None:
-    """Return the nearest joint that should not be above a link; of a frame, one may be if the links
-    are named.
+    """Return the nearest joint that should not be above a link.
+
+    Of a frame, one may be if the links are named.
     """
     parent_joint = robot.parent_joints.get(link)
     if parent_joint is None or not links:
@@ -247,8 +250,9 @@ def _is_of_frame(robot: Configuration, joint: Joint, links: Collection[str]) -> 
 
 
 def _driven_or_blocked(joint: Joint, link: str) -> Outcome | None:
-    """Return the failure of a joint that another one moves, or that has no velocity; None if it
-    moves by itself.
+    """Return the failure of a joint that another one moves, or that has no velocity.
+
+    None if it moves by itself.
     """
     if joint.mimic is not None:
         leader = "itself" if joint.mimic.joint == joint.name else "another joint"
@@ -299,8 +303,9 @@ def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:
 
 
 def _count_parts(robot: Configuration, nouns: Collection[str]) -> Counter[str]:
-    """Return the numbers of links and joints by kind in the largest tree; raise NotDecided if xacro
-    leaves one open.
+    """Return the numbers of links and joints by kind in the largest tree.
+
+    Raise NotDecided if xacro leaves one open.
     """
     tree = robot.main_tree
     part_counts = Counter({"link": len(tree), "joint": max(0, len(tree) - 1)})

@@ -1,5 +1,6 @@
-"""The check of the xacro that a robot is written in: its properties, its macros, the files that
-it includes.
+"""The check of the xacro that a robot is written in.
+
+It is about its properties, its macros, and the files that it includes.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -179,8 +180,9 @@ def _missing_uses(
     first_places: Mapping[str, Location],
     used: Collection[str],
 ) -> Iterator[_Lack]:
-    """Yield what is missing of definitions that are used: some of the named ones, or of a
-    number.
+    """Yield what is missing of definitions that are used.
+
+    These are some of the named ones, or of a number.
     """
     if isinstance(wanted, int):
         unused = [name for name in first_places if name not in used]

@@ -1,5 +1,6 @@
-"""Pictures and other evidence in a submission: found by name or headings in documents, and
-described, never graded.
+"""Pictures and other evidence in a submission.
+
+They are found by name or headings in documents, and described, never graded.
 """
 
 import re
@@ -72,8 +73,9 @@ class FoundEvidence(NamedTuple):
 def find_evidence(
     files: Sequence[LabelledFile], names: Sequence[str], documents: DocumentCollection | None = None
 ) -> FoundEvidence:
-    """Return the evidence that one of these names labels: `task 1 step 8`, or plain words such as
-    `webcam`.
+    """Return the evidence that one of these names labels.
+
+    A name is `task 1 step 8`, or plain words such as `webcam`.
 
     Files with the label come first. Without one, headings of Word and PDF files with a picture
     below them count. Not certain are labels without a task, headings without a picture, documents
@@ -137,8 +139,9 @@ def _headings_about(
 
 
 def _whole_documents(documents: DocumentCollection | None) -> list[File]:
-    """Return the documents that may hold any evidence: those not read, and those with pictures
-    without headings.
+    """Return the documents that may hold any evidence.
+
+    These are those not read, and those with pictures without headings.
 
     A pre-lab has none.
     """
@@ -168,8 +171,9 @@ def _step_headings(documents: DocumentCollection, document: TextDocument) -> lis
 
 
 def _is_certain(wanted: Label, document: TextDocument, head: Heading) -> bool:
-    """Return whether a picture is below a heading that names a step in words: "18." may be a line
-    of the handout.
+    """Return whether a picture is below a heading that names a step in words.
+
+    "18." may be a line of the handout.
     """
     names = read_label(head.text[:_MAX_SHOWN])
     is_named = (

@@ -1,5 +1,6 @@
-"""The headings of a document: lines that name a task, a step or a question, and where the passage
-below each ends.
+"""The headings of a document, and where the passage below each ends.
+
+A heading is a line that names a task, a step or a question.
 
 A label is the task and step that a heading or the name of a file names, in any spelling:
 Task1_Step8, task 1 step 8, T1S8, lab6_task1_q8.
@@ -72,8 +73,9 @@ _LABEL = re.compile(rf"(?<![^\W\d_])(?:{_TASK}|{_STEP})(?:{_FILLERS}(?:{_TASK}|{
 
 
 class Label(NamedTuple):
-    """The task and steps that a text names, and all of its words; None and empty where it names
-    none.
+    """The task and steps that a text names, and all of its words.
+
+    None and empty where it names none.
     """
 
     task: int | None
@@ -88,8 +90,9 @@ class Label(NamedTuple):
 
 @lru_cache(maxsize=1024)  # a rubric's names are read for each submission
 def read_label(text: str) -> Label:
-    """Return the label of a name or line. If it names several tasks, as a path may, the last one
-    counts.
+    """Return the label of a name or line.
+
+    If it names several tasks, as a path may, the last one counts.
     """
     text = text[-_MAX_LENGTH:].lower()
     task: int | None = None
@@ -104,8 +107,9 @@ def read_label(text: str) -> Label:
 
 
 def matches(wanted: Label, given: Label, task: int | None = None) -> bool:
-    """Return whether a label matches the wanted one; `task` is the task of the headings around
-    it.
+    """Return whether a label matches the wanted one.
+
+    `task` is the task of the headings around it.
     """
     if wanted.steps or wanted.task is not None:
         own_task = given.task if given.task is not None else task
@@ -139,8 +143,9 @@ def _numbers(words: list[str]) -> tuple[int | None, set[int]]:
 
 
 def _in_order(wanted: tuple[str, ...], words_of_heading: tuple[str, ...]) -> bool:
-    """Return whether the wanted words occur next to each other, each at least as a prefix: cam in
-    camera.
+    """Return whether the wanted words occur next to each other.
+
+    Each may be a prefix of a word: cam in camera.
     """
     for start in range(len(words_of_heading) - len(wanted) + 1):
         words = words_of_heading[start : start + len(wanted)]
@@ -221,8 +226,9 @@ def find_headings(
 
 
 def is_about(wanted: Label, head: Heading) -> bool:
-    """Return whether a heading has a label: plain words begin it, or are in one that is marked as a
-    heading.
+    """Return whether a heading has a label.
+
+    Plain words begin it, or are in one that is marked as a heading.
     """
     if not wanted.steps and wanted.task is None:
         is_pattern = bool(head.pattern) and head.pattern == wanted.words
@@ -282,8 +288,9 @@ def _label_in(words: list[str]) -> Label:
 
 
 def question_of(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int | None]:
-    """Return the pattern that a line or name begins with, words in any order, and the number after
-    or between.
+    """Return the pattern that a line or name begins with, and a number.
+
+    The pattern's words are in any order, the number after or between them.
     """
     words = [word for word in text.split(None, _MAX_SPLIT) if has_words(word)]
     tokens = _question_words(" ".join(words[: _MAX_WORDS + 2]))
@@ -303,8 +310,9 @@ def question_of(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int 
 
 
 def _question_words(text: str) -> list[str]:
-    """Return the words of a heading from the question on: "2. Task 1 - Answer to Q3" begins with
-    "question".
+    """Return the words of a heading from the question on.
+
+    "2. Task 1 - Answer to Q3" begins with "question".
     """
     tokens = WORDS.findall(text.lower())
     while tokens:

@@ -1,5 +1,6 @@
-"""What a person reads for a criterion: the pictures and PDF files of its evidence, and of a written
-answer.
+"""What a person reads for a criterion.
+
+These are the pictures and PDF files of its evidence, and of a written answer.
 
 Also the documents that may hold an answer for which no heading was found.
 """
@@ -38,8 +39,9 @@ _DOCUMENTS = (
 
 
 def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture | NotShown, ...]:
-    """Return the pictures and PDF files of a criterion that needs manual grading, and the files
-    that are not shown.
+    """Return the pictures and PDF files of a criterion that needs manual grading.
+
+    And the files that are not shown.
 
     Of a Word file these are all of its pictures; a PDF opens on the page of the evidence or the
     answer. If no file is named for the evidence, all files of evidence are searched; if no answer
@@ -70,8 +72,9 @@ def may_have_pictures(result: Result) -> bool:
 
 
 def is_empty(result: Result, report: Report) -> bool:
-    """Return whether there is nothing to read for a criterion: no answer, no document and no
-    picture that may be one.
+    """Return whether there is nothing to read for a criterion.
+
+    There is no answer, no document and no picture that may be one.
 
     Of evidence: no file that may be it.
     """
@@ -91,8 +94,9 @@ def is_empty(result: Result, report: Report) -> bool:
 
 
 def content_of(result: Result, report: Report) -> str:
-    """Return the written answer without empty lines, if it is all that there is to read; else an
-    empty text.
+    """Return the written answer without empty lines, if it is all that there is to read.
+
+    Else an empty text.
 
     Without an answer it is the text of the documents that may hold one.
     """
@@ -112,8 +116,9 @@ def content_of(result: Result, report: Report) -> str:
 
 
 def loose_lines(result: Result, submission: Submission, *, is_anonymous: bool = False) -> list[str]:
-    """Return the lines of the documents that may hold an answer for which no heading was found,
-    each below its path.
+    """Return the lines of the documents that may hold an answer, each below its path.
+
+    These are documents in which no heading was found for it.
     """
     documents, unread = _loose_documents(result, submission)
     lines = list[str]()
@@ -127,8 +132,9 @@ def loose_lines(result: Result, submission: Submission, *, is_anonymous: bool = 
 def _loose_documents(
     result: Result, submission: Submission
 ) -> tuple[list[TextDocument], Sequence[object]]:
-    """Return the documents that may hold an answer for which no heading was found, and those that
-    were not read.
+    """Return the documents that may hold an answer, and those that were not read.
+
+    No heading was found for the answer.
     """
     if not _has_no_answer(result):
         return [], ()
@@ -145,8 +151,9 @@ def _has_no_answer(result: Result) -> bool:
 
 
 def _loose_files(report: Report) -> tuple[EvidenceFile, ...]:
-    """Return the files that may hold a part of an answer: PDF files, and pictures that are no
-    evidence.
+    """Return the files that may hold a part of an answer.
+
+    These are PDF files, and pictures that are no evidence.
     """
     evidence = (
         result for result in report.results if _is_evidence(result) and not result.outcome.problem
@@ -182,8 +189,9 @@ def evidence_files(result: Result) -> tuple[str, ...]:
 
 
 def _shown_files(result: Result) -> tuple[str, ...]:
-    """Return the paths of the files of evidence, of the PDF of an answer, or of the document with
-    pictures in it.
+    """Return the paths of the files that are shown.
+
+    They are files of evidence, the PDF of an answer, or the document with pictures in it.
     """
     if files := evidence_files(result):
         return files
@@ -212,8 +220,9 @@ def _read_pictures(
 
 
 def _find_page(file: File, result: Result, documents: DocumentCollection | None) -> int:
-    """Return the page of a PDF with the answer, or with the heading that names the evidence; the
-    first without one.
+    """Return the page of a PDF with the answer, or with the heading that names the evidence.
+
+    The first page without one.
     """
     document = documents.document(file) if documents is not None else None
     if documents is None or not isinstance(document, TextDocument):

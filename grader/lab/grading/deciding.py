@@ -30,8 +30,9 @@ _MAX_LISTED = 6
 
 
 def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> Iterator[Result]:
-    """Yield the results of criteria in the rubric's order; what a criterion requires counts if it
-    is wanted, too.
+    """Yield the results of criteria in the rubric's order.
+
+    What a criterion requires counts if it is wanted, too.
     """
     grading = _Grading(rubric, submission)
     left = {criterion.id for criterion in rubric.criteria if criterion.id in wanted}
@@ -45,8 +46,9 @@ def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> I
 
 
 def _manual_subjects(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
-    """Return what a submission lacks, and why, whose criteria then need manual grading by the
-    rubric.
+    """Return what a submission lacks, and why.
+
+    Criteria about it then need manual grading by the rubric.
 
     Without a URDF, `without_urdf` decides for the package as well.
     """
@@ -91,9 +93,7 @@ class _Grading:
                 self.results[name] = self._carry_from_any(self.results[name])
 
     def may_be_excused(self, name: str, undecided: set[str]) -> bool:
-        """Return whether the mistake of a criterion that is not decided yet may be why this one is
-        lost.
-        """
+        """Return whether an undecided criterion's mistake may be why this one is lost."""
         result = self.results[name]
         if not result.criterion.carried or not result.is_lost:
             return False
@@ -140,8 +140,9 @@ class _Grading:
         return result._replace(outcome=self._with_place(outcome, criterion))
 
     def _with_place(self, outcome: Outcome, criterion: Criterion) -> Outcome:
-        """Return a failure of the robot with a place: without an own one that of the link that is
-        examined.
+        """Return a failure of the robot with a place.
+
+        Without an own one that of the link that is examined.
         """
         robot, link = self.submission.robot, criterion.arguments.get("link")
         if (
@@ -163,8 +164,9 @@ class _Grading:
         return explain(outcome, self._subjects.problems, self._subjects.source, looks_at, *thing)
 
     def _carry(self, result: Result, carried: Carried) -> Result:
-        """Return a failure, or a skip because of a cause, as carried if the fact that then counts
-        instead holds.
+        """Return a failure, or a skip because of a cause, as carried.
+
+        Only if the fact that then counts instead holds.
         """
         cause = self._cause_of(result, carried.causes)
         if cause is None:
@@ -197,8 +199,9 @@ class _Grading:
         return self._with_reasons(other)
 
     def _is_excused(self, criterion: Criterion, cause: str) -> bool:
-        """Return whether what counts instead passes, if another criterion is the cause of a
-        failure.
+        """Return whether what counts instead passes.
+
+        Only if another criterion is the cause of a failure.
         """
         for carried in (
             carried_failure
@@ -216,8 +219,9 @@ class _Grading:
         return False
 
     def _cause_of(self, result: Result, causes: Sequence[str]) -> Result | None:
-        """Return the failure that made the first of these criteria fail or be skipped, if it made
-        the result so, too.
+        """Return the failure that made the first of these criteria fail or be skipped.
+
+        Only if it made the result so, too.
 
         A skip because of a criterion that is itself carried from that failure counts, too.
         """
@@ -241,8 +245,9 @@ class _Grading:
     def _run_check(
         self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]
     ) -> Result:
-        """Return the result of a check; raise MissingElement, or RubricError for a mistake of the
-        rubric.
+        """Return the result of a check.
+
+        Raise MissingElement, or RubricError for a mistake of the rubric.
         """
         try:
             subjects = self._subjects.under(criterion.args)
@@ -277,8 +282,9 @@ class _Grading:
             return Result(criterion, _fault_outcome(check, _text_of(error)), traceback=format_exc())
 
     def _fail_or_skip(self, criterion: Criterion, missing: MissingElement) -> Result:
-        """Return a failure for the first criterion that misses a thing; later ones would repeat it
-        and are skipped.
+        """Return a failure for the first criterion that misses a thing.
+
+        Later ones would repeat it and are skipped.
         """
         if missing.kind in self._manual:
             return Result(criterion, _by_evidence(self.submission, self._manual[missing.kind]))
@@ -324,8 +330,9 @@ class _Grading:
         return not near(name, others, "link")
 
     def _first_miss(self, criterion: Criterion, thing: tuple[str, str, str]) -> str:
-        """Return the first criterion that misses a thing, which may be this one; an adjusted one
-        excuses no other.
+        """Return the first criterion that misses a thing, which may be this one.
+
+        An adjusted one excuses no other.
 
         One that is carried from this one is skipped in its place, although it stands above.
         """
@@ -356,8 +363,9 @@ def _text_of(error: BaseException) -> str:
 
 
 def _fault_outcome(check: Check, fault: str) -> Outcome:
-    """Return the outcome of a faulty check; the message names the installed package that it comes
-    from.
+    """Return the outcome of a faulty check.
+
+    The message names the installed package that it comes from.
     """
     if check.distribution:
         return Outcome(
@@ -370,8 +378,9 @@ def _fault_outcome(check: Check, fault: str) -> Outcome:
 
 
 def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> MissingElement | None:
-    """Return the error for a robot that is another one, and so has no `link`; None if it may be
-    that of the lab.
+    """Return the error for a robot that is another one, and so has no `link`.
+
+    None if it may be that of the lab.
     """
     if robot is None or not robot.is_foreign(rubric.links):
         return None
@@ -392,8 +401,9 @@ def _known_links_text(rubric: Rubric, robot: Robot) -> str:
 
 
 def _missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
-    """Return what a submission with evidence lacks, the `URDF` or the `package` of this lab, and
-    why.
+    """Return what a submission with evidence lacks, and why.
+
+    This is the `URDF` or the `package` of this lab.
     """
     missing, robot = {}, submission.robot
     if isinstance(submission.urdf, Absent):
@@ -420,8 +430,9 @@ def _missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
 
 
 def _by_evidence(submission: Submission, reason: str) -> Outcome:
-    """Return the outcome of a criterion of what a submission lacks, for this reason, where evidence
-    takes its place.
+    """Return the outcome of a criterion of what a submission lacks, for this reason.
+
+    It is for where evidence takes the place of the thing.
     """
     paths = tuple(file.path for file in submission.evidence_files[:_MAX_PICTURES])
     verb = "was" if len(paths) == 1 else "were"

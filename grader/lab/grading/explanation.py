@@ -51,8 +51,9 @@ def explain(
     part: str = "",
     link: str = "",
 ) -> Outcome:
-    """Return a failure with the problem that explains it: why ROS 2 drops a part of a link, or a
-    mistake at its place.
+    """Return a failure with the problem that explains it.
+
+    This is why ROS 2 drops a part of a link, or a mistake at its place.
 
     `source` is the file in which that place may be an element: a mistake inside it explains the
     failure, too, if it is about what the check `looks_at`. A `part` of a `link` may be missing.
@@ -103,8 +104,9 @@ def explain(
 
 
 def _explains(problem: Problem, outcome: Outcome, *, is_part: bool) -> bool:
-    """Return whether a problem at the place of a failure explains it; of a missing part, only what
-    precedes ROS 2.
+    """Return whether a problem at the place of a failure explains it.
+
+    Of a missing part, only what precedes ROS 2.
     """
     if problem.kind.is_before_ros:
         return True
@@ -119,8 +121,9 @@ def _inside(
     *,
     is_of_link: bool = False,
 ) -> Iterator[Problem]:
-    """Yield the problems in the element at a place, or in the link that it is of, that explain what
-    is around them.
+    """Yield the problems around a place that explain what is around them.
+
+    They are in the element at the place, or in the link that it is of.
     """
     candidates = [
         reported for reported in problems if reported.kind in _INSIDE and reported.location != place
@@ -139,8 +142,9 @@ def _inside(
 
 
 def _element_offsets(place: Location, source: Source, *, is_of_link: bool = False) -> range:
-    """Return the offsets of the element at a place, or of its link; only of the tag if an attribute
-    is there.
+    """Return the offsets of the element at a place, or of its link.
+
+    Only of the tag if an attribute is there.
     """
     if place.path != source.path:
         return range(0)

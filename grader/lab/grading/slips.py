@@ -1,5 +1,6 @@
-"""Grade a submission as its words are meant: one criterion pays for each slip, and the others are
-judged on what the slip surely stands for.
+"""Grade a submission as its words are meant.
+
+One criterion pays for each slip, and the others are judged on what the slip surely stands for.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -26,8 +27,9 @@ _Results = Mapping[str, Result]
 def judge_as_meant(
     rubric: Rubric, submission: Submission, slips: Sequence[Slip], written: tuple[Result, ...]
 ) -> tuple[tuple[Result, ...], Meant | None]:
-    """Return the results of criteria with each slip of a submission paid by one of them, and what
-    they were judged on. `written` are those on the words as they are written.
+    """Return the results of criteria with each slip of a submission paid by one of them.
+
+    And what they were judged on. `written` are those on the words as they are written.
 
     A slip in a file that ROS 2 loads counts only if no criterion fails with the meant word that
     passes with the written one: what ROS 2 ignores without harm is a comment.
@@ -92,8 +94,10 @@ class _Readings:
         return self._known[key]
 
     def _payer(self, slip: Slip, slips: Sequence[Slip]) -> str | None:
-        """Return the criterion that pays for a slip beside the others; None if it does not count:
-        it changes nothing, or a criterion fails with the word that is meant.
+        """Return the criterion that pays for a slip beside the others.
+
+        None if it does not count: it changes nothing, or a criterion fails with the word
+        that is meant.
         """
         others = [other for other in slips if other is not slip]
         before_submission, before = self._read(others)
@@ -147,8 +151,9 @@ def _correction_text(slips: Iterable[Slip]) -> str:
 
 
 def problems_as_meant(problems: Iterable[Problem], meant: Meant) -> Iterator[Problem]:
-    """Yield the problems of a URDF that are left with the words that are meant, those at these
-    words, and what is assumed about each.
+    """Yield the problems of a URDF that are left with the words that are meant.
+
+    And those at these words, and what is assumed about each.
     """
     urdf = meant.submission.urdf
     problems_left = urdf.problems if isinstance(urdf, Read) else ()

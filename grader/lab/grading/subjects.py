@@ -1,5 +1,6 @@
-"""The objects that checks examine: the URDF of a submission, its robot in a pose, its package,
-the reference.
+"""The objects that checks examine.
+
+They are the URDF of a submission, its robot in a pose, its package, and the reference.
 """
 
 from collections.abc import Mapping
@@ -24,15 +25,17 @@ _SLIDING, _TURNING = ("prismatic",), ("revolute", "continuous")
 
 
 class Subjects:
-    """What of a submission is examined. Raises InputError if a check needs a reference solution
-    that cannot be read.
+    """What of a submission is examined.
+
+    Raises InputError if a check needs a reference solution that cannot be read.
     """
 
     def __init__(
         self, rubric: Rubric, submission: Submission, arguments: Mapping[str, str] | None = None
     ) -> None:
-        """`arguments` are those of launch files, under which the submission and the reference
-        are examined.
+        """Take the arguments of launch files, `arguments`.
+
+        Under them the submission and the reference are examined.
         """
         solution = rubric.solution if rubric.compares_with_reference else None
         if arguments:
@@ -92,8 +95,9 @@ class Subjects:
         return self._under[key]
 
     def of(self, check: Check, criterion: Criterion) -> list[object]:
-        """Return what a check examines for a criterion: its package, and the robot with the joints
-        at its positions.
+        """Return what a check examines for a criterion.
+
+        This is its package, and the robot with the joints at its positions.
 
         Raises MissingElement or NotDecided for what the submission does not have.
         """
@@ -111,16 +115,18 @@ class Subjects:
         return subjects
 
     def _with_package(self, name: str) -> Submission:
-        """Return the submission with another graded package: one for all criteria of the package,
-        so that its names are compared once.
+        """Return the submission with another graded package.
+
+        It is one for all criteria of the package, so that its names are compared once.
         """
         if name not in self._packaged:
             self._packaged[name] = self.submission.with_package(name)
         return self._packaged[name]
 
     def pose_text(self, at: Mapping[str, float]) -> str:
-        """Return the positions of joints that are there: 'joint_2' at 40 degrees and 'slide' at
-        0.1 m.
+        """Return the positions of joints that are there.
+
+        For example: 'joint_2' at 40 degrees and 'slide' at 0.1 m.
         """
         assert self.robot is not None
         joints = joints_at(self.robot, at)
@@ -129,8 +135,9 @@ class Subjects:
         )
 
     def named(self, check: Check, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the arguments of a check, which have selectors, with the names of the links that
-        they mean.
+        """Return the arguments of a check with the names of links.
+
+        They have selectors, which mean these links.
 
         A check that compares two robots looks for the links in each of them.
 
@@ -154,8 +161,9 @@ class Subjects:
         return self._posed[key]
 
     def _needed_subject(self, name: Subject, known: Mapping[Subject, Any]) -> object:
-        """Return the package; raise MissingElement or NotDecided for any other subject that a
-        submission lacks.
+        """Return the package.
+
+        Raise MissingElement or NotDecided for any other subject that a submission lacks.
         """
         if name == "package":
             return known["submission"].needed_package()
@@ -166,8 +174,9 @@ class Subjects:
 
 
 def check_selectors(robot: Configuration, criterion: Criterion) -> None:
-    """Raise MissingElement or NotDecided if a criterion names a link by a place that no link
-    has, or several have.
+    """Raise MissingElement or NotDecided if a selector does not have one link.
+
+    A criterion names a link by a place that no link has, or several have.
     """
     carried = [dict(one.arguments) for one in criterion.carried]
     joints = [*criterion.at, *(name for one in criterion.carried for name in one.at)]
@@ -175,8 +184,9 @@ def check_selectors(robot: Configuration, criterion: Criterion) -> None:
 
 
 def joints_at(robot: Configuration, at: Mapping[str, float]) -> list[tuple[Joint, float, str]]:
-    """Return the joints that a criterion puts at positions, each with the position and its unit, m
-    or degrees.
+    """Return the joints that a criterion puts at positions.
+
+    Each has the position and its unit, m or degrees.
 
     Raises MissingElement or NotDecided for one that is not there.
     """
@@ -185,8 +195,9 @@ def joints_at(robot: Configuration, at: Mapping[str, float]) -> list[tuple[Joint
 
 
 def _find_joint(robot: Configuration, name: str) -> Joint:
-    """Return a joint that turns or slides, by its name or by a selector of the link that it
-    moves.
+    """Return a joint that turns or slides.
+
+    It is found by its name or by a selector of the link that it moves.
     """
     named = name
     if not robot.robot.has_joint(name):
@@ -219,8 +230,9 @@ def without_selectors(value: Any, robot: Configuration) -> Any:
 
 
 def _check_name(robot: Configuration, name: str) -> None:
-    """Raise MissingElement if several joints with this name turn or slide: positions are given by
-    the joint's name.
+    """Raise MissingElement if several joints with this name turn or slide.
+
+    Positions are given by the joint's name.
     """
     joints = [
         joint

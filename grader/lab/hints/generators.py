@@ -1,5 +1,6 @@
-"""The generators of hints: what may undo a mistake of a robot or a package, in the order in which
-it is tried.
+"""The generators of hints, in the order in which they are tried.
+
+They yield what may undo a mistake of a robot or a package.
 
 `STAGES` is the list. A stage gets the situation and the criteria that still lose points, and yields
 generators of proposals, each of one kind. The search grades all proposals of a stage before it
@@ -46,8 +47,9 @@ _MAX_SIMILAR = 2
 
 
 class Situation:
-    """A submission beside the reference solution; `draft` is its robot, and `difference` that to
-    the reference's.
+    """A submission beside the reference solution.
+
+    `draft` is its robot, and `difference` that to the reference's.
     """
 
     def __init__(
@@ -57,8 +59,9 @@ class Situation:
         reference: Draft | None,
         package: "Callable[[str], Package | None]",
     ) -> None:
-        """`wanted` are the links that the rubric names, `reference` and `package` give the robot
-        and packages of it.
+        """Take the robots, and the links that the rubric names, `wanted`.
+
+        `reference` and `package` give the robot and packages of the reference solution.
         """
         self.submission, self.reference_package = submission, package
         self.reading: Reading | None = None
@@ -79,8 +82,9 @@ class Situation:
 
     @cached_property
     def has_reversed(self) -> bool:
-        """Whether the parent and the child of a joint are exchanged: the poses around it are no
-        ones to correct.
+        """Whether the parent and the child of a joint are exchanged.
+
+        The poses around it are then none to correct.
         """
         return self.difference is not None and bool(reversed_joints(self.difference))
 
@@ -110,8 +114,9 @@ Stage = Callable[[Situation, _Lost], Iterator[Iterable[Proposal]]]
 
 
 def _reference_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
-    """What undoes a slip, then what differs from the other side of the robot, and from the
-    reference.
+    """Yield what undoes a slip, then what differs from elsewhere.
+
+    First from the other side of the robot, then from the reference.
     """
     draft, difference = situation.draft, situation.difference
     subjects = {criterion.check.subject for criterion in lost}
@@ -223,8 +228,9 @@ def _proposals(
 
 
 def _links_of(criteria: Iterable[Criterion], difference: RobotDifference) -> list[str] | None:
-    """Return the links whose joints and shapes decide criteria, with all above them; None if all
-    may.
+    """Return the links whose joints and shapes decide criteria, with all above them.
+
+    None if all may.
     """
     links: dict[str, None] = {}
     robot, reference = difference.draft.robot, difference.reference.robot
@@ -311,8 +317,9 @@ def _with_xacro(submission: Submission) -> Iterator[Proposal]:
 def leaves_others(
     shared: Collection[str], passing: Iterable[Criterion], lost: Collection[Criterion]
 ) -> bool:
-    """Return whether a criterion that passes for one call of a macro still fails for another
-    one.
+    """Return whether a criterion of one call of a macro fails for another one.
+
+    It passes for the first call.
     """
     functions = {criterion.check.function for criterion in passing} if shared else set()
     return any(
@@ -327,8 +334,9 @@ def missing_hints(
     criteria: Mapping[str, Criterion],
     lost: Mapping[str, Decimal],
 ) -> dict[str, FoundHint]:
-    """Return a hint in words for each missing link with its joint, by the costliest criterion that
-    it costs.
+    """Return a hint in words for each missing link with its joint.
+
+    It is at the costliest criterion that the link costs.
 
     `difference` is that of the robot after all edits, `written` is the robot before them.
     """

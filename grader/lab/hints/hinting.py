@@ -33,8 +33,9 @@ _MAX_TEXT = 240  # characters of a changed text
 
 
 class _HintedReport(NamedTuple):
-    """A report with hints, the edits of all that fit together, and the types of exceptions that
-    cost other hints.
+    """A report with hints, and the edits of all that fit together.
+
+    It also has the types of exceptions that cost other hints.
     """
 
     report: Report
@@ -43,8 +44,9 @@ class _HintedReport(NamedTuple):
 
 
 class FixedFiles(NamedTuple):
-    """The files of a submission that all proven edits change, None for one that is gone, and the
-    report on the result.
+    """The files of a submission that all proven edits change, and the report on the result.
+
+    A file that is gone is None.
 
     `why_nothing` says why there are none.
     """
@@ -55,8 +57,9 @@ class FixedFiles(NamedTuple):
 
 
 def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedReport:
-    """Return a report with proven hints for criteria that failed; without any where the search
-    would take long.
+    """Return a report with proven hints for criteria that failed.
+
+    Without any where the search would take long.
     """
     if submission.is_costly:
         return _HintedReport(report, (), [])
@@ -130,8 +133,9 @@ def _entries_of(hints_edits: Iterable[Edits], entries: Mapping[Edits, str]) -> t
 
 
 def _written(hints: Sequence[FoundHint]) -> list[FoundHint]:
-    """Return the hints whose edits may be written: none that is left to words, and none that
-    needs it.
+    """Return the hints whose edits may be written.
+
+    None of them is left to words, and none needs such a hint.
     """
     kept: list[FoundHint] = []
     cut: set[Edits] = set()
@@ -145,8 +149,9 @@ def _written(hints: Sequence[FoundHint]) -> list[FoundHint]:
 
 
 def _loses_expression(edit: Edit) -> bool:
-    """Return whether an edit writes a value in place of an expression of xacro: which one is
-    better, a person knows.
+    """Return whether an edit writes a value in place of an expression of xacro.
+
+    Which one is better, a person knows.
     """
     if not edit.new or not edit.path.endswith(ROBOT_ENDINGS):
         return False
@@ -177,8 +182,9 @@ def _entry(
     results: Mapping[str, Result],
     costs: Mapping[str, Decimal],
 ) -> str:
-    """Return the criterion that shows a hint in a report: the one at the line that is edited,
-    else the costliest.
+    """Return the criterion that shows a hint in a report.
+
+    This is the one at the line that is edited, else the costliest.
     """
 
     def rank(name: str) -> tuple[bool, bool, bool, Decimal]:
@@ -227,8 +233,9 @@ def _draft(reference: ReferenceSolution | None) -> Draft | None:
 
 
 def _package(reference: ReferenceSolution | None, name: str) -> "Package | None":
-    """Return the package of the reference solution, or that of this name if the rubric has
-    several.
+    """Return the package of the reference solution.
+
+    If the rubric has several, the one of this name.
     """
     if reference is None:
         return None
@@ -242,8 +249,9 @@ def _package(reference: ReferenceSolution | None, name: str) -> "Package | None"
 def message(
     hint: FoundHint, level: HintLevel, submission: Submission, earlier: Sequence[str]
 ) -> str:
-    """Return the hint in a sentence, which need not name the URDF. `earlier` are criteria whose
-    hints come first.
+    """Return the hint in a sentence, which need not name the URDF.
+
+    `earlier` are criteria whose hints come first.
     """
     text = _clause(hint, level, submission)
     if earlier:
@@ -333,8 +341,9 @@ def _at(place: Location | Edit, main: str | None) -> str:
 
 
 def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
-    """Return two changes in words if they exchange texts, or if a text is removed at one place and
-    added at another.
+    """Return two changes in words if they belong together.
+
+    They exchange texts, or a text is removed at one place and added at another.
     """
     if len(edits) != 2:
         return []
@@ -413,8 +422,9 @@ def _common_start(one: Sequence[str], other: Sequence[str]) -> int:
 
 
 def _is_whole(text: str) -> bool:
-    """Return whether a text has no line break, both brackets and both quotes of each pair, and no
-    comma before it.
+    """Return whether a text is a whole.
+
+    It has no line break, both brackets and both quotes of each pair, and no comma before it.
     """
     is_balanced = all(text.count(one) == text.count(other) for one, other in ("()", "[]", "{}"))
     is_quoted = text.count("'") % 2 == text.count('"') % 2 == 0
@@ -440,8 +450,9 @@ def _insertion(edit: Edit, submission: Submission) -> str:
 
 
 def _where(edit: Edit, submission: Submission) -> str:
-    """Return the line of an edit, and which of the texts in it is meant if it is there several
-    times.
+    """Return the line of an edit, and which text in it is meant.
+
+    The latter if the text is there several times.
     """
     line, place = _line(edit, submission), _at(edit, submission.path)
     number = line.count(edit.old) if edit.old else 0

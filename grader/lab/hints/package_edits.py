@@ -74,8 +74,9 @@ def package_proposals(
     reference: Package | None,
     wanted: Iterable[tuple[tuple[str, ...], Mapping[str, Any]]],
 ) -> Iterator[Iterator[Proposal]]:
-    """Yield edits of a package for checks, by the kinds of files: what each check looks at, with
-    its arguments.
+    """Yield edits of a package for checks, by the kinds of files.
+
+    The kinds are what each check looks at, with its arguments.
     """
     kinds: dict[str, None] = {}
     given: set[str] = set()
@@ -90,8 +91,9 @@ def package_proposals(
 
 
 def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
-    """Yield the best proposals for a kind of files, each edit once: a later one says better what
-    changes.
+    """Yield the best proposals for a kind of files, each edit once.
+
+    A later one says better what changes.
     """
     proposals: dict[Edits, Proposal] = {}
     for proposal in islice(_proposals_of_kind(task, kind), _MAX_MADE):
@@ -102,8 +104,9 @@ def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
 
 
 def _proposals_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
-    """Yield edits of the file of a kind, and those that rename or create one; without a kind, of
-    the package's name.
+    """Yield edits of the file of a kind, and those that rename or create one.
+
+    Without a kind, of the package's name.
     """
     if not kind:
         yield from package_names(task, task.package.wanted_name or task.package.share.split("/")[1])
@@ -122,8 +125,10 @@ def _proposals_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
 def _proposals_of_file(
     task: PackageTask, kind: str, source: Source, path: str, like: str | None
 ) -> Iterator[Proposal]:
-    """Yield the edits of a file: its difference to the reference, its syntax, its names, its
-    paths and its words.
+    """Yield the edits of a file.
+
+    They are about its difference to the reference, its syntax, its names, its paths and its
+    words.
     """
     what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
     removed = [span for conflict in find_conflicts(source.text) for span in conflict.removed]
@@ -204,8 +209,9 @@ def _replace_words(
 
 
 def _slip(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that a slip of the hand makes this one: a letter or two more, less,
-    other or swapped.
+    """Return the known word that a slip of the hand makes this one.
+
+    A slip is a letter or two more, less, other or swapped.
     """
     similar = [other for other in known if abs(len(other) - len(word)) <= _MAX_MORE]
     guess = closest(word, similar)
@@ -214,8 +220,9 @@ def _slip(word: str, known: Iterable[str]) -> str | None:
 
 
 def _reword(source: Source, file: PythonFile, wanted: str, what: str) -> Iterator[Proposal]:
-    """Yield edits that undo one difference each between a file and the text that it should have,
-    if there are few.
+    """Yield edits that undo one difference each between a file and its proper text.
+
+    Only if there are few.
     """
     start_of_text = int(source.text.startswith("\ufeff"))
     own_tokens = _TOKEN.findall(source.text[start_of_text:])
@@ -253,8 +260,9 @@ def _missing_in_words(file: PythonFile, offset: int, new: str) -> str:
 
 
 def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
-    """Yield edits that give a key of YAML, or an attribute of XML, a value that the reference
-    has for it.
+    """Yield edits that give a key or an attribute a value of the reference.
+
+    A key of YAML, or an attribute of XML.
     """
     known: dict[str, list[str]] = {}
     for setting in _SETTING.finditer(wanted):
@@ -269,8 +277,9 @@ def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
 
 
 def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
-    """Yield edits that import or correct names that are undefined, or not as they are used; and
-    missing commas.
+    """Yield edits that import or correct names, and missing commas.
+
+    The names are undefined, or not as they are used.
     """
     if file.fault is not None:
         start = file.source.offset(file.fault.location.line, 1)
@@ -381,8 +390,9 @@ def _indent_of(line: str) -> str:
 
 
 def _programs(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
-    """Yield edits that start the program which a check names in place of another one of its
-    package, or the reverse.
+    """Yield edits that start another program of a package.
+
+    The program that a check names takes the place of another one, or the reverse.
     """
     wanted = []
     for text in task.given:
@@ -441,8 +451,9 @@ def _similar(path: str, known: Iterable[str]) -> list[str]:
 
 
 def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
-    """Yield edits with which a launch file finds its files: of all together, then of one path
-    each.
+    """Yield edits with which a launch file finds its files.
+
+    First of all together, then of one path each.
     """
     named = [
         named_reference
@@ -469,8 +480,9 @@ def _paths_changed(edits: Sequence[Edit]) -> Proposal:
 
 
 def _targets(task: PackageTask, purpose: str) -> list[str]:
-    """Return the paths in the package's share folder of the files that it installs for a
-    purpose.
+    """Return the paths of the files that a package installs for a purpose.
+
+    They are in the package's share folder.
     """
     share = f"share/{task.package.name}/"
     return [
@@ -492,8 +504,9 @@ def _edits_of_path(task: PackageTask, source: Source, named: NamedFile) -> list[
 
 
 def _share_edits(name: str, file: PythonFile, actual: str, target: str) -> Iterator[list[Edit]]:
-    """Yield the edits that replace a path of one machine, or relative to the working folder, by the
-    share folder.
+    """Yield the edits that put the share folder into a path.
+
+    It replaces a path of one machine, or relative to the working folder.
 
     The difference to the reference has no answer where the file is built in another way:
     launch-home-path, sensors-launch-home-path.
@@ -531,8 +544,9 @@ def _path_offsets(source: Source) -> Iterator[tuple[int, int]]:
 
 
 def _moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]:
-    """Return the edits of one text each with which a path becomes the wanted one; those nearest
-    to a line first.
+    """Return the edits of one text each with which a path becomes the wanted one.
+
+    Those nearest to a line first.
     """
     distances: dict[Edit, int] = {}  # in lines
     for start, end in islice(_path_offsets(source), _MAX_PIECES):
@@ -561,8 +575,9 @@ def _replacements(piece: str, actual: str, wanted: str) -> Iterator[str]:
 
 
 def _without(source: Source, start: int, end: int) -> Edit:
-    """Return the edit that removes a text, as an argument with its quotes and comma where it is
-    one.
+    """Return the edit that removes a text.
+
+    As an argument with its quotes and comma where it is one.
     """
     text = source.text
     quote = text[start - 1 : start]
@@ -576,8 +591,9 @@ def _without(source: Source, start: int, end: int) -> Edit:
 
 
 def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
-    """Yield edits that add what the file makes and does not use, or entries of the reference's
-    list: one, or all.
+    """Yield edits that add missing entries: one, or all.
+
+    These are what the file makes and does not use, or entries of the reference's list.
 
     A node of a package of which the file has one is not added: that one is wrong.
     """
@@ -644,8 +660,9 @@ def _items(file: PythonFile) -> list[ast.expr]:
 
 
 def _add(file: PythonFile, codes: Sequence[str]) -> Edit | None:
-    """Return the edit that adds code after the last entry, in lines of their own if that has
-    one.
+    """Return the edit that adds code after the last entry.
+
+    The code is in lines of its own if that entry has one.
     """
     entries, actions = _list(file), file.calls("add_action")
     if isinstance(entries, ast.List) and not (actions and not entries.elts):

@@ -21,8 +21,9 @@ _MAX_LAUNCH_FILES = 3
 
 @dataclass(frozen=True)
 class PackageTask:
-    """A package, the one of the reference solution, if there is one, and the texts that are
-    given to checks.
+    """A package, and the texts that are given to checks.
+
+    It also has the one of the reference solution, if there is one.
     """
 
     package: Package
@@ -30,8 +31,9 @@ class PackageTask:
     given: frozenset[str] = field(default=frozenset())
 
     def source(self, path: str | None) -> Source | None:
-        """Return the text of a file of the package as it is; None where there is none that can
-        be read.
+        """Return the text of a file of the package as it is.
+
+        None where there is none that can be read.
         """
         text = _text(self.package, path) if path is not None else None
         if text is not None:
@@ -39,8 +41,9 @@ class PackageTask:
         return None
 
     def file(self, package: Package | None, kind: str) -> str | None:
-        """Return the path of the file of a kind in a package: the one that a check names, else
-        another one.
+        """Return the path of the file of a kind in a package.
+
+        This is the one that a check names, else another one.
         """
         if package is None or kind not in ("launch", "rviz"):
             return kind
@@ -63,8 +66,9 @@ class PackageTask:
         return self.named(text) if text is not None else None
 
     def named(self, text: str) -> str:
-        """Return a text of the reference, or a path in it, with the student's name of the
-        package.
+        """Return a text of the reference with the student's name of the package.
+
+        Or a path in it.
         """
         if self.reference is None or self.reference.name == self.package.name:
             return text
@@ -85,8 +89,9 @@ class PackageTask:
 
 
 def _kind_of(path: str) -> str:
-    """Return the kind of a file: launch, rviz, urdf, setup.py with the files that it needs, or
-    another file itself.
+    """Return the kind of a file.
+
+    This is launch, rviz, urdf, setup.py with the files that it needs, or another file itself.
     """
     if path.endswith((".rviz", ".urdf", ".xacro")):
         return "rviz" if path.endswith(".rviz") else "urdf"
@@ -103,8 +108,9 @@ def _text(package: Package, path: str) -> str | None:
 
 
 def change(edits: Iterable[Edit], cause: str, what: str = "") -> Proposal:
-    """Return a proposal; `what` is the file in which something is wrong, if the cause does not name
-    it.
+    """Return a proposal.
+
+    `what` is the file in which something is wrong, if the cause does not name it.
     """
     return Proposal(tuple(dict.fromkeys(edits)), f"{cause} in {what}" if what else cause)
 
@@ -135,8 +141,9 @@ def _is_named(path: str, name: str, kind: str) -> bool:
 
 
 def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:
-    """Yield edits that give one of these files a name: the one with the most similar name first;
-    xacro stays xacro.
+    """Yield edits that give one of these files a name: the one with the most similar name first.
+
+    Xacro stays xacro.
     """
     spare = {
         posixpath.basename(file): file
@@ -153,8 +160,9 @@ def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> It
 
 
 def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
-    """Yield edits that give the package one name in all its files, for a package that has another
-    or several.
+    """Yield edits that give the package one name in all its files.
+
+    For a package that has another or several.
     """
     manifest, setup = task.package.manifest, task.package.installation
     if manifest is None or manifest.name is None:

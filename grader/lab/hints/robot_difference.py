@@ -1,5 +1,6 @@
-"""The difference between a robot and the reference's, cut into pieces: each is an edit that may
-undo a mistake.
+"""The difference between a robot and the reference's, cut into pieces.
+
+Each is an edit that may undo a mistake.
 """
 
 from collections import Counter
@@ -30,8 +31,9 @@ SIBLING, REFERENCE, OWN, STRUCTURE = range(4)
 
 
 class Piece(NamedTuple):
-    """An edit that may undo a mistake: values to set, edits of the text, or both; what is wrong,
-    and the link.
+    """An edit that may undo a mistake.
+
+    It has values to set, edits of the text, or both; what is wrong, and the link.
 
     The `rank` orders pieces that gain as much. `around` is the element that changes.
     """
@@ -60,8 +62,9 @@ class MissingPart(NamedTuple):
 
 
 class RobotDifference:
-    """A robot beside the reference's: the pieces that lead from one to the other, and what is
-    missing.
+    """A robot beside the reference's.
+
+    It has the pieces that lead from one to the other, and what is missing.
 
     Only `known` names are shown, because the reference has them.
     """
@@ -111,8 +114,9 @@ class RobotDifference:
         link: str = "",
         tag: str = "",
     ) -> Piece:
-        """Return a piece that changes an element, or its child with a tag; {} in the cause stands
-        for its name.
+        """Return a piece that changes an element, or its child with a tag.
+
+        {} in the cause stands for its name.
         """
         cause = cause.replace("{}", self.draft.describe(element, tag, self.known))
         around = element if element.getparent() is self.draft.root else element.getparent()
@@ -141,8 +145,9 @@ class RobotDifference:
         return self.piece(element, cause, edits)._replace(around=parent)
 
     def _materials(self) -> Iterator[Piece]:
-        """Name a material as links use it, or give what a link shows the reference's colour if no
-        material has it.
+        """Name a material as links use it, or give a link the reference's colour.
+
+        The latter for what a link shows if no material has the colour.
         """
         own_materials = {
             material.get("name") or "": material
@@ -246,8 +251,9 @@ class RobotDifference:
             yield from self.each([Set(element, "", name, value) for name, value in values.items()])
 
     def _is_loose(self, element: Element) -> bool:
-        """Return whether an element names a parent of the student's own that no joint holds yet:
-        that is what lacks.
+        """Return whether an element names a parent that no joint holds yet.
+
+        The parent is the student's own, and is what lacks.
         """
         name = element.get("link") or ""
         if element.tag != "parent" or name in self.known or self.draft.link(name) is None:
@@ -255,7 +261,9 @@ class RobotDifference:
         return self.draft.joint_of(name) is None
 
     def _rename(self, element: Element, name: str) -> Iterator[Piece]:
-        """Rename a link with all that names it, or alone; a joint; a material where it is used or
+        """Rename an element.
+
+        A link with all that names it, or alone; a joint; a material where it is used or
         defined.
         """
         tag, old = str(element.tag), element.get("name") or ""
@@ -295,8 +303,9 @@ class RobotDifference:
         )
 
     def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
-        """Add an element to another one: values of an origin or axis, another shape, or the element
-        as it is.
+        """Add an element to another one.
+
+        These are values of an origin or axis, another shape, or the element as it is.
         """
         tag = str(element.tag)
         if tag in ("origin", "axis"):  # one with default values only does not count
@@ -319,8 +328,9 @@ class RobotDifference:
             yield self.piece(parent, "the shape of {}", self.draft.replace(shape, text))
 
     def _text(self, element: Element) -> str:
-        """Return an element of the reference with the robot's names, an undefined material with its
-        colour.
+        """Return an element of the reference with the robot's names.
+
+        An undefined material has its colour.
         """
         renamed = self._names["material" if element.tag == "material" else "joint"]
         text = self.reference.text(element)
@@ -336,8 +346,9 @@ class RobotDifference:
 
 
 def _identities(element: Element) -> list[tuple[str, str, str]]:
-    """Return what no other child of the robot with this tag may have: its name, and the link that
-    it moves.
+    """Return what no other child of the robot with this tag may have.
+
+    This is its name, and the link that it moves.
     """
     texts = (("name", element.get("name") or ""), ("child", end_of(element, "child")))
     return [(str(element.tag), what, text) for what, text in texts if text]
@@ -376,8 +387,9 @@ def _unique(pieces: Iterable[Piece]) -> list[Piece]:
 
 
 def normal(tag: str, attribute: str, text: str | None) -> str:
-    """Return a value as it is compared: numbers without needless digits, the default where there is
-    none.
+    """Return a value as it is compared.
+
+    Numbers have no needless digits, and the default stands where there is none.
     """
     known = TAGS[tag].attributes.get(attribute) if tag in TAGS else None
     if text is None:
@@ -390,8 +402,9 @@ def normal(tag: str, attribute: str, text: str | None) -> str:
 
 
 def _wanted_value(step: Step) -> str | None:
-    """Return the value that a step sets: that of the reference, else the default; None if there is
-    none.
+    """Return the value that a step sets: that of the reference, else the default.
+
+    None if there is none.
     """
     if step.verb == "set" and step.like is not None:
         return step.like.values[step.name]
@@ -474,8 +487,9 @@ def _values_of_one(steps_in_order: Iterable[Step]) -> Iterator[list[Step]]:
 
 
 def _rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
-    """Return what gives a link another name, also where joints name it; nothing where several have
-    the old one.
+    """Return what gives a link another name, also where joints name it.
+
+    Nothing where several have the old one.
     """
     links = [link for link in draft.links() if link.get("name") == old]
     if len(links) != 1:

@@ -38,8 +38,9 @@ _COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
 
 
 class Set(NamedTuple):
-    """A new value of an attribute: of an element, or, with a tag, of its child of this tag,
-    which may be missing.
+    """A new value of an attribute of an element.
+
+    Or, with a tag, of its child of this tag, which may be missing.
     """
 
     owner: Element
@@ -56,8 +57,9 @@ class Set(NamedTuple):
 
 
 class Draft:
-    """A robot that is being edited: its elements, what they are called, and the edits of their
-    text.
+    """A robot that is being edited.
+
+    It has its elements, what they are called, and the edits of their text.
     """
 
     def __init__(self, root: Element, robot: Robot, source: Source) -> None:
@@ -106,8 +108,9 @@ class Draft:
         return {end_of(joint, "child"): joint for joint in reversed(list(self.joints()))}
 
     def material(self, name: str) -> Element | None:
-        """Return the first definition of a material that counts: under the robot, else in a
-        visual.
+        """Return the first definition of a material that counts.
+
+        It is under the robot, else in a visual.
         """
         return self._materials.get(name)
 
@@ -124,16 +127,18 @@ class Draft:
         return materials
 
     def owner(self, element: Element) -> Element:
-        """Return the child of the root that an element is or is in; the root itself for the
-        root.
+        """Return the child of the root that an element is or is in.
+
+        The root itself for the root.
         """
         while (parent := element.getparent()) is not None and parent is not self.root:
             element = parent
         return element
 
     def link_of(self, element: Element) -> str:
-        """Return the link that an element belongs to: of a joint its child; empty for a
-        material.
+        """Return the link that an element belongs to: of a joint its child.
+
+        Empty for a material.
         """
         owner = self.owner(element)
         if owner.tag == "joint":
@@ -143,8 +148,9 @@ class Draft:
         return ""
 
     def describe(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
-        """Return what an element, or its child with a tag, is called: the visual origin of
-        'lidar', if `known`.
+        """Return what an element, or its child with a tag, is called.
+
+        An example is the visual origin of 'lidar', if `known`.
         """
         owner, path = self.owner(element), [tag] if tag else []
         inner = element
@@ -175,8 +181,9 @@ class Draft:
 
     @cached_property
     def _expanded(self) -> "ExpandedEdits | None":
-        """The edits of the source if xacro expanded it: an element is not written there as it is
-        read.
+        """The edits of the source if xacro expanded it.
+
+        An element is not written there as it is read.
         """
         if not self.source.is_expanded:
             return None
@@ -216,9 +223,7 @@ class Draft:
         return values
 
     def shared(self, sets: Iterable[Set]) -> frozenset[str]:
-        """Return the links whose elements come from the same text of xacro as those that are
-        set.
-        """
+        """Return the links whose elements share a text of xacro with those that are set."""
         if self._expanded is None:
             return frozenset()
         links: set[str] = set()
@@ -290,8 +295,9 @@ class Draft:
     def _ways_of(
         self, element: Element, attribute: str, value: str, others: Mapping[Element, str]
     ) -> list[Edits]:
-        """Return the ways to give an attribute another text, and elements that come from the same
-        text others.
+        """Return the ways to give an attribute another text.
+
+        And elements that come from the same text others.
         """
         tag = self._tags[element]
         wanted = {tag: (element.get(attribute) or "", escaped(value))}
@@ -306,8 +312,9 @@ class Draft:
         return [(with_attribute(source, start, attribute, escaped(value)),)]
 
     def exchange(self, *elements: Element, attribute: str) -> Edits:
-        """Return the edits with which two elements have the text of an attribute of each other, as
-        it is written.
+        """Return the edits with which two elements exchange the text of an attribute.
+
+        The text stays as it is written.
         """
         places = [self.source.element(self._tags[element]) for element in elements]
         texts = []
@@ -323,8 +330,9 @@ class Draft:
         )
 
     def write_text(self, element: Element, text: str) -> Edits:
-        """Return the edit that gives an element another text; none where it has children, or xacro
-        evaluates it.
+        """Return the edit that gives an element another text.
+
+        None where it has children, or xacro evaluates it.
         """
         tag = self._tags[element]
         wanted = {tag: ((element.text or "").strip(), escaped(text))}

@@ -76,8 +76,9 @@ def _first_parts(draft: Draft, link: str) -> dict[str, Element]:
 
 
 def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
-    """Yield the numbers of the link at the other side, mirrored, where the student builds both
-    unlike the reference.
+    """Yield the numbers of the link at the other side, mirrored.
+
+    Only where the student builds both unlike the reference.
     """
     for link in links:
         other_link = _other_side(link)
@@ -98,8 +99,9 @@ def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[P
 def _mirror_numbers(
     difference: RobotDifference, other: Element, like: Element | None, known: Sequence[Element]
 ) -> Iterator[Piece]:
-    """Yield the mirrored numbers of another element that are not `known`: those of its own
-    element, which is first.
+    """Yield the mirrored numbers of another element that are not `known`.
+
+    Those of its own element, which is first.
     """
     tag = str(other.tag)
     for name, attribute in TAGS[tag].attributes.items():
@@ -163,8 +165,9 @@ def _exchange_of_two(difference: RobotDifference, element: Element) -> Iterator[
 
 
 def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> Iterator[Piece]:
-    """Yield the numbers that an attribute may be meant to have, where it is written, else those
-    that xacro computes it from.
+    """Yield the numbers that an attribute may be meant to have, where it is written.
+
+    Else those that xacro computes it from.
     """
     unit = TAGS[str(element.tag)].attributes[name].unit
     least = 0.0 if unit == "m" and element.tag != "origin" else -inf  # of a size
@@ -198,8 +201,9 @@ def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> 
 
 
 def _may_be_meant(old: float, new: float, coordinates: Values) -> bool:
-    """Return whether a number of xacro may be another one: 1 and -1 are the sides, and a length
-    stays positive.
+    """Return whether a number of xacro may be another one.
+
+    1 and -1 are the sides, and a length stays positive.
     """
     if abs(old) == 1.0:
         return new == -old
@@ -207,8 +211,9 @@ def _may_be_meant(old: float, new: float, coordinates: Values) -> bool:
 
 
 def reversed_joints(difference: RobotDifference) -> list[Element]:
-    """Return the joints whose parent should be below their child: in the reference, the child is
-    above the parent.
+    """Return the joints whose parent should be below their child.
+
+    In the reference, the child is above the parent.
     """
     parents: dict[str, str] = {}
     for joint in difference.reference.joints():
@@ -228,8 +233,9 @@ def reversed_joints(difference: RobotDifference) -> list[Element]:
 
 
 def exchanges(difference: RobotDifference) -> list[Piece]:
-    """Return what exchanges parent and child of reversed joints, and the children of two joints
-    of both sides.
+    """Return what exchanges the ends of joints.
+
+    Parent and child of reversed joints, and the children of two joints of both sides.
     """
     pieces: list[Piece] = []
     for joint in reversed_joints(difference):
@@ -263,8 +269,9 @@ def _other_side(link: str) -> str:
 def leveled_supports(
     difference: RobotDifference, links: Sequence[str], base: str
 ) -> Iterator[Piece]:
-    """Yield the height at which the support that is above or below the others is level with
-    them.
+    """Yield the height at which a support is level with the others.
+
+    It is above or below them.
     """
     robot = Configuration(difference.draft.robot)
     try:
@@ -284,8 +291,9 @@ def leveled_supports(
 
 
 def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
-    """Yield all lengths in metres, for a robot of which they are all in centimetres or
-    millimetres.
+    """Yield all lengths in metres.
+
+    For a robot of which they are all in centimetres or millimetres.
     """
     lengths: list[tuple[Element, str, Values]] = []
     is_large = False
@@ -308,8 +316,9 @@ def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
 
 
 def whole_links(difference: RobotDifference) -> Iterator[Piece]:
-    """Yield where each link and what it shows are, also with what it carries; and all its
-    values.
+    """Yield where each link and what it shows are, and all its values.
+
+    Where they are, also with what it carries.
     """
     links: dict[str, list[Set]] = {}
     for piece in difference.pieces:
@@ -350,8 +359,9 @@ def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -
 
 
 def whole_elements(difference: RobotDifference) -> Iterator[Piece]:
-    """Yield the changes in one element together, and in one child of the robot; of links and joints
-    no values.
+    """Yield the changes in one element together, and in one child of the robot.
+
+    Of links and joints no values.
     """
     draft = difference.draft
     for is_owner in (False, True):

@@ -1,5 +1,6 @@
-"""Search the edits that make failed criteria pass: each is graded alone, and with those that were
-found before it.
+"""Search the edits that make failed criteria pass.
+
+Each is graded alone, and with those that were found before it.
 
 A `Piece` is what one mistake needs, with its words; a `Proposal` is one way to write it into the
 files; what grading proves becomes a `FoundHint`, and in a report a `Hint`. All of them together are
@@ -50,8 +51,9 @@ class _NoTrialsLeft(Exception):
 
 
 class Trials:
-    """Grades edited submissions. The budget counts gradings, so that it is the same on every
-    machine.
+    """Grades edited submissions.
+
+    The budget counts gradings, so that it is the same on every machine.
     """
 
     def __init__(self, rubric: Rubric, submission: Submission, results: _Results) -> None:
@@ -69,8 +71,9 @@ class Trials:
 
     @contextmanager
     def isolated(self) -> Iterator[None]:
-        """Record a fault of the grader in one generator or one step: it must not cost the hints
-        of the others.
+        """Record a fault of the grader in one generator or one step.
+
+        It must not cost the hints of the others.
         """
         try:
             yield
@@ -82,8 +85,9 @@ class Trials:
     def graded(
         self, edits: Edits, wanted: Collection[str] | _Results, *, whole: bool = False
     ) -> _Results:
-        """Return the results of criteria with edits, none where these do not fit, or ROS 2 would
-        reject or drop more.
+        """Return the results of criteria with edits.
+
+        None where these do not fit, or ROS 2 would reject or drop more.
 
         With the results that criteria had, there are none where one is worse now.
         `whole` reads the submission from scratch. Raises NoTrialsLeft.
@@ -106,8 +110,9 @@ class Trials:
         return results
 
     def is_of_reference(self, path: str) -> bool:
-        """Return whether a file of the robot is the same in the reference, so that the mistake
-        is in another one.
+        """Return whether a file of the robot is the same in the reference.
+
+        The mistake then is in another one.
         """
         if not path.endswith(ROBOT_ENDINGS):
             return False
@@ -123,8 +128,9 @@ class Trials:
         return self._is_of_reference[path]
 
     def edited(self, edits: Edits, *, whole: bool = False) -> Submission | None:
-        """Return the submission with edits; None where they do not fit. What was tried is proven
-        next: it is kept.
+        """Return the submission with edits; None where they do not fit.
+
+        What was tried is proven next: it is kept.
         """
         key = edits, whole
         if key not in self._edited:
@@ -148,8 +154,9 @@ class Trials:
 
 
 def _has_new_problems(before: Submission, after: Submission) -> bool:
-    """Return whether ROS 2 loads the URDF, with a kind of problem that it had not before: no
-    edit may make it worse.
+    """Return whether ROS 2 loads the URDF with a new kind of problem.
+
+    It did not have it before: no edit may make it worse.
     """
     if not isinstance(before.urdf, Read) or not isinstance(after.urdf, Read):
         return False
@@ -170,8 +177,9 @@ def _has_new_problems(before: Submission, after: Submission) -> bool:
 
 
 def _has_new_build_errors(before: Submission, after: Submission) -> bool:
-    """Return whether a build of the package stops for another reason than before, also where it
-    fails in both: an edit of a name must not leave the folder of its module.
+    """Return whether a build of the package stops for another reason than before.
+
+    Also where it fails in both: an edit of a name must not leave the folder of its module.
     """
     if before.package is None or after.package is None:
         return False
@@ -195,24 +203,27 @@ def _repeated(urdf: Read) -> set[tuple[str, str]]:
 
 
 def _is_assumed(submission: Submission) -> bool:
-    """Return whether ROS 2 rejects the URDF, and it is read with words undone: criteria may pass
-    by them.
+    """Return whether ROS 2 rejects the URDF, and it is read with words undone.
+
+    Criteria may pass by them.
     """
     reading = submission.urdf.loaded if isinstance(submission.urdf, Read) else None
     return reading is not None and reading.verdict == "rejected" and reading.is_meant
 
 
 def _is_of_robot(path: str, submission: Submission) -> bool:
-    """Return whether a file is the URDF or one that its xacro reads, and not one that the
-    package's checks read.
+    """Return whether a file is the URDF or one that its xacro reads.
+
+    It is not one that the package's checks read.
     """
     is_robot = path.lower().endswith((".urdf", ".xacro")) and path in submission.whole_tree.files
     return is_robot or path == submission.path
 
 
 def is_worse(before: Result, after: Result) -> bool:
-    """Return whether a criterion no longer passes, has fewer points, or is undecided now; never
-    an adjusted one.
+    """Return whether a criterion no longer passes, has fewer points, or is undecided now.
+
+    Never an adjusted one.
     """
     was, status = before.outcome.status, after.outcome.status
     if after.is_adjusted:
@@ -252,8 +263,9 @@ def judged_results(report: Report) -> dict[str, Result]:
 
 
 def hints_on_slips(meant: Meant | None) -> list[FoundHint]:
-    """Return the hints that correct slips: each gives its criterion the points, unless that fails
-    all the same.
+    """Return the hints that correct slips.
+
+    Each gives its criterion the points, unless that fails all the same.
     """
     if meant is None:
         return []
@@ -282,8 +294,9 @@ class _Tried(NamedTuple):
 
 
 class _Proof(NamedTuple):
-    """What a proposal gains, as a hint says it, and together with all edits before it; and the
-    results then.
+    """What a proposal gains, and the results then.
+
+    As a hint says it, and together with all edits before it.
     """
 
     proposal: Proposal
@@ -300,8 +313,9 @@ def _is_reverse(one: Proposal, other: Proposal) -> bool:
 
 
 def _leave_out(groups: Sequence[Edits], is_enough: Callable[[Edits], bool]) -> tuple[Edits, ...]:
-    """Return the groups of edits without those that are not needed: the last ones are dropped
-    first, because the first gain most. Without trials, the rest stay.
+    """Return the groups of edits without those that are not needed.
+
+    The last ones are dropped first, because the first gain most. Without trials, the rest stay.
     """
     kept = tuple(groups)
     with suppress(_NoTrialsLeft):
@@ -313,8 +327,9 @@ def _leave_out(groups: Sequence[Edits], is_enough: Callable[[Edits], bool]) -> t
 
 
 class HintSearch:
-    """The search for one submission: `found` are proven edits that fit together, `edits` are
-    those of all.
+    """The search for one submission.
+
+    `found` are proven edits that fit together, `edits` are those of all.
     """
 
     def __init__(
@@ -325,8 +340,9 @@ class HintSearch:
         told: Collection[str] = (),
         slips: Sequence[FoundHint] = (),
     ) -> None:
-        """`reference` is the robot of the rubric's solution, `package` returns its package of a
-        name.
+        """Take the robot of the rubric's solution, `reference`.
+
+        `package` returns its package of a name.
 
         No edit is searched for the criteria that are `told`. The results of the trials are those
         with the edits of `slips`, which are found already.
@@ -516,8 +532,9 @@ class HintSearch:
         return True
 
     def _weight(self, name: str) -> tuple[bool, bool, Decimal]:
-        """Return how well a criterion shows a hint: one that is not skipped, that the URDF
-        loads, the costliest.
+        """Return how well a criterion shows a hint.
+
+        Best is one that is not skipped, that the URDF loads, and the costliest.
         """
         criterion = self._criteria[name]
         return (
@@ -527,8 +544,9 @@ class HintSearch:
         )
 
     def _proof_of(self, proposal: Proposal, wanted: frozenset[str]) -> _Proof | None:
-        """Return what edits gain alone, or else after the edits before them; None if they lose
-        anything.
+        """Return what edits gain alone, or else after the edits before them.
+
+        None if they lose anything.
         """
         edits = tuple(edit for edit in proposal.edits if edit not in self.edits)
         together, after = self._gains(self.edits, edits, self.results)
@@ -553,8 +571,9 @@ class HintSearch:
     def _needed(
         self, edits: Edits, gains: dict[str, Decimal], after: _Results
     ) -> tuple[Edits, dict[str, Decimal], _Results]:
-        """Leave out changes of values without which the others gain as much; return the rest
-        with what it gains.
+        """Leave out changes of values without which the others gain as much.
+
+        Return the rest with what it gains.
         """
         for edit in [named_edit for named_edit in edits if named_edit.old and named_edit.new]:
             rest = tuple(other for other in edits if other is not edit)
@@ -604,8 +623,9 @@ class HintSearch:
         return None
 
     def _is_half(self, best: _Tried, after: _Results) -> bool:
-        """Return whether an edit leaves what it should correct as well: in another call of a
-        macro, or of its link.
+        """Return whether an edit leaves what it should correct as well.
+
+        It is left in another call of a macro, or of its link.
         """
         lost = [self._criteria[name] for name, result in after.items() if result.is_lost]
         passing = [self._criteria[name] for name in best.passes]
@@ -621,8 +641,9 @@ class HintSearch:
     def _gains(
         self, before: Edits, edits: Edits, against: _Results
     ) -> tuple[dict[str, Decimal], _Results]:
-        """Return what edits gain, with the results; nothing where a criterion is worse with
-        them.
+        """Return what edits gain, with the results.
+
+        Nothing where a criterion is worse with them.
         """
         after = self.trials.graded((*before, *edits), against)
         return gains_of(against, after), after

@@ -13,8 +13,10 @@ _ORDER = {"add": 1, "remove": 2}  # of the steps, after all that set values
 
 
 class Node(NamedTuple):
-    """A node of a tree: its tag, what it is recognised by (the most reliable first), its values,
-    and its children.
+    """A node of a tree.
+
+    It has its tag, what it is recognised by (the most reliable first), its values, and its
+    children.
 
     `of` is what the node is made from: an element, or a place in a file.
     """
@@ -33,8 +35,9 @@ class Node(NamedTuple):
 
 
 class Step(NamedTuple):
-    """One step from a tree to another: what happens to `own`, a node of the first tree, as in
-    `like` of the other one.
+    """One step from a tree to another.
+
+    What happens to `own`, a node of the first tree, as in `like` of the other one.
 
     set: the value `name` becomes that of `like`. unset: it goes. rename: it is called `other`.
     retag: the node gets the tag of `like`. add: `like` is added to `own`. remove: `own` goes. move:
@@ -50,8 +53,9 @@ class Step(NamedTuple):
 
 
 class _Pairs(NamedTuple):
-    """Two lists of nodes: those that belong together, those of the first alone, and those of the
-    second alone.
+    """Two lists of nodes, paired.
+
+    Those that belong together, those of the first alone, and those of the second alone.
     """
 
     both: list[tuple[Node, Node]]
@@ -60,8 +64,9 @@ class _Pairs(NamedTuple):
 
 
 def steps(own_node: Node, like: Node) -> list[Step]:
-    """Return the steps from a tree to another: what is to move, the values, then what is to be
-    added and removed.
+    """Return the steps from a tree to another.
+
+    What is to move, the values, then what is to be added and removed.
     """
     every_step = [*_steps(own_node, like)]
     spare = [step.own for step in every_step if step.verb == "remove"]
@@ -111,8 +116,9 @@ def _values(own_node: Node, like: Node) -> Iterator[Step]:
 
 
 def paired(own_nodes: Sequence[Node], like: Sequence[Node]) -> _Pairs:
-    """Pair nodes: by tag and all keys, then by each key, then by tag and likeness, then by similar
-    tags.
+    """Pair nodes.
+
+    By tag and all keys, then by each key, then by tag and likeness, then by similar tags.
     """
     pairing = _Pairing(own_nodes, like)
     depth = max((len(node.keys) for node in (*own_nodes, *like)), default=0)
@@ -162,8 +168,9 @@ class _Pairing:
 
 
 def _likeness(one: Node, other: Node) -> float:
-    """Return how alike two nodes are: the share of their values and of the tags in them that both
-    have.
+    """Return how alike two nodes are.
+
+    This is the share of their values and of the tags in them that both have.
     """
     mine, its = _content(one), _content(other)
     return len(mine & its) / max(len(mine | its), 1)

@@ -1,5 +1,6 @@
-"""Model answers: those in a rubric, and those in a separate file, so that students can have the
-rubric.
+"""Model answers: those in a rubric, and those in a separate file.
+
+With a separate file students can have the rubric.
 """
 
 from collections.abc import Mapping
@@ -61,8 +62,9 @@ def missing_answers(rubric: Rubric) -> str:
 
 
 def _with_answers(rubric: Rubric, answers: Mapping[str, str]) -> Rubric:
-    """Return the rubric with these model answers, by the ids of their criteria, in addition to its
-    own.
+    """Return the rubric with these model answers in addition to its own.
+
+    They are given by the ids of their criteria.
     """
     criteria = (row._replace(answer=answers.get(row.id, row.answer)) for row in rubric.criteria)
     return replace(rubric, criteria=tuple(criteria))

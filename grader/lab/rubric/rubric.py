@@ -1,5 +1,6 @@
-"""A rubric: the facts that are checked, and their points. It is loaded strictly: all mistakes are
-reported at once.
+"""A rubric: the facts that are checked, and their points.
+
+It is loaded strictly: all mistakes are reported at once.
 """
 
 from collections import Counter
@@ -50,8 +51,9 @@ _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
 
 
 class ReferenceSolution:
-    """A rubric's own solution; no more is read than is needed. Properties raise InputError where it
-    cannot be read.
+    """A rubric's own solution; no more is read than is needed.
+
+    Properties raise InputError where it cannot be read.
     """
 
     def __init__(self, path: Path, lab: Lab, error: Callable[[str], InputError]) -> None:
@@ -280,8 +282,9 @@ def load_rubric(name: str | Path) -> Rubric:
 
 
 def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
-    """Return the rubric in the bytes of a file, with or without the model answers in it; raise
-    RubricError.
+    """Return the rubric in the bytes of a file, with or without the model answers in it.
+
+    Raise RubricError.
     """
     valid = _validate(data, path)
     return _made_rubric(valid, data, path, range(len(valid.criteria)), answers=answers)
@@ -341,14 +344,16 @@ def _validate(data: bytes, path: Path) -> Validation:
 
 
 def unknown_causes(rubric: Rubric) -> list[tuple[TomlPath, str]]:
-    """Return the places of `carried` tables that name criteria which do not exist, and the names:
-    they are ignored.
+    """Return the places of `carried` tables that name unknown criteria, and the names.
+
+    They are ignored.
     """
     return Validation(read_toml(rubric.data, rubric.path)[1]).unknown_causes
 
 
 def read_correct_rows(data: bytes, path: Path) -> Rubric | None:
-    """Return a rubric without the criteria in which there are mistakes, and without its totals;
+    """Return a rubric without the criteria in which there are mistakes, and without its totals.
+
     None if there are other mistakes in it.
     """
     table = read_toml(data, path)[1]

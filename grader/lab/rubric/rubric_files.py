@@ -13,8 +13,9 @@ DEFAULT_RUBRIC = "lab6"  # of the command line
 
 
 def files_of(name: str, answers: Path | None = None) -> list[Path]:
-    """Return the files and folders that a rubric is read from: its own file, its model answers, its
-    reference.
+    """Return the files and folders that a rubric is read from.
+
+    Its own file, its model answers, its reference.
 
     It is only its own file if there is a mistake in it. Of a reference in the rubric's own folder
     it is only the URDF.
@@ -37,8 +38,9 @@ def files_of(name: str, answers: Path | None = None) -> list[Path]:
 
 
 def load_named(name: str, answers: Path | None = None) -> "Rubric":
-    """Return a rubric, with model answers if their file is named. Raises RubricError or
-    InputError.
+    """Return a rubric, with model answers if their file is named.
+
+    Raises RubricError or InputError.
     """
     if answers is None:
         from grader.lab.rubric.rubric import load_rubric

@@ -1,5 +1,6 @@
-"""A submission with edits: the changed texts of its files, and the submission read again with
-them.
+"""A submission with edits.
+
+It has the changed texts of its files, and the submission read again with them.
 """
 
 from collections.abc import Iterable, Mapping
@@ -45,8 +46,9 @@ def content(submission: Submission, path: str) -> bytes | None:
 
 
 def with_urdf(submission: Submission, files: _Files) -> Submission:
-    """Return a submission with only the URDF read again: for edits of the URDF and of xacro that it
-    includes.
+    """Return a submission with only the URDF read again.
+
+    For edits of the URDF and of xacro that it includes.
     """
     urdf = submission.urdf
     assert isinstance(urdf, Read)

@@ -151,8 +151,9 @@ class LabFolders:
         return folders
 
     def is_beside_archive(self, path: str) -> bool:
-        """Return whether a file of no lab, or a folder around it, is beside an archive of this lab
-        and no other lab.
+        """Return whether a file of no lab is beside an archive of this lab and no other.
+
+        Or a folder around it.
         """
         if self.belonging(path) is not Belonging.NO_LAB:
             return False
@@ -229,8 +230,9 @@ def lab_words(name: str) -> tuple[str, ...]:
 
 
 def is_part(name: str, lab: Collection[str] = ()) -> bool:
-    """Return whether a folder's name is that of a part or version of a submission. `lab` are words
-    to ignore.
+    """Return whether a folder's name is that of a part or version of a submission.
+
+    `lab` are words to ignore.
     """
     words = [word for word in lab_words(name) if word not in lab]
     return (
@@ -241,8 +243,9 @@ def is_part(name: str, lab: Collection[str] = ()) -> bool:
 
 
 def _join_words(words: Sequence[str]) -> str:
-    """Return words without spaces, but a point between numbers: lab6, and lab6.2 of Lab6 (2), which
-    is not lab 62.
+    """Return words without spaces, but a point between numbers.
+
+    For example lab6, and lab6.2 of Lab6 (2), which is not lab 62.
     """
     return _NUMBER_BORDER.sub(".", " ".join(words)).replace(" ", "")
 

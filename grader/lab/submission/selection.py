@@ -1,5 +1,6 @@
-"""What of a submission is graded: where its lab is searched, and which URDF and package of these
-files, and why.
+"""What of a submission is graded.
+
+Where its lab is searched, and which URDF and package of these files, and why.
 """
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -43,8 +44,9 @@ _ELSEWHERE = {
 
 
 class UrdfChoice(NamedTuple):
-    """The path of the URDF that is graded, if there is one, the other candidates, and which of
-    these fit as well.
+    """The path of the URDF that is graded, if there is one.
+
+    And the other candidates, and which of these fit as well.
     """
 
     path: str | None
@@ -53,8 +55,9 @@ class UrdfChoice(NamedTuple):
     reading: "_ReadCandidate | None" = None  # among several candidates
 
     def read_in(self, surroundings: Surroundings) -> tuple[Read, Budget] | None:
-        """Return the URDF as it was read among several candidates, if it is read alike in these
-        surroundings.
+        """Return the URDF as it was read among several candidates.
+
+        Only if it is read alike in these surroundings.
         """
         if self.reading is None or self.reading.read is None:
             return None
@@ -69,8 +72,9 @@ class UrdfChoice(NamedTuple):
 
 
 class _ReadCandidate(NamedTuple):
-    """A candidate as it was read. Its links are those that the lab names; all if it `is_another` or
-    there are none.
+    """A candidate as it was read.
+
+    Its links are those that the lab names; all if it `is_another` or there are none.
     """
 
     surroundings: Surroundings
@@ -138,8 +142,9 @@ def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
 def _only_package(
     packages: tuple[Package, ...], lab: Lab, around_urdf: Package | None
 ) -> Package | None:
-    """Return the package of a lab that names one, or none: that around the URDF, unless another
-    one has the name.
+    """Return the package of a lab that names one, or none.
+
+    This is that around the URDF, unless another one has the name.
     """
     named = best_named(packages, lab.package)
     if around_urdf is None:
@@ -152,8 +157,9 @@ def _only_package(
 def _several_packages(
     packages: Sequence[Package], lab: Lab, around: Package | None
 ) -> dict[str, Package]:
-    """Return the packages of a lab that names several, by these names; that of the robot counts for
-    a missing one.
+    """Return the packages of a lab that names several, by these names.
+
+    That of the robot counts for a missing one.
     """
     named = packages_named(packages, lab.packages)
     missing = [name for name in lab.packages if name not in named]
@@ -205,8 +211,9 @@ class _SearchedPlaces(NamedTuple):
         return _part_of(tree, lambda path: self.place_of(path) in places)
 
     def own(self, tree: Tree) -> Tree:
-        """Return the files in the folders of this lab, and those beside its archives: documents may
-        be there.
+        """Return the files in the folders of this lab, and those beside its archives.
+
+        Documents may be there.
         """
         return _part_of(
             tree,
@@ -223,8 +230,9 @@ def _part_of(tree: Tree, belongs: Callable[[str], bool]) -> Tree:
 
 
 def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
-    """Return where a lab is searched in the files of a submission, and which of its robots is
-    graded.
+    """Return where a lab is searched in a submission, and which robot is graded.
+
+    It is searched in the files, and the robot is one of them.
 
     Another lab's folder is searched only if its robot is graded, or if there is nothing else. Where
     the lab's folder exists, no robot of a final project is graded.
@@ -328,8 +336,9 @@ def _why_no_package(
 
 
 def _other_lab(tree: Tree, labs: LabFolders, urdf: str | None, roots: Sequence[str]) -> str:
-    """Return the folder of another lab that is searched: that of the URDF; without one, if there is
-    nothing else.
+    """Return the folder of another lab that is searched: that of the URDF.
+
+    Without one, if there is nothing else.
     """
     if urdf is not None:
         if labs.belonging(urdf) is Belonging.OTHER_LAB:
@@ -343,8 +352,9 @@ def _other_lab(tree: Tree, labs: LabFolders, urdf: str | None, roots: Sequence[s
 
 
 class _Tier(IntEnum):
-    """How well a file matches the path that a rubric gives, such as urdf/my_robot.urdf; the best
-    first.
+    """How well a file matches the path that a rubric gives.
+
+    Such a path is urdf/my_robot.urdf. The best comes first.
     """
 
     EXACT = 0  # a/urdf/my_robot.urdf
@@ -399,8 +409,9 @@ class UrdfSearch(NamedTuple):
     packages: tuple[Package, ...]
 
     def choose(self, robots: Sequence[RobotFile]) -> UrdfChoice:
-        """Return which of the robots is graded. Only if there are several, they and launch files
-        are read.
+        """Return which of the robots is graded.
+
+        Only if there are several, they and launch files are read.
         """
         copies = []
         for path in self.tree.generated:
@@ -472,8 +483,9 @@ class UrdfSearch(NamedTuple):
         )
 
     def _readings(self, robots: Sequence[RobotFile]) -> dict[str, _ReadCandidate]:
-        """Return each robot as it is read, expanded by xacro, by its path; of very many only the
-        first are read.
+        """Return each robot as it is read, expanded by xacro, by its path.
+
+        Of very many only the first are read.
         """
         lab, opening = self.lab, self.opening
         bytes_left, parts_left = _MAX_READ, READING
@@ -518,8 +530,9 @@ def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) ->
 
 
 def _may_be_meant(best: _Candidate, other: _Candidate, lab: Lab) -> bool:
-    """Return whether another robot may be meant as well: one in another package, or loose, perhaps
-    of a teammate.
+    """Return whether another robot may be meant as well.
+
+    It is in another package, or loose, perhaps of a teammate.
     """
     if other.is_another or other.is_fragment or other.is_part or other.is_backup:
         return False
