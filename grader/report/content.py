@@ -1,5 +1,6 @@
-"""The content of a report, for every format to lay out: the order of its criteria, and what it says
-of the submission.
+"""The content of a report, for every format to lay out.
+
+It has the order of its criteria, and what it says of the submission.
 
 People read a report from the top: what to fix comes first, what is fine last. All of it is
 printable text.
@@ -52,8 +53,9 @@ _MAX_LISTED = 12
 
 
 class ReportSections(NamedTuple):
-    """A report, except for the criteria that passed and have no remark, in the order in which a
-    student needs it.
+    """A report in the order in which a student needs it.
+
+    Criteria that passed and have no remark are left out.
     """
 
     mistakes: tuple[
@@ -105,8 +107,9 @@ class ReportSections(NamedTuple):
 
 
 def report_sections(report: Report, *, everything: bool = False) -> ReportSections:
-    """Return the description of a report; with `everything` the rubric's feedback where there is
-    a hint, too.
+    """Return the description of a report.
+
+    With `everything` it has the rubric's feedback where there is a hint, too.
     """
     if report.is_bare:
         return ReportSections((), (), (), (), (), ())
@@ -165,8 +168,9 @@ def _remarks(others: Sequence[Entry], adjusted: Sequence[Entry]) -> Iterator[Sec
 
 
 def _skipped_alone(cause: str, some: Sequence[Entry]) -> Entry:
-    """Return the entry of criteria that are skipped although no mistake says so: a mark may
-    override their cause.
+    """Return the entry of criteria that are skipped although no mistake says so.
+
+    A mark may override their cause.
     """
     if cause:
         why = f"Skipped because {cause} failed."
@@ -177,8 +181,9 @@ def _skipped_alone(cause: str, some: Sequence[Entry]) -> Entry:
 
 
 def _building_order(entry: Entry) -> tuple[int, bool, int]:
-    """Return the rank of what is not built yet: criteria about one thing first, those with a
-    hint, as in the rubric.
+    """Return the rank of what is not built yet.
+
+    Criteria about one thing come first, those with a hint, as in the rubric.
     """
     return (
         len(entry.result.outcome.absent),
@@ -202,8 +207,9 @@ def _missing_lines(report: Report, results: Sequence[Result]) -> Iterator[Line]:
 
 
 def _pictures_to_add(report: Report, results: Sequence[Result]) -> list[str]:
-    """Return names for the pictures that are missing as evidence, and are not wanted by criteria
-    with these results.
+    """Return names for the pictures that are missing as evidence.
+
+    Criteria with these results do not want them.
     """
     wanted = {result.outcome.expected for result in results}
     evidence = [
@@ -262,8 +268,9 @@ def entries(report: Report, *, everything: bool = False) -> Mapping[str, Entry]:
 
 
 def failures(report: Report) -> tuple[Entry, ...]:
-    """Return the criteria that failed or lost points, without blocks; those that one edit fixes
-    follow each other.
+    """Return the criteria that failed or lost points, without blocks.
+
+    Those that one edit fixes follow each other.
 
     What keeps ROS 2 from loading the file comes first, then the costliest mistake; what is carried
     forward comes last. Equals are in the rubric's order.
@@ -291,8 +298,9 @@ def failures(report: Report) -> tuple[Entry, ...]:
 
 
 def _shared_edit(failure: Entry) -> str:
-    """Return what failures have in common that one edit fixes, or else what is said of them; a
-    mark stands alone.
+    """Return what failures have in common that one edit fixes.
+
+    Or else what is said of them. A mark stands alone.
     """
     result, outcome = failure.result, failure.result.outcome
     if result.why_given or result.manual_mark is not None:
@@ -303,8 +311,9 @@ def _shared_edit(failure: Entry) -> str:
 
 
 def _fixed_together(some: tuple[Entry, ...]) -> tuple[Entry, ...]:
-    """Return failures that one edit fixes: the one that shows the hint first, then those of the
-    file, the costliest.
+    """Return failures that one edit fixes.
+
+    The one that shows the hint comes first, then those of the file, the costliest.
     """
 
     def rank(failure: Entry) -> tuple[bool, bool, Decimal]:
@@ -326,8 +335,9 @@ def _join_equal(entries: Iterable[Entry]) -> Iterator[Entry]:
 
 
 def _reason_to_join(entry: Entry) -> str:
-    """Return why a criterion could not be graded; of others, and of those with an answer or a
-    comment, the id.
+    """Return why a criterion could not be graded.
+
+    Of others, and of those with an answer or a comment, the id.
     """
     outcome, has_own = (
         entry.result.outcome,
@@ -340,8 +350,9 @@ def _reason_to_join(entry: Entry) -> str:
 
 
 def result_line(report: Report) -> str:
-    """Return the result in a line: the points of what is decided, what they were lost by, and what
-    is open.
+    """Return the result in a line.
+
+    It has the points of what is decided, what they were lost by, and what is open.
 
     Of a student in a class it is the grade, and how it came about.
     """
@@ -385,8 +396,9 @@ def _lost_by(entries: Iterable[Entry]) -> str:
 
 
 def score_text(report: Report) -> str:
-    """Return the points that count and the maximum, 58.5 / 70 points, or that the student is
-    excused.
+    """Return the points that count and the maximum: 58.5 / 70 points.
+
+    Or that the student is excused.
     """
     points = counting_text(report)
     if report.counting is not None:
@@ -395,8 +407,9 @@ def score_text(report: Report) -> str:
 
 
 def counting_text(report: Report) -> str:
-    """Return the points that count for the student: 58.5, excused, or a dash if nothing is
-    decided.
+    """Return the points that count for the student.
+
+    For example 58.5, excused, or a dash if nothing is decided.
     """
     if report.grade is None:
         return sum_text(report.results)
@@ -406,8 +419,9 @@ def counting_text(report: Report) -> str:
 
 
 def grade_line(report: Report) -> str:
-    """Return how the grade of a student in a class came about; empty if it is the score of
-    automatic criteria.
+    """Return how the grade of a student in a class came about.
+
+    Empty if it is the score of automatic criteria.
     """
     if report.grade is None:
         return ""
@@ -424,8 +438,9 @@ def grade_line(report: Report) -> str:
 
 
 def graded_line(report: Report) -> str:
-    """Return the rubric and what is graded with it: the URDF, else the submission; in a class whose
-    it is.
+    """Return the rubric and what is graded with it.
+
+    This is the URDF, else the submission; in a class whose it is.
     """
     graded = f"{report.rubric.id}: {report.submission.path or report.submission.id}"
     return printable(f"{graded} ({report.student})" if report.student else graded)
@@ -466,8 +481,9 @@ def package_line(report: Report) -> str:
 
 
 def head(report: Report) -> Iterator[Line]:
-    """Yield what a report says first: what is graded, the result, whether ROS 2 loads the URDF, the
-    package, notes.
+    """Yield what a report says first.
+
+    This is what is graded, the result, whether ROS 2 loads the URDF, the package, and notes.
     """
     yield Line("graded", graded_line(report))
     yield Line("result", result_line(report))
@@ -496,7 +512,9 @@ def notes(report: Report) -> list[str]:
 
 
 def closing(report: Report) -> Iterator[Section]:
-    """Yield the evidence, the problems that no criterion has reported, and other candidates with
+    """Yield what a report says last.
+
+    This is the evidence, the problems that no criterion has reported, and other candidates with
     ignored files.
     """
     files = [
@@ -570,8 +588,9 @@ def other_problems(report: Report) -> list[Problem]:
 
 
 def next_command(report: Report) -> str:
-    """Return the command that explains the costliest failure, or else what is undecided; empty
-    without either.
+    """Return the command that explains the costliest failure, or else what is undecided.
+
+    Empty without either.
     """
     if report.student and not report.rubric.is_copy_of_shipped:  # which the student does not have
         return ""

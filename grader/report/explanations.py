@@ -1,5 +1,6 @@
-"""Rubrics, checks and problem codes in plain text, with what docs/examples/ has for a code or a
-check.
+"""Rubrics, checks and problem codes in plain text.
+
+With what docs/examples/ has for a code or a check.
 """
 
 import textwrap
@@ -76,8 +77,9 @@ def rubric_overview(rubric: Rubric) -> str:
 
 
 def checks_text() -> str:
-    """Return every check with the package that it comes from, the fact that it tests, and its
-    arguments.
+    """Return every check.
+
+    It has the package that it comes from, the fact that it tests, and its arguments.
     """
     listed = []
     for name in check_names():
@@ -97,8 +99,10 @@ def checks_text() -> str:
 
 
 def explanation(name: str, rubric: Rubric) -> str:
-    """Return the explanation of a code, a criterion, a check, a parameter of a well-known node or
-    the known releases. Raises InputError for another name.
+    """Return the explanation of a name.
+
+    It is a code, a criterion, a check, a parameter of a well-known node or the known releases.
+    Raises InputError for another name.
     """
     kind = next((kind for kind in EVERY_KIND if kind.code == name.upper()), None)
     if kind is not None:

@@ -1,5 +1,6 @@
-"""JSON text that is the same bytes everywhere, and descriptions of its objects, from which data and
-schemas follow.
+"""JSON text that is the same bytes everywhere, and descriptions of its objects.
+
+Data and schemas follow from these.
 """
 
 import json
@@ -36,8 +37,9 @@ def list_to_json(objects: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _harmless(text: str) -> str:
-    """Return JSON with escapes for unprintable characters, and for what a CI system takes for a
-    command.
+    """Return JSON with escapes for unprintable characters.
+
+    And for what a CI system takes for a command.
     """
     if not text.isascii() or "\x7f" in text:
         text = _UNPRINTABLE.sub(
@@ -57,8 +59,9 @@ def _is_of_objects(value: Any) -> bool:
 
 
 def _objects(values: Sequence[Mapping[str, Any]], first: str) -> str:
-    """Return objects between commas; each that begins with the key `first` starts a line, also in
-    an inner list.
+    """Return objects between commas.
+
+    Each that begins with the key `first` starts a line, also in an inner list.
     """
     text = ""
     for value in values:
@@ -91,8 +94,9 @@ def exact(points: Decimal | None) -> int | float | None:
 
 
 def rounded(value: Any) -> Any:
-    """Return plain data: points exact, floats to 1e-6, because machines differ beyond; no -0, NaN
-    or infinity.
+    """Return plain data: points exact, floats to 1e-6, because machines differ beyond.
+
+    No -0, NaN or infinity.
     """
     if value is None or isinstance(value, str | int):
         return value

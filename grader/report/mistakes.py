@@ -14,8 +14,9 @@ from grader.report.locations import calls_text
 
 
 def findings_in_report(report: Report) -> list[Finding]:
-    """Return the criteria that lose points or cannot be decided, and the other problems, in the
-    order of their places.
+    """Return the mistakes and other problems of a report, in the order of their places.
+
+    Mistakes are the criteria that lose points or cannot be decided.
     """
     findings = [finding_of_problem(problem) for problem in other_problems(report)]
     undecided = {result.criterion.id for result in report.pending_automatic}
@@ -96,8 +97,9 @@ def _criterion_rule(criterion: Criterion) -> FindingKind:
 
 
 def _main_file(result: Result, report: Report) -> str:
-    """Return the file to look at if a criterion has no place: the package's or the URDF; empty
-    without both.
+    """Return the file to look at if a criterion has no place: the package's or the URDF.
+
+    Empty without both.
     """
     package = report.submission.package
     if package is not None and result.criterion.check.subject not in ("urdf", "robot"):

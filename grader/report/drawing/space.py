@@ -1,5 +1,6 @@
-"""The robot of a picture as data for the script of a page, which moves its joints: links with
-shapes, and joints.
+"""The robot of a picture as data for the script of a page, which moves its joints.
+
+The data has links with shapes, and joints.
 
 It has nothing of the reference: the script reads that from the three views in the page.
 """
@@ -121,8 +122,9 @@ def _scalable_parts(body: Body) -> list[Body]:
 
 
 def _shape(body: Body, T_link_frame: Transform, meshes: Mapping[Mesh, str]) -> dict[str, Any]:
-    """Return a shape in the frame of its link; its size is that of the scaled unit shape of the
-    script.
+    """Return a shape in the frame of its link.
+
+    Its size is that of the scaled unit shape of the script.
     """
     shape = body.shape
     if isinstance(shape, Box):

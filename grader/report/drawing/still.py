@@ -1,5 +1,6 @@
-"""A small picture of a robot for a list of many: what one sees of its larger shapes, obliquely from
-above, in few numbers.
+"""A small picture of a robot for a list of many.
+
+It shows what one sees of its larger shapes, obliquely from above, in few numbers.
 """
 
 from collections.abc import Iterable, Iterator

@@ -25,8 +25,9 @@ _CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 
 
 def inspection_html(inspection: Inspection, viewing: Viewing | None = None) -> str:
-    """Return the inspection as an HTML page, with the joints at the given positions; of `grader
-    view` with `viewing`.
+    """Return the inspection as an HTML page, with the joints at the given positions.
+
+    That of `grader view` with `viewing`.
     """
     robot = inspection.robot
     configuration = robot.configuration if robot is not None else None

@@ -21,8 +21,9 @@ def render_robot_page(
     cards: Mapping[str, str],
     viewing: Viewing | None,
 ) -> str:
-    """Return a page about the robot of a picture, if there is one; `cards` are the entries of its
-    criteria.
+    """Return a page about the robot of a picture, if there is one.
+
+    `cards` are the entries of its criteria.
     """
     drawn = drawing_element(picture, legend=False) if picture is not None else ""
     views = Markup(drawn)  # noqa: S704  an element, whose text is escaped

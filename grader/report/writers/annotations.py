@@ -1,5 +1,6 @@
-"""A report as annotations of its files for GitHub: failed criteria, most points first, then
-unreported problems.
+"""A report as annotations of its files for GitHub.
+
+Failed criteria come first, most points first, then unreported problems.
 
 GitHub shows ten annotations of each type in a step and drops the others silently, so the last of a
 type counts the rest.
@@ -26,8 +27,9 @@ from grader.report.writers.workflow_commands import (
 
 
 def render_github(report: Report, base: Base) -> str:
-    """Return the annotations of a report: the score as a notice, then the findings, most points
-    first.
+    """Return the annotations of a report.
+
+    The score is a notice, then come the findings, most points first.
     """
     findings = [*_findings(report, base)]
     lines = [
@@ -42,8 +44,9 @@ def render_github(report: Report, base: Base) -> str:
 
 
 def _findings(report: Report, base: Base) -> Iterator[Annotation]:
-    """Yield what to fix or grade manually, and remarks; `base` is where the submission is in its
-    repository.
+    """Yield what to fix or grade manually, and remarks.
+
+    `base` is where the submission is in its repository.
     """
     sections, source_of = (
         report_sections(report),

@@ -12,8 +12,9 @@ from grader.report.writers.workflow_commands import (
 
 
 def inspection_github(inspection: Inspection) -> str:
-    """Return the annotations of an inspection: what ROS 2 does as a notice, then its problems,
-    errors first.
+    """Return the annotations of an inspection.
+
+    What ROS 2 does is a notice, then come its problems, errors first.
     """
     problems = [
         Annotation(

@@ -24,8 +24,9 @@ from grader.report.writers.problem_json import PROBLEM, problems_with_ends
 
 
 def _poses(robot: InspectedRobot) -> dict[str, list[list[float]] | None]:
-    """Return the poses of links as rows of numbers, rounded to 1e-12, because machines differ
-    beyond that.
+    """Return the poses of links as rows of numbers, rounded to 1e-12.
+
+    Machines differ beyond that.
     """
     rows: dict[str, list[list[float]] | None] = {}
     for link, pose in robot.poses():

@@ -1,5 +1,6 @@
-"""A report as Markdown (CommonMark, and HTML only to fold what passed): for job summaries, comments
-and LMS pages.
+"""A report as Markdown, for job summaries, comments and LMS pages.
+
+It is CommonMark, and HTML only to fold what passed.
 
 Text of a submission is escaped: it never becomes markup, HTML, a link or a mention.
 """
@@ -57,8 +58,9 @@ def render_markdown(report: Report) -> str:
 
 
 def cut_markdown(report: Report, most: int) -> str:
-    """Return the first blocks of a report that fit into a number of bytes of UTF-8, and a notice if
-    some are missing.
+    """Return the first blocks of a report that fit into a number of bytes of UTF-8.
+
+    And a notice if some are missing.
 
     It is for job summaries, which students read, so it has no model answers.
     """
@@ -124,8 +126,9 @@ def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str
 
 
 def _entry_head(entry: Entry) -> str:
-    """Return what a mistake costs and its criteria; of another criterion the points, and the title
-    where it holds.
+    """Return what a mistake costs and its criteria.
+
+    Of another criterion the points, and the title where it holds.
     """
     result, name = entry.result, code(entry.id)
     if entry.lost or is_failure(result):

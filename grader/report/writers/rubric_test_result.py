@@ -47,8 +47,9 @@ _NUMBER_OF_ID = re.compile(r" \(\d+\)$")  # of equal ones
 
 
 def render_rubric_test(test: RubricTest, width: int) -> str:
-    """Return the result in lines of at most this width: what was graded, what is wrong, the score
-    last.
+    """Return the result in lines of at most this width.
+
+    What was graded, what is wrong, the score last.
     """
     lines = [f"{test.reference.rubric.id}: {test.reference.rubric.title}", "", *_count_lines(test)]
     if test.lost:
@@ -147,8 +148,9 @@ def _count_or_none(count: int, one: str, several: str) -> str:
 
 
 def _by_element(test: RubricTest) -> list[Loss]:
-    """Return the mutants that survive: those of one element, or of one line of another file, with
-    the first diff.
+    """Return the mutants that survive, with the first diff.
+
+    Those of one element, or of one line of another file, are together.
     """
     groups: dict[str, list[str]] = {}
     diffs: dict[str, str] = {}

@@ -1,5 +1,6 @@
-"""A report for a person at a terminal: what to fix first; the score last, where the eye is when the
-command ends.
+"""A report for a person at a terminal: what to fix first.
+
+The score is last, where the eye is when the command ends.
 
 It has the first mistakes in full, and a line for each further one; `--verbose` has everything. Text
 of a submission is never interpreted as markup or control codes.
@@ -127,8 +128,9 @@ def _show_remarks(section: Section, page: Page) -> None:
 
 
 def _show_later(report: Report, missing_text: str, missing: Sequence[Line], page: Page) -> None:
-    """Add how much is left to submit, what was found for manual grading, and what matches
-    nothing.
+    """Add how much is left to submit.
+
+    And what was found for manual grading, and what matches nothing.
     """
     texts = [text for text in (content.hand_in_line(report), missing_text) if text]
     texts += [line.text for line in missing if line.role == "there"]
@@ -147,8 +149,9 @@ def _show_missing(missing: Sequence[Line], page: Page) -> None:
 
 
 def _show_start(report: Report, page: Page) -> None:
-    """Add what was graded, the result, and notes; the package only if the path of the URDF does not
-    show it.
+    """Add what was graded, the result, and notes.
+
+    The package only if the path of the URDF does not show it.
     """
     submission = report.submission
     rejected = ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
@@ -179,8 +182,9 @@ def _show_mistakes(mistakes: Sequence[Entry], report: Report, page: Page) -> Non
 
 
 def _brief_blocks(entry: Entry) -> Iterator[Block]:
-    """Yield the blocks of a short report: what is expected only if needed, and nothing that head
-    and hint say.
+    """Yield the blocks of a short report.
+
+    What is expected only if needed, and nothing that head and hint say.
     """
     is_clear = entry.result.outcome.expected is not None or bool(entry.texts("hint", "feedback"))
     for part in entry.blocks:
@@ -243,8 +247,9 @@ def _entry_head(entry: Entry, page: Page) -> Text:
 
 
 def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
-    """Add what needs manual grading: where each answer and picture was found, or why a check cannot
-    decide.
+    """Add what needs manual grading.
+
+    This is where each answer and picture was found, or why a check cannot decide.
     """
     if pending:
         points = points_of(result for entry in pending for result in entry.results)
@@ -286,8 +291,10 @@ def _is_known(group: CriteriaGroup) -> bool:
 
 
 def _show_files(report: Report, page: Page, most: int) -> None:
-    """Add the first problems that no criterion has reported, and the first of the files that were
-    not graded. Problems that make a report higher than `most` are only counted, if it is not 0.
+    """Add the first unreported problems, and the first files that were not graded.
+
+    No criterion has reported these problems. Problems that make a report higher than `most` are
+    only counted, if it is not 0.
     """
     problems = content.other_problems(report)
     listed = [problem for problem in problems if problem.severity != "note"]
@@ -389,8 +396,9 @@ def _is_carried(result: Result) -> bool:
 
 
 def _criterion_row(result: Result) -> Text:
-    """Return a criterion in a line: its title if it passed, else its name, because a title would
-    read as a fact.
+    """Return a criterion in a line: its title if it passed, else its name.
+
+    A title would read as a fact.
     """
     status = status_of(result)
     if status == "passed":

@@ -34,8 +34,9 @@ def limited_annotations(annotations: Sequence[Annotation], notices: int) -> Iter
 
 
 def annotation_place(where: Location | None, source_of: SourceOf, base: Base) -> Mapping[str, str]:
-    """Return the properties of an annotation at a location, as seen from the root of the
-    repository; empty without.
+    """Return the properties of an annotation at a location.
+
+    As seen from the root of the repository; empty without.
     """
     if where is None or base.is_outside:  # a file of the repository may have the same path
         return {}
@@ -51,8 +52,9 @@ def annotation_place(where: Location | None, source_of: SourceOf, base: Base) ->
 
 
 def annotation_text(lines: list[str], where: Location | None, base: Base) -> str:
-    """Return the lines, and the location where that is in a macro, or not in a file of the
-    repository.
+    """Return the lines, and the location where lines cannot show it.
+
+    That is in a macro, or not in a file of the repository.
     """
     if where is not None and (
         base.archive or base.is_outside or archive_around(where.path) or where.calls
@@ -69,8 +71,9 @@ def _rest_finding(annotations: Sequence[Annotation]) -> Annotation:
 
 
 def command(name: str, place: Mapping[str, str], title: str, text: str) -> str:
-    """Return one annotation: `error`, `warning` or `notice` of printable text, with a line break at
-    its end.
+    """Return one annotation of printable text, with a line break at its end.
+
+    It is an `error`, `warning` or `notice`.
     """
     properties = [*place.items(), ("title", title)]
     listed = ",".join(
