@@ -1,5 +1,6 @@
-"""CSV files: a cell can change while every other byte stays, and a spreadsheet finds nothing to run
-as a formula.
+"""CSV files.
+
+A cell can change while every other byte stays, and a spreadsheet finds nothing to run as a formula.
 
 An LMS compares the file with what it exported, so nothing else may change. Python's csv module
 gives values, but not how they were written (which cells were quoted, the line ends, blank lines):
@@ -70,8 +71,9 @@ class TableRow(NamedTuple):
         return [_unquoted(cell) for cell in self.cells]
 
     def value(self, column: int | None) -> str:
-        """Return the stripped value in a column; empty if the row is shorter or the column is
-        None.
+        """Return the stripped value in a column.
+
+        Empty if the row is shorter or the column is None.
         """
         if column is not None and column < len(self.cells):
             return _unquoted(self.cells[column]).strip()
@@ -101,15 +103,17 @@ class Table(NamedTuple):
         ]
 
     def encoded(self) -> bytes:
-        """Return the file's bytes. A character that the encoding lacks becomes an HTML character
-        reference.
+        """Return the file's bytes.
+
+        A character that the encoding lacks becomes an HTML character reference.
         """
         text = "".join(self.delimiter.join(row.cells) + row.end for row in self.rows)
         return self.bom + text.encode(self.encoding, "xmlcharrefreplace")
 
     def changed(self, row: TableRow, column: int, value: str) -> TableRow:
-        """Return a row with another value in one cell, quoted if the old one was, or if
-        necessary.
+        """Return a row with another value in one cell.
+
+        It is quoted if the old one was, or if necessary.
         """
         new = self.cell(value, is_quoted=row.cells[column].startswith('"'))
         return row._replace(cells=(*row.cells[:column], new, *row.cells[column + 1 :]))
@@ -208,8 +212,9 @@ def _split_rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
 
 
 def write_table(header: Sequence[str], rows: Iterable[Sequence[CellValue]]) -> str:
-    """Return a table as CSV: commas, CRLF, quotes where necessary. Numbers stay numbers, None is
-    an empty cell.
+    """Return a table as CSV: commas, CRLF, quotes where necessary.
+
+    Numbers stay numbers, None is an empty cell.
     """
     text = io.StringIO(newline="")
     writer = csv.writer(text)
@@ -219,8 +224,9 @@ def write_table(header: Sequence[str], rows: Iterable[Sequence[CellValue]]) -> s
 
 
 def protected(text: str) -> str:
-    """Return text that no spreadsheet takes for a formula, and that `unprotected` returns
-    unchanged.
+    """Return text that no spreadsheet takes for a formula.
+
+    `unprotected` returns it unchanged.
     """
     if text.isalnum():
         return text
@@ -228,8 +234,9 @@ def protected(text: str) -> str:
 
 
 def unprotected(text: str) -> str:
-    """Return text without what keeps a spreadsheet from running it, or from reading it as a
-    number.
+    """Return text without what protects it from a spreadsheet.
+
+    That keeps one from running it, or from reading it as a number.
     """
     if "'" not in text and text[:1] != "=":
         return text

@@ -214,8 +214,9 @@ def _updated(
 
 
 def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
-    """Yield the hashes of the work that the course handed out. Raises InputError for a file without
-    any.
+    """Yield the hashes of the work that the course handed out.
+
+    Raises InputError for a file without any.
     """
     for path in files:
         hashes = hashes_of(open_submission(str(path), rubric.lab))
@@ -225,8 +226,9 @@ def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
 
 
 def _keep_inputs(inputs: _ClassInputs, options: ClassRequest, warn: Warn) -> _ClassInputs:
-    """Write the settings and the copies of the roster and the rubric into the gradebook. Raises
-    InputError.
+    """Write the settings and the copies of the roster and the rubric into the gradebook.
+
+    Raises InputError.
     """
     folder, settings, rubric = inputs.folder, inputs.settings, inputs.rubric
     if options.roster is not None:
@@ -260,8 +262,9 @@ def _read_csv(file: Path) -> bytes:
 
 
 def _copy_rubric(folder: Path, rubric: Rubric) -> str:
-    """Copy a rubric and its reference into a gradebook, placed to each other as before; return
-    where it is.
+    """Copy a rubric and its reference into a gradebook, placed to each other as before.
+
+    Return where it is.
     """
     target, rubric_file = folder / names.RUBRIC, rubric.path.resolve()
     is_movable = not Path(rubric.reference).is_absolute()

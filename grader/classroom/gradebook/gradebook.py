@@ -1,5 +1,6 @@
-"""A gradebook: the grades of a class, computed from the results, the rubric, the roster and the
-marks of people.
+"""A gradebook: the grades of a class.
+
+They are computed from the results, the rubric, the roster and the marks of people.
 
 Last, the grades as a table, one row a student: `grades.csv`, and `export csv`, which people may
 change.
@@ -55,16 +56,18 @@ _LAST = (
 
 
 class Gradebook:
-    """A class in a gradebook: iterating yields the grade of every student, in the order of the
-    keys.
+    """A class in a gradebook.
+
+    Iterating yields the grade of every student, in the order of the keys.
 
     `batch` ends with one, and every other command on a class begins with one. It keeps nothing: the
     grades are computed again from the files of its folder.
     """
 
     def __init__(self, folder: Path, run: Run | None = None, answers: Path | None = None) -> None:
-        """`run` is one that is not in the file yet; `answers` is the file of the model answers, for
-        those who grade.
+        """`run` is one that is not in the file yet.
+
+        `answers` is the file of the model answers, for those who grade.
         """
         names.check_gradebook(folder)
         self.folder, self.settings = folder, read_settings(folder)
@@ -172,8 +175,9 @@ class Gradebook:
         return self._grade(key, self.results.of(key))
 
     def student(self, key: str, stored: StoredResult | None) -> Student:
-        """Return a student as the roster has it, completed by the LMS ids in the names of the
-        submission.
+        """Return a student as the roster has it.
+
+        It is completed by the LMS ids in the names of the submission.
         """
         person: dict[str, Any] = dict(stored.person) if stored is not None else {}
         listed = self._on_roster.get(key)
@@ -199,8 +203,9 @@ class Gradebook:
         return Report(submission, self.rubric, stored.parts, without_gifts(results, submission))
 
     def reopened(self, stored: StoredResult) -> Submission | None:
-        """Return a submission as it was graded; None if it has moved or changed since, or cannot be
-        read.
+        """Return a submission as it was graded.
+
+        None if it has moved or changed since, or cannot be read.
         """
         settings = self.settings
         try:
@@ -286,8 +291,9 @@ class Gradebook:
         )
 
     def with_marks(self, report: Report, stored: StoredResult) -> tuple[Report, tuple[str, ...]]:
-        """Return a report with marks and comments, and the criteria that were marked before the
-        submission changed.
+        """Return a report with marks and comments, and the criteria that were marked early.
+
+        These were marked before the submission changed.
         """
         if stored.student not in self._marked:
             return report, ()
@@ -331,8 +337,9 @@ def grade_table(
 
 
 def points_of(book: Gradebook, grade: StudentGrade) -> dict[str, str]:
-    """Return the cells of a student that `mark --import` takes for marks, by criterion and for the
-    total.
+    """Return the cells of a student that `mark --import` takes for marks.
+
+    They are by criterion and for the total.
     """
     points = dict.fromkeys((row.id for row in book.rubric.criteria), "")
     if grade.stored is not None and not grade.is_excused:

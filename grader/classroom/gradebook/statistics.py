@@ -1,5 +1,6 @@
-"""Statistics of a class: the grades as they are published, each criterion, the most common
-mistakes, the sections.
+"""Statistics of a class.
+
+The grades as they are published, each criterion, the most common mistakes, the sections.
 """
 
 from collections import Counter, defaultdict
@@ -35,8 +36,9 @@ class Summary(NamedTuple):
 
 
 class CriterionFigures(NamedTuple):
-    """The students by each of COUNTS, and the mean share of the points that they earned; None if
-    open or adjusted.
+    """The students by each of COUNTS, and the mean share of the points that they earned.
+
+    None if open or adjusted.
     """
 
     criterion: Criterion
@@ -45,8 +47,9 @@ class CriterionFigures(NamedTuple):
 
 
 class _CommonMistake(NamedTuple):
-    """A mistake that several students made in a criterion; of one that is measured, how far it is
-    off.
+    """A mistake that several students made in a criterion.
+
+    Of one that is measured, how far it is off.
     """
 
     criterion: str
@@ -55,8 +58,9 @@ class _CommonMistake(NamedTuple):
 
 
 class CriterionMistakes(NamedTuple):
-    """The mistakes in a criterion: of how many students, of how many kinds, and the most common
-    ones.
+    """The mistakes in a criterion.
+
+    Of how many students, of how many kinds, and the most common ones.
     """
 
     criterion: str
@@ -66,8 +70,9 @@ class CriterionMistakes(NamedTuple):
 
 
 class ClassStatistics(NamedTuple):
-    """The figures of a class. Students who are not on the roster, or whose submission is gone, are
-    in `attention` only.
+    """The figures of a class.
+
+    Students who are not on the roster, or whose submission is gone, are in `attention` only.
 
     A grade counts if it is a final mark, or that of a graded submission, after marks, adjustments
     and the late penalty; points that still need manual grading are not in it yet.
@@ -145,8 +150,9 @@ def _sections(grades: Iterable[StudentGrade]) -> dict[str, Summary]:
 
 
 def _attention(grades: Iterable[StudentGrade]) -> dict[Reason, list[tuple[str, str]]]:
-    """Return the students who need attention, each with details, by reason in the order of
-    urgency.
+    """Return the students who need attention, each with details.
+
+    They are by reason, in the order of urgency.
     """
     concerned = defaultdict[Reason, list[tuple[str, str]]](list)
     for grade in grades:

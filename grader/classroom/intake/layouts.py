@@ -1,5 +1,6 @@
-"""The layouts of a class: what the names in a folder or zip say about each submission. No
-submission is opened.
+"""The layouts of a class: what the names in a folder or zip say about each submission.
+
+No submission is opened.
 
 - folders: a folder, archive or URDF for each student, with or without a prefix (GitHub's
   `lab6-{login}/`).
@@ -88,8 +89,9 @@ class NamedPath(NamedTuple):
         return self.upload, self.ending == "/", self.path
 
     def is_written_by(self, lms: str) -> bool:
-        """Return whether an LMS may have written the name: Canvas writes those of students in
-        lower case.
+        """Return whether an LMS may have written the name.
+
+        Canvas writes those of students in lower case.
         """
         return lms == "moodle" or self.student.name == self.student.name.lower()
 
@@ -123,8 +125,9 @@ class ClassFolder:
         return replace(self, children=self.listing.children(start), start=f"{start}/")
 
     def ignore(self, names: Iterable[str], reason: str = "is not named like a submission") -> None:
-        """Say why some names are no submissions; the reason continues a sentence that begins
-        with the name.
+        """Say why some names are no submissions.
+
+        The reason continues a sentence that begins with the name.
         """
         self.ignored.extend(f"{printable_path(self.start + name)} {reason}" for name in names)
 
@@ -140,8 +143,9 @@ def is_submission(name: str) -> bool:
 
 
 def readings_of(name: str, layout: str) -> list[NamedPath]:
-    """Return how a name can be read: in Canvas as team and 7, or team_7 and 101, of
-    team_7_101_555_lab6.zip.
+    """Return how a name can be read.
+
+    In Canvas as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip.
     """
     matches = [_read_path(one) for one in _PATTERNS[layout].finditer(name)]
     is_known = layout == "moodle" or bool(
@@ -171,8 +175,9 @@ def _read_path(match: re.Match[str]) -> NamedPath:
 
 
 def entries_of(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
-    """Yield the submissions by their names; `aliases` are the numbers of which one is the
-    user's.
+    """Yield the submissions by their names.
+
+    `aliases` are the numbers of which one is the user's.
     """
     folder.list_refused()
     if layout == "folders":
@@ -197,8 +202,9 @@ def entries_of(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
 
 
 def names_in(children: Children) -> dict[str, re.Match[str]]:
-    """Return the names of the layout `folders` in a folder, each with what it tells; a folder
-    ends in a slash.
+    """Return the names of the layout `folders` in a folder, each with what it tells.
+
+    A folder ends in a slash.
     """
     folders = [f"{name}/" for name in children.folders if name not in BUILD_FOLDERS]
     matches = {}
@@ -233,8 +239,9 @@ def _without(prefix: str, name: str) -> str:
 
 
 def _prefix(names: Collection[str], folder: ClassFolder) -> str:
-    """Return the prefix of the assignment: the rubric's id, or what precedes the ids of most
-    students.
+    """Return the prefix of the assignment.
+
+    This is the rubric's id, or what precedes the ids of most students.
     """
     knows, own_prefix = folder.people.knows, f"{folder.lab.lower()}-"
     known = sum(map(knows, names))
@@ -251,8 +258,9 @@ def _prefix(names: Collection[str], folder: ClassFolder) -> str:
 
 
 def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
-    """Yield the submissions for one assignment with their times; raises InputError if there is
-    none of its name.
+    """Yield the submissions for one assignment with their times.
+
+    Raises InputError if there is none of its name.
     """
     folder = course.inside("submitted") if "submitted" in course.children.folders else course
     students_by_name: dict[str, list[str]] = defaultdict(list)
@@ -302,8 +310,9 @@ def _time_of(folder: ClassFolder, path: str) -> str:
 
 
 def teams(folder: ClassFolder) -> Iterator[NamedPath]:
-    """Yield the submissions of the students in lab folders, and all other submissions as a
-    whole.
+    """Yield the submissions of the students in lab folders.
+
+    And all other submissions as a whole.
     """
     whole = []
     for team in sorted(folder.children.folders):

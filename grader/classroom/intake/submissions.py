@@ -1,5 +1,6 @@
-"""The submissions of a class, one a student, in one or several folders or zips, and whose each of
-them is.
+"""The submissions of a class, one a student, and whose each of them is.
+
+They are in one or several folders or zips.
 
 The names prove a layout. All files of a student are one submission, of several versions the last.
 Submissions are matched with students by the roster's column `submission`, ids, names and groups.
@@ -79,8 +80,9 @@ def read_class(
     ignore: Sequence[str] = (),
     gradebook: Path | None = None,
 ) -> Intake:
-    """Return the submissions in class folders or zips, the sections of one class; raises InputError
-    if there are none.
+    """Return the submissions in class folders or zips, the sections of one class.
+
+    Raises InputError if there are none.
 
     `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of
     folders, and `folders` are the names of its own (default: its id). `ignore` names entries that
@@ -128,8 +130,9 @@ def read_class(
 
 
 def _names_of_roots(paths: Sequence[Path]) -> list[str]:
-    """Return a name for each class folder, if necessary with the folder around it. Raises
-    InputError.
+    """Return a name for each class folder, if necessary with the folder around it.
+
+    Raises InputError.
     """
     for count in (1, 2):
         names = ["/".join(path.resolve().parts[-count:]) for path in paths]
@@ -214,8 +217,9 @@ def _inner_class(folder: ClassFolder) -> ClassFolder:
 
 
 def _only_folder(folder: ClassFolder) -> str:
-    """Return the only folder in a folder without other submissions; empty if there is none, or
-    it is a student's.
+    """Return the only folder in a folder without other submissions.
+
+    Empty if there is none, or it is a student's.
     """
     name, *others = folder.entries or [""]
     is_student = (
@@ -325,8 +329,9 @@ def _files_below(listing: ClassListing, top: str) -> list[str]:
 
 
 class _Owners:
-    """The submission of each student, by the index on the roster; those that match none; those
-    that are ambiguous.
+    """The submission of each student, by the index on the roster.
+
+    Those that match none; those that are ambiguous.
     """
 
     def __init__(self, roster: Roster | None, roots: Sequence[tuple[ClassListing, str]]) -> None:
@@ -340,8 +345,9 @@ class _Owners:
         self._unmatched: list[str] = []
 
     def find(self, submissions: Sequence[ClassSubmission]) -> None:
-        """Assign all submissions: what a person has assigned decides, then ids and names, then
-        groups.
+        """Assign all submissions.
+
+        What a person has assigned decides, then ids and names, then groups.
         """
         if all(one.student.key.startswith("anon_") for one in submissions):
             self.notes.append(_ANONYMOUS)
@@ -371,8 +377,9 @@ class _Owners:
     def _decide(
         self, claims: Mapping[int, Mapping[ClassSubmission, int]]
     ) -> tuple[set[ClassSubmission], set[ClassSubmission]]:
-        """Give each student the submission with the only best claim; return those given, and
-        those equally good.
+        """Give each student the submission with the only best claim.
+
+        Return those given, and those equally good.
         """
         given, contested = set[ClassSubmission](), set[ClassSubmission]()
         for index, claimed in claims.items():
@@ -391,8 +398,9 @@ class _Owners:
         return given, contested - given
 
     def _holds_students(self, one: ClassSubmission) -> bool:
-        """Return whether two students or more have submissions in a folder: it is a section, not
-        a team's work.
+        """Return whether two students or more have submissions in a folder.
+
+        It then is a section, not a team's work.
         """
         inner = self.roots[one.root][0].children(one.paths[0], 1000)
         return sum(self.people.knows(match["login"]) for match in names_in(inner).values()) > 1
@@ -428,8 +436,9 @@ class _Owners:
                 yield ClassSubmission(Student(""), root, (path,))
 
     def _shown(self, one: ClassSubmission, path: str = "") -> str:
-        """Return a path as a person can write it on the roster, of several class folders with
-        the name of its own.
+        """Return a path as a person can write it on the roster.
+
+        Of several class folders with the name of its own.
         """
         return _plain_path(self._path(one, path or one.paths[0]))
 
@@ -440,8 +449,9 @@ class _Owners:
         return f"{self.roots[submission.root][1]}/{path}"
 
     def _list(self, one: ClassSubmission, students: Sequence[int], *, is_contested: bool) -> None:
-        """List a submission without an owner, and what assigns it; a contested one is not
-        graded.
+        """List a submission without an owner, and what assigns it.
+
+        A contested one is not graded.
         """
         if not is_contested:
             self._visitors.append(one)
@@ -458,8 +468,9 @@ class _Owners:
         self._unmatched.append(f"{self._shown(one)} {reason}; to assign it, {advice}")
 
     def intake(self, layout: str) -> Intake:
-        """Return what was found, of a student on the roster only the LMS's name and ids: other
-        names are anyone's.
+        """Return what was found.
+
+        Of a student on the roster only the LMS's name and ids: other names are anyone's.
         """
         students = self.people.students
         unclear = frozenset(students[index].key for index in self._unclear - self._owned.keys())
@@ -488,8 +499,9 @@ class _Owners:
         )
 
     def _visitor(self, claim: Student, key: str) -> Student:
-        """Return the student of a submission that nobody on the roster owns; the student may have
-        chosen the name where Canvas has an id.
+        """Return the student of a submission that nobody on the roster owns.
+
+        The student may have chosen the name where Canvas has an id.
         """
         has_lms_id = bool(claim.canvas or claim.aliases)
         name = "" if has_lms_id else claim.name
@@ -515,8 +527,9 @@ def _csv_cell(text: str) -> str:
 
 
 def _path_key(path: str) -> str:
-    """Return the key of a submission whose name cannot be one: `./` begins no name that a student
-    can give a folder.
+    """Return the key of a submission whose name cannot be one.
+
+    `./` begins no name that a student can give a folder.
     """
     if path.isprintable():
         return f"./{path}"

@@ -80,8 +80,9 @@ class _Done(NamedTuple):
 
 
 class _ReportTask(NamedTuple):
-    """A report to write: the student and the name of the file; without hints if their search was
-    lost.
+    """A report to write: the student and the name of the file.
+
+    Without hints if their search was lost.
     """
 
     key: str
@@ -120,8 +121,9 @@ def report_of(
 
 
 def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
-    """Yield the sentences about the mark, the excuse or the comment of the whole submission,
-    graders, and lateness.
+    """Yield the sentences about a whole submission.
+
+    They are on the mark, the excuse or the comment of the whole, graders, and lateness.
     """
     mark, late = grade.final, grade.late
     if mark is not None:
@@ -149,8 +151,9 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
 def _graded_again(
     book: Gradebook, grade: StudentGrade, stored: StoredResult, kept: KeptReports | None
 ) -> Report:
-    """Return the report on a submission as it was graded, with its details if it is still there,
-    and with hints if what is kept of them is given.
+    """Return the report on a submission as it was graded.
+
+    With its details if it is still there, and with hints if what is kept of them is given.
     """
     submission = book.reopened(stored) if stored.verdict != "errored" else None
     if submission is None:
@@ -167,8 +170,9 @@ def _graded_again(
 
 
 def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
-    """Raise InputError if reports cannot be written to a folder, or the next run would read it as a
-    submission.
+    """Raise InputError if reports cannot be written to a folder.
+
+    Or if the next run would read it as a submission.
     """
     refuse_symlinks(folder, submissions)
     cannot = f"cannot write files to {printable_path(folder)}"
@@ -188,8 +192,9 @@ def _keep(
     paths: Mapping[str, Sequence[Path]],
     shown: Mapping[str, str],
 ) -> dict[str, Mapping[str, Any]]:
-    """Keep what is known of the reports that were written, by their paths; return the hints that
-    were searched for them.
+    """Keep what is known of the reports that were written, by their paths.
+
+    Return the hints that were searched for them.
     """
     new_hints = dict[str, Mapping[str, Any]]()
     for key, one in done.items():
@@ -205,8 +210,9 @@ def _keep(
 def write_reports(
     run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS
 ) -> None:
-    """Write a report for each student who has a result, a final mark or an excuse; in HTML also the
-    class's page.
+    """Write a report for each student who has a result, a final mark or an excuse.
+
+    In HTML also the class's page.
 
     Raises InputError and RubricError, which concern all reports.
     """
@@ -276,8 +282,9 @@ def _shown_in(book: Gradebook, grade: StudentGrade, context: str) -> str:
 
 
 def render_reports(run: ReportRun, files: Mapping[str, str], terminal: Terminal) -> dict[str, str]:
-    """Write the reports of students, by their file names; return who has none, and why. Raises as
-    `write_reports`.
+    """Write the reports of students, by their file names; return who has none, and why.
+
+    Raises as `write_reports`.
     """
     done = _render_reports(run, files, terminal)
     return {key: one.why_lost for key, one in done.items() if one.why_lost}
@@ -357,8 +364,9 @@ def _opened_gradebook(run: ReportRun) -> tuple[Gradebook, KeptReports]:
 
 
 def file_names(keys: Sequence[str]) -> dict[str, str]:
-    """Return a file name without ending for each key: valid on every system, and unique without
-    regard to case.
+    """Return a file name without ending for each key.
+
+    It is valid on every system, and unique without regard to case.
 
     A key that is not a valid name, or that differs from another one only in case, gets its digest
     appended.
@@ -379,8 +387,10 @@ def _with_digest(key: str) -> str:
 def write_class_page(
     book: Gradebook, folder: Path, pages: Mapping[str, str], stills: Mapping[str, "Still"] = {}
 ) -> None:
-    """Write the class's page into a folder, with links to the pages of students, by their names
-    from there, and small pictures of their robots.
+    """Write the class's page into a folder.
+
+    It has links to the pages of students, by their names from there, and small pictures of
+    their robots.
     """
     from grader.classroom.gradebook.statistics import statistics
     from grader.classroom.reports.class_page import render_class_page

@@ -20,8 +20,9 @@ SHARE_NOTE = "Share: the mean share of the points that students earned."
 
 
 def family_name_order(name: str, key: str) -> tuple[str, str, str]:
-    """Return the family name, which is before a comma or the last word, then the name and the
-    key.
+    """Return the family name, then the name and the key.
+
+    The family name is before a comma or the last word.
     """
     family = name.partition(",")[0] if "," in name else (name.split() or [""])[-1]
     return _letters(family), _letters(name), key
@@ -42,8 +43,10 @@ def late_text(grade: StudentGrade) -> str:
 
 
 def head_lines(statistics: ClassStatistics) -> Iterator[str]:
-    """Yield how many students were graded and how many not, the grades in one line, what is open,
-    and the sections.
+    """Yield the lines above the figures of a class.
+
+    How many students were graded and how many not, the grades in one line, what is open, and
+    the sections.
     """
     words = {
         "graded": "graded",
@@ -73,8 +76,9 @@ def head_lines(statistics: ClassStatistics) -> Iterator[str]:
 
 
 def grades_text(maximum: Decimal, figures: Summary, *, is_open: bool) -> str:
-    """Return the mean and the median of the grades; those that are open count with the points so
-    far.
+    """Return the mean and the median of the grades.
+
+    Those that are open count with the points so far.
     """
     so_far = " so far" if is_open else ""
     return f"Grades of {format_points(maximum)}{so_far}: {_means(figures.mean, figures.median)}"

@@ -71,8 +71,9 @@ def equal_work(results: Iterable[StoredResult], handed_out: Iterable[str]) -> li
 def _groups(
     results: Iterable[StoredResult], kind: str, known: Collection[str]
 ) -> list[list[StoredResult]]:
-    """Return the groups whose hash of one kind is the same and not known, and that come from more
-    than one submission, the largest first.
+    """Return the groups whose hash of one kind is the same, the largest first.
+
+    It is not known, and the works come from more than one submission.
     """
     groups = defaultdict[str, list[StoredResult]](list)
     for stored in results:

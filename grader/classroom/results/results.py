@@ -150,8 +150,9 @@ def values_in(line: bytes) -> dict[str, Any]:
 
 
 def digest_of(*parts: object) -> str:
-    """Return the hash of some values: it begins with a letter, so that no spreadsheet takes it for
-    a number.
+    """Return the hash of some values.
+
+    It begins with a letter, so that no spreadsheet takes it for a number.
     """
     return f"d{sha256_of(repr(parts).encode())[:_DIGITS]}"
 
@@ -202,8 +203,10 @@ class Results:
                     self.unfinished.add(key)
 
     def _end_run(self, run: Run) -> None:
-        """Keep a run; a student whose line of it is lost has no result: an older one is that of
-        other work.
+        """Keep a run.
+
+        A student whose line of it is lost has no result: an older one is that of other
+        work.
         """
         for key in {*run.written} - self.unfinished:
             self._places.pop(key, None)
@@ -315,8 +318,9 @@ class Results:
 
 
 class ResultsWriter:
-    """Appends lines to a file of results, behind its last whole line. Raises InputError if it
-    cannot be written.
+    """Appends lines to a file of results, behind its last whole line.
+
+    Raises InputError if it cannot be written.
     """
 
     def __init__(self, file: Path, end: int) -> None:

@@ -56,8 +56,9 @@ def _graded_again(book: Gradebook, key: str) -> tuple[Submission, Report]:
 
 
 def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
-    """Return what a person looks at for an item. Raises InputError if its submission has moved or
-    changed.
+    """Return what a person looks at for an item.
+
+    Raises InputError if its submission has moved or changed.
 
     Of an anonymous student it has no names of files and no lines of them, because students choose
     them.
@@ -89,8 +90,9 @@ def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
 
 
 def _paths(book: Gradebook, item: ReviewItem, result: Result) -> Iterator[str]:
-    """Yield the places in a submission and its path below the class folder, which is named if there
-    are several.
+    """Yield the places in a submission and its path below the class folder.
+
+    The class folder is named if there are several.
     """
     stored, location = item.members[0].stored, result.outcome.location
     root = book.settings.roots(book.folder)[stored.root]
@@ -124,8 +126,9 @@ def _without_name(number: int, picture: EmbeddedPicture | NotShown) -> EmbeddedP
 def _with_robot(
     opened: OpenedItem, report: Report, results: Sequence[Result], *, is_anonymous: bool
 ) -> OpenedItem:
-    """Return an item with the views of the robot, and the files around the places that decide its
-    criteria.
+    """Return an item with the views of the robot.
+
+    And the files around the places that decide its criteria.
     """
     picture, views, legend = picture_of(report), "", list[str]()
     space = None
@@ -147,8 +150,9 @@ def _with_robot(
 
 
 def _without_names(picture: Picture) -> Picture:
-    """Return a picture without the names of links, and so without the numbers and sentences about
-    them.
+    """Return a picture without the names of links.
+
+    And so without the numbers and sentences about them.
     """
     bodies = tuple(body._replace(link="") for body in picture.scene.bodies)
     scene = replace(picture.scene, bodies=bodies, missing=(), boxed=())
@@ -179,8 +183,9 @@ def _deciding_place(report: Report, result: Result) -> Location | None:
 
 
 def _unknown_place(report: Report, criterion: Criterion) -> Location | None:
-    """Return the place of what keeps a criterion from being determined: first in a file that its
-    check looks at.
+    """Return the place of what keeps a criterion from being determined.
+
+    First in a file that its check looks at.
     """
     if criterion.check.subject in _OF_ROBOT:
         problems = [one for one in report.problems if one.kind.effect == "undetermined"]

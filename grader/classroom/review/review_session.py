@@ -95,8 +95,9 @@ class ReviewSession:
             self._arrange()
 
     def _arrange(self) -> None:
-        """Find the items that are shown, and join those of the same students that are open for
-        the same reason.
+        """Find the items that are shown.
+
+        Join those of the same students that are open for the same reason.
         """
         self.shown = {}
         for at, place in enumerate(self.places):
@@ -120,15 +121,17 @@ class ReviewSession:
 
     @property
     def left(self) -> int:
-        """The number of results that need manual grading, of the question and section that are
-        shown.
+        """The number of results that need manual grading.
+
+        Of the question and section that are shown.
         """
         unmarked = ReviewFilter(*self.filter[:2])
         return sum(len(unmarked.members(item)) for item in self.items.values())
 
     def item_at(self, at: int) -> ReviewItem:
-        """Return an item with the students that are shown, with others if none is. Raises
-        InputError if it is gone.
+        """Return an item with the students that are shown, with others if none is.
+
+        Raises InputError if it is gone.
         """
         if at in self._joined:
             return self._joined[at]
@@ -144,14 +147,16 @@ class ReviewSession:
         return next((at for at in self.listed if at > position), len(self.places))
 
     def previous(self, position: int) -> int:
-        """Return the position of the previous item that is shown, the same position if there is
-        none.
+        """Return the position of the previous item that is shown.
+
+        The same position if there is none.
         """
         return max((at for at in self.listed if at < position), default=position)
 
     def next_question(self, position: int) -> int:
-        """Return the position of the student's next item, after the last one that of the next
-        student's first.
+        """Return the position of the student's next item.
+
+        After the last one that of the next student's first.
 
         An item of several students is that of the first one.
         """
@@ -165,8 +170,9 @@ class ReviewSession:
         return len(self.places)
 
     def people(self, position: int) -> list[tuple[str, int, int]]:
-        """Return the students with items of the question and section that are shown, whatever their
-        state is.
+        """Return the students with items of the question and section that are shown.
+
+        Whatever their state is.
 
         Each has a label, the number of unmarked criteria, and the position of an item: of the same
         question as that at a position, else the first unmarked one.
@@ -187,8 +193,9 @@ class ReviewSession:
         return people
 
     def so_far(self, item: ReviewItem) -> str:
-        """Return the points of a student so far, and how many need manual grading; empty for
-        several students.
+        """Return the points of a student so far, and how many need manual grading.
+
+        Empty for several students.
         """
         grade = self.book.grade(item.members[0].student.key)
         if item.members[1:] or grade.total is None:
@@ -200,8 +207,9 @@ class ReviewSession:
 
     @property
     def lms(self) -> str:
-        """The LMS that the class came from, as its submissions or roster say; empty if they do
-        not.
+        """The LMS that the class came from, as its submissions or roster say.
+
+        Empty if they do not.
         """
         students = (self.book.student(one.student, one) for one in self.book.results.all())
         return next(
@@ -223,8 +231,9 @@ class ReviewSession:
         self._arrange()
 
     def similar(self, at: int) -> list[SimilarItem]:
-        """Return the unmarked items of the same question with similar answers, the most similar
-        first.
+        """Return the unmarked items of the same question with similar answers.
+
+        The most similar come first.
         """
         item, similar_items = self.item_at(at), list[SimilarItem]()
         own_words = words_of(self._written(item))
@@ -329,8 +338,9 @@ class ReviewSession:
 
 
 def write_sheet(session: ReviewSession, file: Path) -> str:
-    """Write the items that are shown into a new file, and return what to do with it. Raises
-    InputError.
+    """Write the items that are shown into a new file, and return what to do with it.
+
+    Raises InputError.
     """
     if os.path.lexists(file):
         raise InputError(

@@ -88,8 +88,9 @@ _MAX_WORDS = 8
 
 
 class Student(NamedTuple):
-    """A student of a class, whose `key` is unique in it; what is not known of the others is
-    empty or None.
+    """A student of a class, whose `key` is unique in it.
+
+    What is not known of the others is empty or None.
     """
 
     key: str
@@ -120,8 +121,9 @@ class Roster(NamedTuple):
 
 
 def plain(word: str) -> str:
-    """Return an id, name or group without differences of case, spaces, `_` and `-`: `Doe, Jane`
-    is Jane Doe.
+    """Return an id, name or group without differences of case and spaces.
+
+    Nor of `_` and `-`. `Doe, Jane` is Jane Doe.
     """
     if not word.isascii():
         word = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", word).casefold())
@@ -130,8 +132,9 @@ def plain(word: str) -> str:
 
 
 def read_roster(data: bytes, shown: str) -> Roster:
-    """Return the roster in a CSV file, called `shown` in messages; raises InputError with a line
-    for each mistake.
+    """Return the roster in a CSV file, called `shown` in messages.
+
+    Raises InputError with a line for each mistake.
 
     A student's key is the id, else the university's id, login, address, name, or LMS id.
     """
@@ -171,8 +174,9 @@ def read_roster(data: bytes, shown: str) -> Roster:
 
 
 def _fields(header: Sequence[str], shown: str) -> list[str]:
-    """Return the field of each column, empty for one of another title; raises InputError if none
-    of them identifies a student.
+    """Return the field of each column, empty for one of another title.
+
+    Raises InputError if none of them identifies a student.
     """
     fields = [_FIELD_OF.get(folded(title), "") for title in header]
     if header and _WHO.isdisjoint(fields):
@@ -190,8 +194,9 @@ def _is_from_canvas(header: Iterable[str]) -> bool:
 
 
 def _row(fields: Sequence[str], cells: Sequence[str]) -> dict[str, str]:
-    """Return the cells of a row by field; of several columns for one field the first counts that
-    is not empty.
+    """Return the cells of a row by field.
+
+    Of several columns for one field the first counts that is not empty.
     """
     row = dict.fromkeys(_TITLES, "")
     for field, cell in zip(fields, cells, strict=False):
@@ -206,8 +211,9 @@ def _is_no_student_in_canvas(row: Mapping[str, str]) -> bool:
 
 
 def _normalise(row: dict[str, str]) -> Iterator[str]:
-    """Move Moodle's numbers to their field, write times as ISO 8601, empty the cells that are
-    wrong, and yield why.
+    """Move Moodle's numbers to their field, and write times as ISO 8601.
+
+    Empty the cells that are wrong, and yield why.
     """
     for field in ("id", "moodle"):
         if match := _PARTICIPANT.fullmatch(row[field]):
@@ -228,8 +234,9 @@ def _normalise(row: dict[str, str]) -> Iterator[str]:
 
 
 def _student(row: dict[str, str]) -> Student:
-    """Return the student in a row with values as they should be; without a key if it identifies
-    none.
+    """Return the student in a row with values as they should be.
+
+    Without a key if it identifies none.
     """
     name = row["name"] or f"{row['first']} {row['last']}".strip()
     login, sis = row["login"] or row["github"], row["sis"]
@@ -285,8 +292,9 @@ def _days(text: str) -> float | None:
 
 
 def _days_of(status: str) -> float | None:
-    """Return by how many days Moodle's Status says that a submission was late; None if that is
-    not clear.
+    """Return by how many days Moodle's Status says that a submission was late.
+
+    None if that is not clear.
     """
     for part in map(str.strip, status.casefold().split(" - ")):
         if re.fullmatch(rf"{_UNIT}(?: {_UNIT})? late", part):
@@ -297,8 +305,9 @@ def _days_of(status: str) -> float | None:
 
 
 def _duplicates(students: Mapping[int, Student]) -> Iterator[tuple[int, str]]:
-    """Yield a line and a message for each student with an id or address that another student
-    has.
+    """Yield a line and a message for each duplicate.
+
+    It is a student with an id or address that another student has.
     """
     wrong: set[int] = set()
     for field, title in _UNIQUE.items():
@@ -339,8 +348,9 @@ class _Match(NamedTuple):
 
     @property
     def owners(self) -> tuple[int, ...]:
-        """The student whom it belongs to, or each member of its group; empty if that is not
-        certain.
+        """The student whom it belongs to, or each member of its group.
+
+        Empty if that is not certain.
         """
         if self.by == GROUP or (len(self.students) == 1 and self.by < GROUP):
             return self.students
@@ -372,14 +382,16 @@ class People:
         return self._groups.get(plain(group), ())
 
     def knows(self, name: str, team: str = "") -> bool:
-        """Return whether a name is that of one student, in a team also the surname, or else of a
-        group.
+        """Return whether a name is that of one student, or else of a group.
+
+        In a team it may also be the surname.
         """
         return bool(self.match(Student(name, login=name, group=team)).owners)
 
     def match(self, claim: Student) -> _Match:
-        """Return whose a submission is by what its name claims; with a `group`, only of a member of
-        that team.
+        """Return whose a submission is by what its name claims.
+
+        With a `group`, only of a member of that team.
 
         What has the name of a group is the group's, unless an id in it is that of another student:
         Canvas writes the id of a member, Moodle a number of the group's own. Of `aliases` it is not
@@ -405,8 +417,9 @@ class People:
         return _Match(tuple(group), GROUP)
 
     def _person(self, claim: Student, name: str) -> _Match:
-        """Return the students with the best words of a claim, without those whom the LMS knows by
-        another id.
+        """Return the students with the best words of a claim.
+
+        Without those whom the LMS knows by another id.
         """
         login = plain(claim.login)
         names = [name, login, _surname(login) if claim.group else ""]
@@ -466,8 +479,9 @@ def letters(name: str) -> str:
 
 
 def _in_canvas(name: str) -> Iterable[str]:
-    """Return what Canvas may call a student in names of files: sorted by any word of the name, or
-    as the user set.
+    """Return what Canvas may call a student in names of files.
+
+    It is sorted by any word of the name, or as the user set.
     """
     words = name.split()[:_MAX_WORDS]
     if "," in name:

@@ -1,5 +1,6 @@
-"""Grade a class: send new and changed submissions to the workers, write each result into the
-gradebook at once.
+"""Grade a class.
+
+Send new and changed submissions to the workers, write each result into the gradebook at once.
 """
 
 from collections.abc import Callable
@@ -22,8 +23,9 @@ _OF_PERSON = ("name", "email", "login", "sis", "canvas", "moodle")
 
 
 class Batch:
-    """One run over a class. `context` is the hash of all that results depend on besides the
-    submissions.
+    """One run over a class.
+
+    `context` is the hash of all that results depend on besides the submissions.
     """
 
     def __init__(
@@ -52,8 +54,9 @@ class Batch:
         *,
         force: bool = False,
     ) -> Progress:
-        """Grade all submissions that have no current result, and empty the list: a large class
-        takes memory.
+        """Grade all submissions that have no current result, and empty the list.
+
+        A large class takes memory.
 
         One whose grading is lost is graded without its documents, if it has any; if that is lost as
         well, it is `errored`. One that used up its processor time is kept like a grade.
