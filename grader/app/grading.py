@@ -1,5 +1,6 @@
-"""A submission that is graded as the options of `grader grade` say, once or with --watch again
-and again.
+"""A submission that is graded as the options of `grader grade` say.
+
+Once, or with --watch again and again.
 """
 
 import os
@@ -170,8 +171,9 @@ def _package_around(path: str) -> str:
 
 
 def requested_rubric(request: GradeRequest) -> "Rubric":
-    """Return the rubric. Raises GraderError if it is not the expected one or lacks a part that is
-    named.
+    """Return the rubric.
+
+    Raises GraderError if it is not the expected one or lacks a part that is named.
     """
     expected = request.expect_rubric
     if expected is not None and not re.fullmatch(_SHA256, expected):

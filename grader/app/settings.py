@@ -53,6 +53,7 @@ class Settings(NamedTuple):
 
 def read_settings(path: str) -> Settings:
     """Return the settings of the nearest file at or above a path; of a file its folder is meant.
+
     Raises GraderError.
     """
     if path == "-":

@@ -1,5 +1,6 @@
-"""The autograder zip for Gradescope: the grader, a rubric, and the scripts that install and run
-them there.
+"""The autograder zip for Gradescope.
+
+It has the grader, a rubric, and the scripts that install and run them there.
 """
 
 import json
@@ -23,8 +24,9 @@ _EXTRA = re.compile(
 
 
 def autograder_zip(rubric: Rubric) -> bytes:
-    """Return the zip to upload under "Configure Autograder". Raises InputError if the rubric
-    cannot be used there.
+    """Return the zip to upload under "Configure Autograder".
+
+    Raises InputError if the rubric cannot be used there.
     """
     for criterion in rubric.criteria:
         package = criterion.check.function.__module__.split(".")[0]
@@ -52,8 +54,9 @@ def autograder_zip(rubric: Rubric) -> bytes:
 
 
 def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
-    """Return the files of the reference solution, by which hints are found and with which checks
-    compare.
+    """Return the files of the reference solution.
+
+    By these hints are found, and with these checks compare.
 
     Without such a check there are none if it is not below the rubric's folder. Raises GraderError.
     """
@@ -73,8 +76,9 @@ def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
 
 
 def package_files() -> dict[str, bytes]:
-    """Return the files of the package by their paths in a wheel: with the rubrics, without
-    references and examples.
+    """Return the files of the package by their paths in a wheel.
+
+    With the rubrics, without references and examples.
     """
     data = ("rubrics", "examples")  # in a wheel; in a checkout they are outside of the package
     own_files = {
@@ -90,8 +94,9 @@ def package_files() -> dict[str, bytes]:
 
 
 def _files_of(place: Path, root: Path) -> dict[PurePosixPath, bytes]:
-    """Return the files at or below a place by their paths from a folder, without those of
-    editors and Python.
+    """Return the files at or below a place by their paths from a folder.
+
+    Without those of editors and Python.
     """
     paths = [place] if place.is_file() else [path for path in place.rglob("*") if path.is_file()]
     own_files = {
@@ -129,8 +134,9 @@ def requirements(extra: str) -> list[str]:
 
 
 def _without_extra(requirement: str, extra: str) -> str:
-    """Return a requirement without its condition on an extra; empty if it belongs to another
-    extra.
+    """Return a requirement without its condition on an extra.
+
+    Empty if it belongs to another extra.
     """
     name, _, marker = requirement.partition(";")
     condition = _EXTRA.search(marker)

@@ -1,5 +1,6 @@
-"""What ends a command early: Ctrl-C, without the interpreter's messages, and limits of processor
-time and memory.
+"""What ends a command early.
+
+Ctrl-C, without the interpreter's messages, and limits of processor time and memory.
 
 Everything that reads a student's files counts its own work. The outer limits are for work that is
 not counted.
@@ -25,9 +26,9 @@ _MEMORY = 2 * 1024**3  # bytes more than at the start
 
 @contextmanager
 def quiet_interrupts() -> Iterator[None]:
-    """Ctrl-C raises KeyboardInterrupt as always, but Python prints nothing about what it
-    interrupts.
+    """Let Python print nothing about what Ctrl-C interrupts.
 
+    It raises KeyboardInterrupt as always.
     It can arrive where Python cannot raise an exception (a finalizer, a callback of an import):
     there Python would print the KeyboardInterrupt and go on, so it is raised again afterwards.
     Files that the interrupted code leaves open are no mistake.

@@ -42,8 +42,9 @@ _NOT_NAMED = Path("*")  # no folder is searched for --help
 
 
 def only_gradebook(named: Path = _NOT_NAMED) -> Path:
-    """Return the gradebook that is named, else the only one in the current folder. Raises
-    InputError.
+    """Return the gradebook that is named, else the only one in the current folder.
+
+    Raises InputError.
     """
     if named != _NOT_NAMED or os.environ.get("_GRADER_COMPLETE"):  # which looks for it itself
         return named

@@ -86,8 +86,9 @@ class _Correction(NamedTuple):
 
 
 def usage_message(error: Any, arguments: Sequence[str], root: Any) -> str:
-    """Return one line on an error of usage: what is wrong, and what to type. `root` is the command
-    line of typer with all commands.
+    """Return one line on an error of usage: what is wrong, and what to type.
+
+    `root` is the command line of typer with all commands.
     """
     line = _command_line(arguments, root)
     correction = _correct_hyphens(line) or _correct_command(line)

@@ -1,5 +1,6 @@
-"""Read the robots at a path as ROS 2 does, with joints at given positions, and what is wrong in the
-packages around them.
+"""Read the robots at a path as ROS 2 does, with joints at given positions.
+
+And what is wrong in the packages around them.
 """
 
 import os
@@ -63,8 +64,9 @@ class InspectRequest(NamedTuple):
         return settings.stated
 
     def selection(self, folder: Path) -> Selection:
-        """Return which problems are shown, of files whose paths begin in a folder. Raises
-        GraderError.
+        """Return which problems are shown, of files whose paths begin in a folder.
+
+        Raises GraderError.
         """
         select = read_codes("--select", self.select or ())
         ignore = read_codes("--ignore", self.ignore or ())
@@ -72,8 +74,10 @@ class InspectRequest(NamedTuple):
 
 
 def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
-    """Show an inspection, and save the reports that `--save` names; with `--watch` after every
-    change. Return whether nothing is certainly wrong. Raises GraderError.
+    """Show an inspection, and save the reports that `--save` names.
+
+    With `--watch` after every change. Return whether nothing is certainly wrong. Raises
+    GraderError.
     """
     saves = request.saves
     check_saves(saves, (), request.path)
@@ -112,6 +116,7 @@ def _show_and_save(inspection: Inspection, request: InspectRequest, terminal: Te
 
 def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
     """Return the inspection of the robots and the packages at a path; of one robot, if it is named.
+
     Raises GraderError.
     """
     path, joints, relative_to = request.path, request.joint or (), request.relative_to
@@ -201,8 +206,9 @@ def _which_one(path: str, robots: Sequence[Read]) -> str:
 def _inspected(
     opened: OpenedWorkspace, urdf: Read, joints: Sequence[str], relative_to: str | None
 ) -> InspectedRobot:
-    """Return a robot with its joints at given positions. Raises GraderError for other joints and
-    frames.
+    """Return a robot with its joints at given positions.
+
+    Raises GraderError for other joints and frames.
     """
     robot = _configuration(urdf.loaded, joints)
     if robot is not None and relative_to is None:
@@ -233,8 +239,9 @@ def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None
 
 
 def _read_position(text: str) -> tuple[str, float]:
-    """Return the joint and its position in radians or metres that `--joint` gives. Raises
-    GraderError.
+    """Return the joint and its position in radians or metres that `--joint` gives.
+
+    Raises GraderError.
     """
     name, equals, value = text.rpartition("=")
     try:

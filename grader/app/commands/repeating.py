@@ -122,8 +122,9 @@ def changes(
 
 
 def _stamps_before(began: int, stamps: _Stamps) -> _Stamps:
-    """Return stamps, but None for what changed since a time in nanoseconds: whether the change was
-    read is not known.
+    """Return stamps, but None for what changed since a time in nanoseconds.
+
+    Whether the change was read is not known.
     """
     known = dict(stamps)
     for path, stamp in stamps.items():
@@ -133,8 +134,9 @@ def _stamps_before(began: int, stamps: _Stamps) -> _Stamps:
 
 
 def _stamps(paths: Iterable[Path], own_paths: Collection[str] = ()) -> _Stamps:
-    """Return what identifies each file and its content; of a folder, each file and folder that a
-    grading looks at.
+    """Return what identifies each file and its content.
+
+    Of a folder, each file and folder that a grading looks at.
     """
     stamps: _Stamps = {}
     for path in paths:

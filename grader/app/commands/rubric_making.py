@@ -1,5 +1,6 @@
-"""Write a rubric from a reference solution, and test a rubric: its reference, equivalents, samples
-and mutants.
+"""Write a rubric from a reference solution, and test a rubric.
+
+A test has its reference, equivalents, samples and mutants.
 """
 
 import os
@@ -77,6 +78,7 @@ def write_rubric(
     file: Path, reference: str, warn: Warn, choice: DraftChoice, *, force: bool
 ) -> str:
     """Write a rubric of a reference's facts; return what it contains, omits, and the next step.
+
     Raises GraderError.
     """
     _check_target(file, force=force)
@@ -105,6 +107,7 @@ def _check_target(file: Path, *, force: bool) -> None:
 
 def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | None:
     """Return the robot of the reference, which ROS 2 must load; None of packages without one.
+
     Raises GraderError.
     """
     shown = printable_path(reference)
@@ -150,8 +153,9 @@ def _rubric_head(file: Path, reference: str, submission: Submission) -> Head:
 
 
 def _relative(reference: Path, folder: Path) -> str:
-    """Return the path of the reference as a rubric in a folder names it; raise GraderError if it is
-    no text.
+    """Return the path of the reference as a rubric in a folder names it.
+
+    Raise GraderError if it is no text.
     """
     try:
         path = os.path.relpath(reference.resolve(), folder.resolve())
@@ -199,8 +203,9 @@ def test_rubric(
     are_all_graded: bool,
     seed: int,
 ) -> tuple[str, ExitCode]:
-    """Return the result of testing a rubric, and the exit code. All mutants are graded, or a sample
-    that the seed draws.
+    """Return the result of testing a rubric, and the exit code.
+
+    All mutants are graded, or a sample that the seed draws.
 
     Raises GraderError for a broken rubric or one without a reference.
     """

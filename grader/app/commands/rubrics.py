@@ -26,8 +26,9 @@ def list_rubrics() -> str:
 
 
 def copy(name: str, folder: Path) -> str:
-    """Copy the files of a shipped rubric; return what was written, and the next step. Raises
-    GraderError.
+    """Copy the files of a shipped rubric; return what was written, and the next step.
+
+    Raises GraderError.
     """
     from shutil import copyfile, copytree, ignore_patterns
 
@@ -66,8 +67,9 @@ def copy(name: str, folder: Path) -> str:
 
 
 def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
-    """Check a rubric; return a summary and the exit code: 1 if criteria cannot be decided on the
-    reference solution.
+    """Check a rubric, and return a summary and the exit code.
+
+    The code is 1 if criteria cannot be decided on the reference solution.
 
     Raises RubricError, with all mistakes in the file, or if the reference loses points.
     """
@@ -97,8 +99,9 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
 
 
 def _lines_on_the_rest(name: str, warn: Warn) -> list[str]:
-    """Return what the reference does not pass of the correct criteria of a rubric that has
-    mistakes, and warn of likely ones.
+    """Return what the reference does not pass of the correct criteria of a rubric.
+
+    The rubric has mistakes. Warn of likely ones.
     """
     from grader.files.reading import read_capped
     from grader.lab.authoring.rubric_check import likely_mistakes, reference_failures
@@ -120,8 +123,9 @@ def _lines_on_the_rest(name: str, warn: Warn) -> list[str]:
 
 
 def bundle(platform: str, output: Path, name: str) -> str:
-    """Write the autograder zip for a platform; return what to do next, in two lines. Raises
-    GraderError.
+    """Write the autograder zip for a platform; return what to do next, in two lines.
+
+    Raises GraderError.
     """
     from grader.app.bundle.gradescope import autograder_zip
     from grader.report.explanations import rubric_summary

@@ -186,8 +186,9 @@ def _address(path: str) -> str:
 def follow_files(
     request: ViewRequest, pages: RobotPages, own_paths: Collection[str] = ()
 ) -> Iterator[None]:
-    """Show the robots at a path, and again after every change, until the pages are ended; yield
-    after each.
+    """Show the robots at a path, and again after every change, until the pages are ended.
+
+    Yield after each.
 
     Args:
         request: What is shown.
@@ -218,8 +219,9 @@ def follow_files(
 def view_in_browser(
     request: ViewRequest, port: int, terminal: Terminal, *, opens: bool = True
 ) -> str:
-    """Serve the pages of the robots at a path until Ctrl-C, and return a summary; it `opens` the
-    page in the browser.
+    """Serve the pages of the robots at a path until Ctrl-C, and return a summary.
+
+    It `opens` the page in the browser.
 
     Raises GraderError for what cannot be read at first.
     """

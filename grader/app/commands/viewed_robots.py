@@ -1,5 +1,6 @@
-"""The robots that `grader view` shows: one that is graded against a rubric, or all that an
-inspection finds.
+"""The robots that `grader view` shows.
+
+One that is graded against a rubric, or all that an inspection finds.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -62,8 +63,9 @@ class ViewedFiles(NamedTuple):
 
 
 def read_robots(request: ViewRequest, tried: Mapping[str, str]) -> ViewedFiles:
-    """Return the robots at a path, with the arguments of xacro that are tried. Raises GraderError,
-    also if there is no robot.
+    """Return the robots at a path, with the arguments of xacro that are tried.
+
+    Raises GraderError, also if there is no robot.
     """
     if request.path in ("", "-"):
         raise GraderError("view takes a file or folder: standard input is read only once")

@@ -48,8 +48,10 @@ class _Shown:
 def diagnostics_of(
     look: Look, root: Path, graded: Sequence[Mistake] = ()
 ) -> dict[str, list[lsp.Diagnostic]]:
-    """Return what is wrong with the files of a folder, by their paths: the problems, and the
-    mistakes that lose points of a rubric. What a problem costs is said with it.
+    """Return what is wrong with the files of a folder, by their paths.
+
+    The problems, and the mistakes that lose points of a rubric. What a problem costs is said
+    with it.
     """
     ranges = TextRanges(look, root)
     shown: dict[str, list[lsp.Diagnostic]] = {}
@@ -99,8 +101,9 @@ def _distance(finding: Finding, at: Location) -> tuple[bool, bool, int]:
 def _join_mistakes(
     shown: Sequence[_Shown], graded: Iterable[Mistake], source_of: SourceOf
 ) -> list[_Shown]:
-    """Add to each problem the mistakes that report it, and to each other mistake the warnings at
-    the same attribute of a robot; return both.
+    """Add to each problem the mistakes that report it, and to others the warnings.
+
+    The warnings are at the same attribute of a robot as the other mistake. Return both.
     """
     left, others = [*shown], []
     for mistake in graded:
@@ -124,8 +127,9 @@ def _join_mistakes(
 
 
 def _is_same_word(problem: Finding, criterion: Finding, source_of: SourceOf) -> bool:
-    """Return whether a warning is at the attribute that a criterion is about: at a tag, they may be
-    about different things.
+    """Return whether a warning is at the attribute that a criterion is about.
+
+    At a tag, they may be about different things.
     """
     at = problem.location
     if problem.severity == "error" or at != criterion.location:
@@ -153,8 +157,9 @@ def _diagnostic(look: Look, ranges: TextRanges, shown: _Shown, at: Location) -> 
 def _related(
     look: Look, ranges: TextRanges, shown: _Shown
 ) -> list[lsp.DiagnosticRelatedInformation]:
-    """Return the other places of a diagnostic: what was meant, the calls of macros, the criteria
-    that fail by it.
+    """Return the other places of a diagnostic.
+
+    What was meant, the calls of macros, the criteria that fail by it.
     """
     related_places = []
     for name, call in shown.finding.location.calls:

@@ -56,8 +56,9 @@ class Look:
 
     @cached_property
     def graded(self) -> Graded:
-        """The criteria that fail, and how to fix them; nothing without a rubric. Raises
-        GraderError.
+        """The criteria that fail, and how to fix them; nothing without a rubric.
+
+        Raises GraderError.
         """
         return self.grade(self.tree)
 

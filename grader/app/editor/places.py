@@ -10,8 +10,9 @@ from grader.app.editor.text_ranges import Lines, TextRanges
 
 
 class TextPlace(NamedTuple):
-    """A place in a file that an editor asks about; line and column count from 1, columns in
-    characters.
+    """A place in a file that an editor asks about.
+
+    Line and column count from 1, columns in characters.
     """
 
     root: Path  # of the files

@@ -33,8 +33,9 @@ def prepared(look: Look, place: TextPlace) -> lsp.Range | None:
 
 
 def renamed(look: Look, place: TextPlace, new: str) -> lsp.WorkspaceEdit | None:
-    """Return the edits that give the name at a place another text, everywhere. Raises
-    CannotRenameError where something would be wrong then that is not wrong now.
+    """Return the edits that give the name at a place another text, everywhere.
+
+    Raises CannotRenameError where something would be wrong then that is not wrong now.
     """
     name = look.names.at(*place.triple)
     if name is None:

@@ -72,9 +72,10 @@ class _GraderServer(LanguageServer):
         return self.sessions[root]
 
     def session_of(self, uri: str) -> tuple[EditorSession, str] | None:
-        """Return the session that a file belongs to, with its path there; None for a file outside
-        of the folders. In an editor without a folder it is that of its package, or of a robot's
-        folder.
+        """Return the session that a file belongs to, with its path there.
+
+        None for a file outside of the folders. In an editor without a folder it is that of
+        its package, or of a robot's folder.
         """
         name = to_fs_path(uri)
         if name is None:
@@ -157,8 +158,9 @@ class _GraderServer(LanguageServer):
         position: lsp.Position,
         make: Callable[[Look, "places.TextPlace"], _T],
     ) -> _T | None:
-        """Return an answer about a place in a file, from a look at the files as they are now; None
-        where there is none.
+        """Return an answer about a place in a file, from a look at the files as they are now.
+
+        None where there is none.
         """
         session_and_path = self.session_of(uri)
         if session_and_path is None:
@@ -194,8 +196,9 @@ def _fault(error: Exception) -> lsp.Diagnostic:
 
 
 def _make_server(rubric: str) -> _GraderServer:
-    """Return the server of an editor, which grades with a rubric, an id or a file; empty for that
-    of the settings, or none.
+    """Return the server of an editor, which grades with a rubric, an id or a file.
+
+    Empty for that of the settings, or none.
     """
     server = _GraderServer(rubric)
     _follow_texts(server)

@@ -1,5 +1,6 @@
-"""Grade the submission in the current folder, as Gradescope lays it out, and write
-results/results.json.
+"""Grade the submission in the current folder, and write results/results.json.
+
+The folder is as Gradescope lays it out.
 
 There is always a results.json: run_autograder writes one that says that nothing was graded, and
 this script replaces it if the grader wrote a report. It needs only the standard library.
@@ -36,8 +37,9 @@ class _Completed(NamedTuple):
 
 
 def _main(arguments: list[str]) -> int:
-    """Grade, or with --check only test that the grader runs and loads the rubric. Return the exit
-    code.
+    """Grade, or with --check only test that the grader runs and loads the rubric.
+
+    Return the exit code.
     """
     settings = json.loads(Path("source", "autograder.json").read_text(encoding="utf-8"))
     if arguments == ["--check"]:
