@@ -68,7 +68,8 @@ def write_stderr(text: str) -> None:
 def show_class(work: str) -> Iterator[Callable[["Progress"], None]]:
     """Show the progress of a pass over a class, whose work is named.
 
-    Yields the function that receives it. It is one line that changes on a terminal, else a line every ten seconds.
+    Yields the function that receives it. It is one line that changes on a terminal, else a line
+    every ten seconds.
     """
     began = last_line = time.monotonic()
     is_terminal = sys.stderr is not None and sys.stderr.isatty()
