@@ -332,13 +332,18 @@ def _points(
         shares = {_ROBOT: of_rest, _PACKAGE: rest - of_rest, _NAMES: _OF_NAMES}
         groups = [_ROBOT] * len(of_robot)
         groups += [_NAMES if row in families else _PACKAGE for row in of_package]
-    if not of_robot:
-        shares[_PACKAGE] += shares.pop(_ROBOT)
-    if _NAMES in shares and not families:
-        shares[_PACKAGE] += shares.pop(_NAMES)
-    elif _NAMES in shares and len(families) == len(of_package):
-        shares[_NAMES] += shares.pop(_PACKAGE)
+    _join_empty_shares(shares, groups)
     return _shared(shares, groups, weights)
+
+
+def _join_empty_shares(shares: dict[str, int], groups: Sequence[str]) -> None:
+    """Give the share of a group without criteria to another one."""
+    if _ROBOT not in groups:
+        shares[_PACKAGE] += shares.pop(_ROBOT)
+    if _NAMES in shares and _NAMES not in groups:
+        shares[_PACKAGE] += shares.pop(_NAMES)
+    elif _NAMES in shares and _PACKAGE not in groups:
+        shares[_NAMES] += shares.pop(_PACKAGE)
 
 
 def _weight(row: _DraftCriterion, choice: DraftChoice) -> int:

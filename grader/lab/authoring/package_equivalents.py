@@ -98,19 +98,27 @@ def _in_other_language(submission: Submission, package: Package, language: str) 
     known = [node for node in nodes if node is not None]
     if len(known) < len(nodes) or not known:
         return {}
-    ending = ".xml" if language == _LAUNCH_IN_XML else ".yaml"
     path = package.path(paths[0])
-    name = posixpath.basename(path)
     build = package.path(CMAKE if package.is_cmake else SETUP)
-    for other in submission.whole_tree.files:
-        is_text = other.endswith(_TEXTS) and other not in (path, build)
-        if is_text and name in _text(submission, other):
-            return {}
-    text = _launch_xml(known)
-    if language == _LAUNCH_IN_YAML:  # JSON is YAML
+    if _is_named_elsewhere(submission, path, build):
+        return {}
+    if language == _LAUNCH_IN_XML:
+        ending, text = ".xml", _launch_xml(known)
+    else:  # JSON is YAML
+        ending = ".yaml"
         text = json.dumps({"launch": [{"node": node} for node in known]}, indent=2)
     built = _text(submission, build).replace(".launch.py", f".launch{ending}")
     return {path: None, f"{path.removesuffix('.py')}{ending}": text, build: built}
+
+
+def _is_named_elsewhere(submission: Submission, path: str, build: str) -> bool:
+    """Return whether a text other than the build file names a launch file."""
+    name = posixpath.basename(path)
+    for other in submission.whole_tree.files:
+        is_text = other.endswith(_TEXTS) and other not in (path, build)
+        if is_text and name in _text(submission, other):
+            return True
+    return False
 
 
 def _is_plain(launch: Launch) -> bool:

@@ -121,10 +121,11 @@ def node_runs(
     if (remap or arguments) and not nodes:
         raise RubricError(("node_runs looks for remap and arguments in nodes: name one",))
     places = find_places(package, evaluated, "read", "urdf", "include", built=built)
-    choices = [_names_in(evaluated, node.split(" or ")) for node in nodes or ()]
+    wanted_nodes = tuple(nodes or ())
+    choices = [_names_in(evaluated, node.split(" or ")) for node in wanted_nodes]
     missing = _missing_nodes(evaluated, choices)
     if missing and not _may_start(evaluated, missing):
-        return _fail_missing(evaluated, missing, nodes or ())
+        return _fail_missing(evaluated, missing, wanted_nodes)
     wanted = Wanted(
         absent=_names_in(evaluated, not_ or ()),
         remap=remap,
@@ -148,10 +149,14 @@ def node_runs(
     if built or not any(place.is_in_misnamed(package) for place in places):
         _check_starts(evaluated)
     _check_decided(evaluated, missing, faults, places)
-    started = sorted({node.name for node in evaluated.nodes if node.when})
-    return judged(
-        True, f"the launch file starts {', '.join(started)}", tuple(started), tuple(nodes or ())
-    )
+    return _pass_started(evaluated, wanted_nodes)
+
+
+def _pass_started(launch: "Launch", wanted_nodes: tuple[str, ...]) -> Outcome:
+    """Return the outcome of a launch file that starts what it should."""
+    started = sorted({node.name for node in launch.nodes if node.when})
+    message = f"the launch file starts {', '.join(started)}"
+    return judged(True, message, tuple(started), wanted_nodes)
 
 
 def _names_in(launch: "Launch", names: Iterable[str]) -> list[str]:

@@ -32,6 +32,11 @@ def urdf_loads(urdf: Reading) -> Outcome:
             undetermined[0].message,
             undetermined[0].location,
         )
+    return _fail_loading(urdf, problems)
+
+
+def _fail_loading(urdf: Reading, problems: list[Problem]) -> Outcome:
+    """Return the failure of a URDF that ROS 2 does not load as one tree, with its first cause."""
     problems.sort(key=lambda problem: (not problem.kind.is_before_ros, problem.kind not in _OF_XML))
     causes = [problem for problem in problems if not problem.kind.is_consequence]
     first = (causes or problems or list(urdf.problems))[0]

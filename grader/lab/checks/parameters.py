@@ -160,32 +160,43 @@ def value_of(submission: Submission, node: str, parameter: str) -> ParameterValu
         next((node_values.unknown for node_values in given if node_values.unknown), "")
         or workspace.launches.unknown_nodes
     )
-    if values and not unknown:
-        places = enumerated([value.location.file_and_line for value in values])
-        raise NotDecided(
-            f"{node} gets different values of {parameter}: {places}",
-            "a parameter has several values",
-        )
     if unknown:
         raise NotDecided(
             f"the parameters of {node} are not known: {unknown}",
             "parameters of a node are not known",
         )
-    for _, other in [] if given else _nameless(workspace):
-        cause = "the name of a node is only in its program"
-        raise NotDecided(f"{cause}: {other.package}/{other.executable}", cause)
+    if values:
+        places = enumerated([value.location.file_and_line for value in values])
+        raise NotDecided(
+            f"{node} gets different values of {parameter}: {places}",
+            "a parameter has several values",
+        )
     if not given:
-        there = similar_there(node, workspace.parameters.owners)
-        message = f"nothing gives parameters to a node {quoted(node)}{there}"
-        raise MissingElement("parameters of the node", node, message=message)
-    written = {
-        name: value.location for node_values in given for name, value in node_values.values.items()
-    }
+        raise _explain_nothing_given(workspace, node)
+    raise _explain_missing_parameter(submission, node, parameter)
+
+
+def _explain_nothing_given(workspace: Workspace, node: str) -> NotDecided | MissingElement:
+    """Return the error of a node that nothing gives parameters to."""
+    for _, other in _nameless(workspace):
+        cause = "the name of a node is only in its program"
+        return NotDecided(f"{cause}: {other.package}/{other.executable}", cause)
+    there = similar_there(node, workspace.parameters.owners)
+    message = f"nothing gives parameters to a node {quoted(node)}{there}"
+    return MissingElement("parameters of the node", node, message=message)
+
+
+def _explain_missing_parameter(submission: Submission, node: str, parameter: str) -> MissingElement:
+    """Return the error of a node that gets other parameters, but not this one."""
+    written = {}
+    for node_values in submission.workspace.parameters.owners[node]:
+        for name, value in node_values.values.items():
+            written[name] = value.location
     message = (
         f"{node} does not get the parameter {quoted(parameter)}{similar_there(parameter, written)}"
     )
     at = written.get(closest(parameter, written) or "", next(iter(written.values()), None))
-    raise MissingElement("parameter", f"{node} {parameter}", message=message, location=at)
+    return MissingElement("parameter", f"{node} {parameter}", message=message, location=at)
 
 
 def _nameless(workspace: Workspace) -> list[tuple[Package, StartedNode]]:

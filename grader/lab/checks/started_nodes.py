@@ -264,14 +264,10 @@ class _NodeTopics:
         python_type = re.sub("[/:]+", ".", message_type)
         of_kind = [topic for topic in self._topics if topic.verb == verb]
         same = [topic for topic in of_kind if topic.name == full_name]
-        is_certain = not self._is_open
         for topic in same:
-            actual = topic.type
-            if topic.node.when and (actual == python_type or not python_type):
+            if topic.node.when and python_type in (topic.type, ""):
                 return None
-            if actual is None or actual == python_type:
-                is_certain = False
-        if not is_certain:
+        if self._is_open or any(topic.type in (None, python_type) for topic in same):
             typed = f" with {message_type}" if message_type else ""
             return Fault(f"a node {verb} {full_name}{typed}", is_certain=False)
         if same:
@@ -280,10 +276,14 @@ class _NodeTopics:
             return Fault(message, same[0].location, cause="type")
         if self._unread:
             return self._unread[0]
-        message = f"no node {verb} {full_name}"
-        meant = closest(full_name, [topic.name for topic in of_kind])
-        for topic in of_kind:
-            if topic.name == meant:
-                guess = f"; there is {quoted(meant)}"
-                return Fault(message, topic.location, guess, cause="topic")
-        return Fault(message, cause="topic")
+        return _find_similar_topic(f"no node {verb} {full_name}", full_name, of_kind)
+
+
+def _find_similar_topic(message: str, full_name: str, topics: Sequence[_NodeTopic]) -> Fault:
+    """Return a fault with the topic whose name is like the missing one, if there is one."""
+    meant = closest(full_name, [topic.name for topic in topics])
+    for topic in topics:
+        if topic.name == meant:
+            guess = f"; there is {quoted(meant)}"
+            return Fault(message, topic.location, guess, cause="topic")
+    return Fault(message, cause="topic")

@@ -151,18 +151,21 @@ def _choose_parts(
     parts = [part for part in rubric.parts if not named or part.id in named]
     chosen = tuple(part.id for part in parts if part.needs == "urdf" or is_whole)
     notes = [*submission.notes, *_notes_on_xacro(submission)]
-    package, path = submission.package, submission.path
-    if (
-        package is not None
-        and path is not None
-        and not path.startswith(f"{package.folder}/" if package.folder else "")
-    ):
+    if _is_outside_of_package(submission):
         notes.append(_ELSEWHERE)
     skipped = [part.id for part in parts if part.id not in chosen]
     if skipped:
         only, verb = enumerated(chosen) or "nothing", "need" if len(skipped) > 1 else "needs"
         notes.append(f"only {only} is graded: {enumerated(skipped)} {verb} the whole folder")
     return chosen, notes
+
+
+def _is_outside_of_package(submission: Submission) -> bool:
+    """Return whether the graded URDF is not in the folder of the graded package."""
+    package, path = submission.package, submission.path
+    if package is None or path is None:
+        return False
+    return not path.startswith(f"{package.folder}/" if package.folder else "")
 
 
 def _find_evidence(

@@ -105,13 +105,27 @@ class _Readings:
         changed = []
         for name, result in before.items():
             meant = after[name]
-            is_unpassed = meant.outcome.status != "passed" and not meant.carried
-            if result.outcome.status == "passed" and is_unpassed and not slip.is_refused:
-                return None
-            if result.criterion.check.about.is_of_writing and not slip.is_refused:
-                continue
+            if not slip.is_refused:
+                is_unpassed = meant.outcome.status != "passed" and not meant.carried
+                if result.outcome.status == "passed" and is_unpassed:
+                    return None
+                if result.criterion.check.about.is_of_writing:
+                    continue
             if (result.is_lost or result.is_open) and _is_changed(result, meant):
                 changed.append(result)
+        return self._choose_payer(before_submission, after_submission, before, changed)
+
+    def _choose_payer(
+        self,
+        before_submission: Submission,
+        after_submission: Submission,
+        before: Mapping[str, Result],
+        changed: Sequence[Result],
+    ) -> str | None:
+        """Return the criterion that pays for a slip which changes these results, if there is one.
+
+        The first choice is that the URDF loads, then come failures, then all other results.
+        """
         loading: list[Result] = []
         if _parts_of(before_submission) != _parts_of(after_submission):
             loading = [

@@ -342,21 +342,7 @@ def missing_hints(
     """
     if difference is None or written is None or difference.draft is difference.reference:
         return {}
-    hints: dict[str, FoundHint] = {}
-    # links first, each with its joints
-    left = sorted(difference.missing, key=lambda part: part.tag, reverse=True)
-    while left:
-        link, is_link = left[0].link, left[0].tag == "link"
-        parts = [part for part in left if part.link == link or (is_link and part.parent == link)]
-        left = [part for part in left if part not in parts]
-        names = [
-            name for name in lost if name not in hints and criteria[name].check.subject == "robot"
-        ]
-        about_link = [name for name in names if criteria[name].arguments.get("link") == link]
-        if not about_link:
-            about_link = [name for name in names if link in texts_in(criteria[name].arguments)]
-        if about_link:
-            hints[max(about_link, key=lambda name: lost[name])] = _hint_of_parts(written, parts)
+    hints = _hints_of_links(difference, written, criteria, lost)
     loading = [name for name in lost if criteria[name].check.subject == "urdf"]
     joints = _missing_joints(difference)
     if not loading or not joints:
@@ -364,12 +350,48 @@ def missing_hints(
     if len(joints) == 1:
         # The URDF does not load without it: one criterion says so, no other one.
         hints = {name: hint for name, hint in hints.items() if hint.proposal.link != joints[0].link}
-        hints[loading[0]] = _hint_of_parts(written, joints)
-    else:
-        lacking = enumerated([repr(part.link) for part in joints], MAX_IN_HINT)
-        cause = f"the joints of {lacking} are missing"
-        hints[loading[0]] = FoundHint(Proposal((), cause), {}, words=f"add the joints of {lacking}")
+    hints[loading[0]] = _hint_of_joints(written, joints)
     return hints
+
+
+def _hints_of_links(
+    difference: RobotDifference,
+    written: Draft,
+    criteria: Mapping[str, Criterion],
+    lost: Mapping[str, Decimal],
+) -> dict[str, FoundHint]:
+    """Return a hint for each missing link with its joints, by the criterion that shows it."""
+    hints: dict[str, FoundHint] = {}
+    # links first, each with its joints
+    left = sorted(difference.missing, key=lambda part: part.tag, reverse=True)
+    while left:
+        link, is_link = left[0].link, left[0].tag == "link"
+        parts = [part for part in left if part.link == link or (is_link and part.parent == link)]
+        left = [part for part in left if part not in parts]
+        about_link = _criteria_about(link, [name for name in lost if name not in hints], criteria)
+        if about_link:
+            hints[max(about_link, key=lambda name: lost[name])] = _hint_of_parts(written, parts)
+    return hints
+
+
+def _criteria_about(
+    link: str, names: Sequence[str], criteria: Mapping[str, Criterion]
+) -> list[str]:
+    """Return the criteria of the robot that examine a link, else those that name it anywhere."""
+    of_robot = [name for name in names if criteria[name].check.subject == "robot"]
+    about_link = [name for name in of_robot if criteria[name].arguments.get("link") == link]
+    if about_link:
+        return about_link
+    return [name for name in of_robot if link in texts_in(criteria[name].arguments)]
+
+
+def _hint_of_joints(written: Draft, joints: list[MissingPart]) -> FoundHint:
+    """Return the hint on missing joints without which the URDF does not load."""
+    if len(joints) == 1:
+        return _hint_of_parts(written, joints)
+    lacking = enumerated([repr(part.link) for part in joints], MAX_IN_HINT)
+    cause = f"the joints of {lacking} are missing"
+    return FoundHint(Proposal((), cause), {}, words=f"add the joints of {lacking}")
 
 
 def _missing_joints(difference: RobotDifference) -> list[MissingPart]:

@@ -83,23 +83,7 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
         if found_hint in slips and found_hint.words:
             continue  # the message says what is missing, and the student writes it
         with trials.isolated():
-            entry = entries.get(found_hint.edits, name)
-            earlier = _entries_of(found_hint.after, entries)
-            # A hint that is shown at a skipped criterion is not where a reader would look for it.
-            named = [
-                criterion_id
-                for criterion_id in earlier
-                if results[criterion_id].outcome.status == "failed"
-            ]
-            in_order = _first_at(found_hint, results[entry].outcome.location)
-            text = message(in_order, level, submission, named)
-            keeps_edits = level == "edit" and not found_hint.words
-            if keeps_edits and any(map(_loses_expression, in_order.edits)):
-                # The student writes an expression, which no program has graded.
-                keeps_edits = False
-                in_order = in_order._replace(gains={})
-            hint = _hint(in_order, text, entry, results[name], keeps_edits=keeps_edits)
-            hints[name] = hint._replace(after=earlier)
+            hints[name] = _hint_for(name, found_hint, entries, results, level, submission)
     if level == "edit":
         others = [name for name in costs if name not in hints and name not in entries.values()]
         with trials.isolated():
@@ -110,6 +94,33 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
     for found_hint in _written(search.found):
         edits += found_hint.edits
     return _HintedReport(report, tuple(edits), trials.faults)
+
+
+def _hint_for(
+    name: str,
+    found_hint: FoundHint,
+    entries: Mapping[Edits, str],
+    results: Mapping[str, Result],
+    level: HintLevel,
+    submission: Submission,
+) -> Hint:
+    """Return the hint of a criterion in the words of a level.
+
+    `entries` are the criteria that show the hints with these edits.
+    """
+    entry = entries.get(found_hint.edits, name)
+    earlier = _entries_of(found_hint.after, entries)
+    # A hint that is shown at a skipped criterion is not where a reader would look for it.
+    named = [shown for shown in earlier if results[shown].outcome.status == "failed"]
+    in_order = _first_at(found_hint, results[entry].outcome.location)
+    text = message(in_order, level, submission, named)
+    keeps_edits = level == "edit" and not found_hint.words
+    if keeps_edits and any(map(_loses_expression, in_order.edits)):
+        # The student writes an expression, which no program has graded.
+        keeps_edits = False
+        in_order = in_order._replace(gains={})
+    hint = _hint(in_order, text, entry, results[name], keeps_edits=keeps_edits)
+    return hint._replace(after=earlier)
 
 
 def _hints_of_others(

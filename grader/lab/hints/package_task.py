@@ -164,13 +164,7 @@ def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
 
     For a package that has another or several.
     """
-    manifest, setup = task.package.manifest, task.package.installation
-    if manifest is None or manifest.name is None:
-        return
-    shares = [path.split("/")[1] for path in task.package.installed if path.startswith("share/")]
-    own_names = [manifest.name, setup.name if setup is not None else None]
-    similar = [name for name in shares if closest(name, [new])]
-    names = [name for name in dict.fromkeys([*own_names, *similar]) if name and name != new]
+    names = _other_names(task, new)
     if not names:
         return
     word = re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, names))})(?![\w.])")
@@ -183,3 +177,18 @@ def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
         moved = [name for name in names if f"resource/{name}" in task.files]
         edits += [task.renamed(f"resource/{name}", f"resource/{new}") for name in moved]
     yield change(edits, "the name of the package")
+
+
+def _other_names(task: PackageTask, new: str) -> list[str]:
+    """Return the names of the package in its files that differ from the new one.
+
+    They are those of its manifest and setup.py, and names like the new one in paths of its share
+    folder. None if the manifest has no name.
+    """
+    manifest, setup = task.package.manifest, task.package.installation
+    if manifest is None or manifest.name is None:
+        return []
+    shares = [path.split("/")[1] for path in task.package.installed if path.startswith("share/")]
+    own_names = [manifest.name, setup.name if setup is not None else None]
+    similar = [name for name in shares if closest(name, [new])]
+    return [name for name in dict.fromkeys([*own_names, *similar]) if name and name != new]
