@@ -104,14 +104,9 @@ def explanation(name: str, rubric: Rubric) -> str:
     It is a code, a criterion, a check, a parameter of a well-known node or the known releases.
     Raises InputError for another name.
     """
-    kind = next((kind for kind in EVERY_KIND if kind.code == name.upper()), None)
-    if kind is not None:
-        texts = [
-            f"{kind.code} ({kind.severity}): {kind.title}",
-            _fill(explanation_of(kind)),
-            EFFECTS[kind.effect],
-        ]
-        return _paragraphs([*texts, _rules_text(kind), *_examples(kind.code)])
+    for kind in EVERY_KIND:
+        if kind.code == name.upper():
+            return _explain_kind(kind)
     if name in RULES:
         return _rule_text(RULES[name])
     for criterion in rubric.criteria:
@@ -119,17 +114,38 @@ def explanation(name: str, rubric: Rubric) -> str:
             return _paragraphs(_criterion_texts(criterion, rubric))
     check = find_check(name)
     if check is not None:
-        source = f", from the package {check.distribution}" if check.distribution else ""
-        texts = [
-            f"{check.name}: a check for rubrics{source}",
-            *map(_fill, check.documentation.paragraphs),
-        ]
-        return _paragraphs(
-            [*texts, _arguments(check).rstrip("\n"), _causes(check), *_examples(check.name)]
-        )
+        return _explain_check(check)
     fact = releases_explanation() if name == _RELEASES else parameter_explanation(name)
     if fact:
         return fact
+    guess = _guess_name(name, rubric)
+    raise InputError(f"there is no problem code, rule, criterion or check {name!r}{guess}")
+
+
+def _explain_kind(kind: Kind) -> str:
+    """Return the explanation of a problem code."""
+    texts = [
+        f"{kind.code} ({kind.severity}): {kind.title}",
+        _fill(explanation_of(kind)),
+        EFFECTS[kind.effect],
+    ]
+    return _paragraphs([*texts, _rules_text(kind), *_examples(kind.code)])
+
+
+def _explain_check(check: Check) -> str:
+    """Return the explanation of a check."""
+    source = f", from the package {check.distribution}" if check.distribution else ""
+    texts = [
+        f"{check.name}: a check for rubrics{source}",
+        *map(_fill, check.documentation.paragraphs),
+    ]
+    return _paragraphs(
+        [*texts, _arguments(check).rstrip("\n"), _causes(check), *_examples(check.name)]
+    )
+
+
+def _guess_name(name: str, rubric: Rubric) -> str:
+    """Return what an unknown name may mean, or where the names are listed, after a semicolon."""
     known = (
         [kind.code for kind in EVERY_KIND]
         + [*RULES]
@@ -150,8 +166,7 @@ def explanation(name: str, rubric: Rubric) -> str:
         similar = f"; `grader inspect {shell_quoted(name)}` lists the problems of a file"
     else:
         similar = ""
-    guess = similar or did_you_mean(name, known) or f"; {lists}"
-    raise InputError(f"there is no problem code, rule, criterion or check {name!r}{guess}")
+    return similar or did_you_mean(name, known) or f"; {lists}"
 
 
 def rules_of(kind: Kind) -> list[Rule]:
