@@ -191,9 +191,20 @@ def _updated(
     paths = tuple(relative(path, folder) for path in options.paths or ())
     if {*paths} <= {*settings.submissions}:
         paths = ()  # a section alone: the others stay
-    due = read_time(options.due).isoformat() if options.due else None
+    settings = replace(settings, **_changes_by_options(options, paths))
+    if options.ignore_file or not settings.handed_out:
+        handed_out = [
+            *_handed_out(options.ignore_file or (), rubric),
+            *reference_hashes(rubric.data, str(rubric.path)),
+        ]
+        settings = replace(settings, handed_out=tuple(handed_out))
+    return settings
+
+
+def _changes_by_options(options: ClassRequest, paths: tuple[str, ...]) -> dict[str, Any]:
+    """Return the settings that the options of the command give, by their names."""
     given: dict[str, Any] = {  # None where the option is not given
-        "due": due,
+        "due": read_time(options.due).isoformat() if options.due else None,
         "layout": options.layout,
         "assignment": options.assignment,
         "ignore": tuple(options.ignore or ()) or None,
@@ -202,15 +213,7 @@ def _updated(
         "max_size": options.max_size,
         "submissions": paths or None,
     }
-    changed = {name: value for name, value in given.items() if value is not None}
-    settings = replace(settings, **changed)
-    if options.ignore_file or not settings.handed_out:
-        handed_out = [
-            *_handed_out(options.ignore_file or (), rubric),
-            *reference_hashes(rubric.data, str(rubric.path)),
-        ]
-        settings = replace(settings, handed_out=tuple(handed_out))
-    return settings
+    return {name: value for name, value in given.items() if value is not None}
 
 
 def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:

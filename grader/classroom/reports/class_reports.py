@@ -240,15 +240,24 @@ def write_reports(
         kept.save(new_hints, book.settings.roots(book.folder))
     lost = {key: one.why_lost for key, one in done.items() if one.why_lost}
     if Format.HTML in run.formats:
-        below = f"{names.REPORTS}/" if is_in_gradebook else ""
-        pages = {key: below + name for key, name in files.items() if key not in lost}
-        stills = {
-            key: done[key].still if key in done else kept.written[str(paths[key][0])].still
-            for key in pages
-        }
-        write_class_page(book, run.gradebook if is_in_gradebook else run.folder, pages, stills)
-    written = counted(len(files) - len(lost), "report")
-    terminal.warn(f"{written} written to {printable_path(run.folder)}")
+        written_files = {key: name for key, name in files.items() if key not in lost}
+        stills = {}
+        for key in written_files:
+            one = done[key] if key in done else kept.written[str(paths[key][0])]
+            stills[key] = one.still
+        if is_in_gradebook:
+            pages = {key: f"{names.REPORTS}/{name}" for key, name in written_files.items()}
+            write_class_page(book, run.gradebook, pages, stills)
+        else:
+            write_class_page(book, run.folder, written_files, stills)
+    _tell_written(book, run, len(files) - len(lost), lost, terminal)
+
+
+def _tell_written(
+    book: Gradebook, run: ReportRun, count: int, lost: Mapping[str, str], terminal: Terminal
+) -> None:
+    """Print how many reports were written, and why others were not."""
+    terminal.warn(f"{counted(count, 'report')} written to {printable_path(run.folder)}")
     for key, why in lost.items():
         who = named(key, book.grade(key).student.name)
         terminal.warn(printable(f"no report for {who}: {why}"))
