@@ -119,15 +119,12 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     for kind in (request.output_format, *(kind for kind, _ in request.saves)):
         inputs_of(kind)  # as well
     from grader.lab.grading.grade import grade
-    from grader.lab.rubric.criterion import worth
     from grader.lab.submission.opening import open_submission
     from grader.lab.submission.submission import Opening
 
     rubric = requested_rubric(request)
     if threshold is not None:
-        parts = request.part or [part.id for part in rubric.parts]
-        graded = worth(row for row in rubric.criteria if row.part in parts)
-        check_threshold(threshold, graded.points + graded.bonus)
+        _check_threshold_of(rubric, request, threshold)
     reports = frozenset(os.path.realpath(file) for _, file in request.saves if not is_source(file))
     opening = Opening(request.max_size, read_arguments(request.arg or ()), reports=reports)
     submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)
@@ -148,6 +145,17 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     return GradeRun(
         report, base_of(request.path, folder), exit_code(report, threshold), fix, besides
     )
+
+
+def _check_threshold_of(
+    rubric: "Rubric", request: GradeRequest, threshold: tuple[Decimal, bool]
+) -> None:
+    """Raise GraderError for a threshold above what the graded parts are worth."""
+    from grader.lab.rubric.criterion import worth
+
+    parts = request.part or [part.id for part in rubric.parts]
+    graded = worth(row for row in rubric.criteria if row.part in parts)
+    check_threshold(threshold, graded.points + graded.bonus)
 
 
 def save_reports(request: GradeRequest, run: GradeRun) -> None:

@@ -357,20 +357,36 @@ def result_line(report: Report) -> str:
     Of a student in a class it is the grade, and how it came about.
     """
     if report.grade is not None:
-        texts = [grade_line(report)]
-        if report.counting is not None:
-            texts.insert(0, f"{score_text(report)}.")
-        if report.open_points:
-            texts.append(f"{_pending_points(report)}.")
-        return " ".join(texts)
+        return _result_with_grade(report)
     sections, decided = report_sections(report), report.max_score - report.pending
     if decided == 0 and not sections.mistakes:
         return sentence(_pending_points(report)) if report.pending else "Nothing to grade."
     points = f"{format_points(report.score)} of {counted_points(decided)}"
-    open_points = (
-        f"; {format_points(report.pending)} more {'needs' if report.pending == 1 else 'need'} "
-        "manual grading"
-    )
+    reasons = _reasons_of_loss(sections)
+    if reasons:
+        text = f"{points}: {', '.join(reasons)}"
+    elif report.pending_automatic:
+        text = f"No mistakes found: {points}"
+    else:
+        text = f"All automatic checks passed: {points}"
+    if report.pending:
+        verb = "needs" if report.pending == 1 else "need"
+        text += f"; {format_points(report.pending)} more {verb} manual grading"
+    return f"{text}."
+
+
+def _result_with_grade(report: Report) -> str:
+    """Return the result of a student in a class in a line: the grade, and how it came about."""
+    texts = [grade_line(report)]
+    if report.counting is not None:
+        texts.insert(0, f"{score_text(report)}.")
+    if report.open_points:
+        texts.append(f"{_pending_points(report)}.")
+    return " ".join(texts)
+
+
+def _reasons_of_loss(sections: ReportSections) -> list[str]:
+    """Return what the points were lost by, each with the points."""
     faulty = [entry for entry in sections.mistakes if entry.status == "errored"]
     mistakes = [entry for entry in sections.mistakes if entry.status != "errored"]
     reasons = []
@@ -386,9 +402,7 @@ def result_line(report: Report) -> str:
         reasons.append(
             f"{counted(len(faulty), 'faulty check costs', 'faulty checks cost')} {_lost_by(faulty)}"
         )
-    passed = "No mistakes found" if report.pending_automatic else "All automatic checks passed"
-    text = f"{points}: {', '.join(reasons)}" if reasons else f"{passed}: {points}"
-    return f"{text}{open_points if report.pending else ''}."
+    return reasons
 
 
 def _lost_by(entries: Iterable[Entry]) -> str:

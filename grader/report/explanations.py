@@ -146,17 +146,13 @@ def _explain_check(check: Check) -> str:
 
 def _guess_name(name: str, rubric: Rubric) -> str:
     """Return what an unknown name may mean, or where the names are listed, after a semicolon."""
-    known = (
-        [kind.code for kind in EVERY_KIND]
-        + [*RULES]
-        + [criterion.id for criterion in rubric.criteria]
-        + check_names()
-    )
+    criteria = [criterion.id for criterion in rubric.criteria]
+    known = [kind.code for kind in EVERY_KIND] + [*RULES] + criteria + check_names()
     lists = (
         f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, "
         "reports show the codes, and a parameter of a well-known node is NODE.NAME"
     )
-    begun = [criterion.id for criterion in rubric.criteria if criterion.id.startswith(name)]
+    begun = [criterion_id for criterion_id in criteria if criterion_id.startswith(name)]
     if begun:
         verb = "is" if len(begun) == 1 else "are"
         similar = f"; there {verb} {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`"
@@ -211,6 +207,11 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
     given = " ".join(f"{name}:={value}" for name, value in criterion.args.items())
     launched = f"Launch files and the robot are read under the arguments {given}." if given else ""
     yield _check_text("Check", criterion.check, criterion.arguments, pose, launched)
+    yield from _carried_texts(criterion)
+
+
+def _carried_texts(criterion: Criterion) -> Iterator[str]:
+    """Yield the checks that count instead after mistakes of other criteria."""
     for carried in criterion.carried:
         failures = f"If it fails and {enumerated(carried.causes, word='or')} failed before it"
         yield _check_text(

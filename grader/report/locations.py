@@ -4,7 +4,7 @@ In words, with their source line or an edit of it, and their path in the reposit
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from difflib import SequenceMatcher
 from itertools import groupby
 
@@ -133,11 +133,17 @@ def diff_lines(edits: Sequence[Edit], source_of: SourceOf) -> list[str]:
         changes, source = list(of_file), source_of(path)
         new_path = next((edit.renamed for edit in changes if edit.renamed), path)
         lines += [f"--- {path if source is not None else '/dev/null'}", f"+++ {new_path}"]
-        for line, of_line in groupby(changes, key=lambda edit: edit.line):
-            some = [edit for edit in of_line if edit.old or edit.new]
-            if some:
-                lines += [f"@@ line {line} @@", *_diff(*_texts_around(some, source))]
+        lines += _changed_lines(changes, source)
     return [printable(line) for line in first_lines(lines, _MAX_LINES)]
+
+
+def _changed_lines(edits: Iterable[Edit], source: Source | None) -> Iterator[str]:
+    """Yield the lines of a file before and after edits, each below its number."""
+    for line, of_line in groupby(edits, key=lambda edit: edit.line):
+        some = [edit for edit in of_line if edit.old or edit.new]
+        if some:
+            yield f"@@ line {line} @@"
+            yield from _diff(*_texts_around(some, source))
 
 
 def _texts_around(edits: list[Edit], source: Source | None) -> tuple[str, str]:

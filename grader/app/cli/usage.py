@@ -229,14 +229,18 @@ def _correct_option(line: _CommandLine, error: Any) -> _Correction | None:
         kinds = [kind for kind in Format if name.endswith(f".{kind.ending}")]
         if kinds:
             return _Correction(why, line.replaced(at, at + 2, "--save", f"{kinds[0]}={name}"))
-    if wrong.startswith("--"):
-        meant = closest(wrong, [name for name in line.options if name.startswith("--")])
-    else:
-        fitting = [name for name in line.options if name.startswith(f"-{wrong}")]
-        meant = fitting[0] if len(fitting) == 1 else None
+    meant = _find_option(wrong, line)
     if meant is None:
         return None
     return _Correction(why, line.replaced(at, at + 1, meant + line.words[at].removeprefix(wrong)))
+
+
+def _find_option(wrong: str, line: _CommandLine) -> str | None:
+    """Return the option that is meant: the closest one, or the only one with these letters."""
+    if wrong.startswith("--"):
+        return closest(wrong, [name for name in line.options if name.startswith("--")])
+    fitting = [name for name in line.options if name.startswith(f"-{wrong}")]
+    return fitting[0] if len(fitting) == 1 else None
 
 
 def _correct_extra_words(line: _CommandLine, error: Any) -> _Correction | None:

@@ -131,8 +131,8 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
         raise InputError(
             f"{printable_path(path)} has neither a URDF nor a package: no file in it has a <robot>"
         )
-    for reason in [robot.reason for robot in unread]:
-        warn(reason)
+    for robot in unread:
+        warn(robot.reason)
     base = base_of(path, None)
     if request.robot:
         chosen = _named(request.robot, read)

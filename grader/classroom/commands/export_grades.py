@@ -87,14 +87,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
             class_reports.ReportRun(book.folder, folder, (Format.HTML,)), terminal
         )
         return b"", ExitCode.PASSED
-    for path in (request.output, request.feedback):
-        if path is None:
-            continue
-        refuse_symlinks(path, roots)
-        if book.folder.resolve() in path.resolve().parents:
-            raise InputError(
-                f"cannot write {printable_path(path)}: the gradebook is written by its own commands"
-            )
+    _refuse_paths(request, book, roots)
     warn_of_ignored(book, terminal.warn)
     exported = _exported(request, book, terminal)
     doubts = [
@@ -120,6 +113,18 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
         return exported.data, ExitCode.PASSED
     save_bytes(request.output, exported.data, roots)
     return b"", ExitCode.PASSED
+
+
+def _refuse_paths(request: ExportRequest, book: Gradebook, roots: Sequence[Path]) -> None:
+    """Raise InputError for an output in the gradebook, or one that leads through a symlink."""
+    for path in (request.output, request.feedback):
+        if path is None:
+            continue
+        refuse_symlinks(path, roots)
+        if book.folder.resolve() in path.resolve().parents:
+            raise InputError(
+                f"cannot write {printable_path(path)}: the gradebook is written by its own commands"
+            )
 
 
 def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Filled:

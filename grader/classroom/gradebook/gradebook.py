@@ -154,21 +154,24 @@ class Gradebook:
             marks[TOTAL] = grade.final.value
         if grade.obstacle is Reason.PENDING:
             pending = format_points(grade.pending)
-        own_deadline = self.marks.counting.get((student.key, DEADLINE))
-        deadline = student.due
-        if own_deadline is not None:
-            deadline = own_deadline.value
-        elif student.extension_days:
-            deadline = f"{deadline} extension {student.extension_days:g}".lstrip()
         return RunGrade(
             grade.total_text or None,
             grade.obstacle.name if grade.obstacle is not None else "",
             pending,
             late.days,
             format_points(late.points) if late.points else "",
-            deadline,
+            self._deadline_of(student),
             marks,
         )
+
+    def _deadline_of(self, student: Student) -> str:
+        """Return a student's own deadline as a run records it; empty without one."""
+        own_deadline = self.marks.counting.get((student.key, DEADLINE))
+        if own_deadline is not None:
+            return own_deadline.value
+        if student.extension_days:
+            return f"{student.due} extension {student.extension_days:g}".lstrip()
+        return student.due
 
     def grade(self, key: str) -> StudentGrade:
         """Return the grade of the student with a key."""

@@ -104,11 +104,8 @@ def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatisti
     """Return the statistics of the grades of a class."""
     everyone = list(grades)
     present = [grade.stored for grade in everyone if grade.stored is not None and not grade.is_gone]
-    enrolled = [
-        grade
-        for grade in everyone
-        if grade.student.is_on_roster and (grade.has_final or not grade.is_gone)
-    ]
+    on_roster = [grade for grade in everyone if grade.student.is_on_roster]
+    enrolled = [grade for grade in on_roster if grade.has_final or not grade.is_gone]
     statuses = Counter(grade.status for grade in enrolled)
     counted = [grade for grade in enrolled if grade.is_counted]
     totals = [grade.total or Decimal(0) for grade in counted]

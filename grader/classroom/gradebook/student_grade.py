@@ -258,7 +258,19 @@ class StudentGrade:
     @cached_property
     def concerns(self) -> dict[Reason, str]:
         """Why a person should look at this grade, each reason with its details."""
-        reason, reasons = self.stored.reason if self.stored is not None else "", {*self.known}
+        reason = self.stored.reason if self.stored is not None else ""
+        reasons = self._reasons(reason)
+        details = dict.fromkeys((Reason.FAILED, Reason.UNREADABLE, Reason.SEVERAL), reason)
+        details[Reason.OLDER_MARKS] = ", ".join(self.older)
+        if self.final is not None:
+            details[Reason.EARLY_MARK] = (
+                f"{self.final.value} instead of {format_points(self.score)}"
+            )
+        return {one: details.get(one, "") for one in Reason if one in reasons}
+
+    def _reasons(self, reason: str) -> set[Reason]:
+        """Return why a person should look at this grade; `reason` is that of the result."""
+        reasons = {*self.known}
         if any(one.is_faulty for one in self.results):
             reasons.add(Reason.FAILED)
         if self.status == "unreadable" and self.pending:
@@ -275,13 +287,7 @@ class StudentGrade:
             reasons.add(Reason.EARLY_MARK)
         if self.late.is_guess and self.late.points:
             reasons.add(Reason.UNKNOWN_TIME)
-        details = dict.fromkeys((Reason.FAILED, Reason.UNREADABLE, Reason.SEVERAL), reason)
-        details[Reason.OLDER_MARKS] = ", ".join(self.older)
-        if self.final is not None:
-            details[Reason.EARLY_MARK] = (
-                f"{self.final.value} instead of {format_points(self.score)}"
-            )
-        return {one: details.get(one, "") for one in Reason if one in reasons}
+        return reasons
 
     @cached_property
     def obstacle(self) -> Reason | None:

@@ -257,16 +257,22 @@ def _prefix(names: Collection[str], folder: ClassFolder) -> str:
     return prefix if count > max(1, known) else ""
 
 
+def _students_by_assignment(folder: ClassFolder) -> dict[str, list[str]]:
+    """Return the students with a folder for each assignment, by its name."""
+    students_by_name: dict[str, list[str]] = defaultdict(list)
+    for student in sorted(folder.children.folders):
+        for name in folder.listing.children(folder.start + student).folders:
+            students_by_name[name].append(student)
+    return students_by_name
+
+
 def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
     """Yield the submissions for one assignment with their times.
 
     Raises InputError if there is none of its name.
     """
     folder = course.inside("submitted") if "submitted" in course.children.folders else course
-    students_by_name: dict[str, list[str]] = defaultdict(list)
-    for student in sorted(folder.children.folders):
-        for name in folder.listing.children(folder.start + student).folders:
-            students_by_name[name].append(student)
+    students_by_name = _students_by_assignment(folder)
     if folder.lab in students_by_name:
         wanted = [folder.lab]
     else:

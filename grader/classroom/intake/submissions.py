@@ -105,15 +105,7 @@ def read_class(
             listing, listing.children(""), "", owners.people, labs, lab, is_explicit, owners.ignored
         )
         folder = _inner_class(_without_gradebook(top, path, gradebook))
-        chosen = layout
-        if not is_explicit:
-            chosen = "nbgrader" if assignment else _layout_of(folder)
-        if chosen == "teams" and not is_explicit and "package.xml" in folder.children.files:
-            what = (
-                f"{printable_path(path)} is one submission and not a class: it contains a "
-                "package.xml"
-            )
-            raise InputError(f"{what} (grade it with `grader grade {shell_quoted(path)}`)")
+        chosen = layout if is_explicit else _choose_layout(folder, path, assignment)
         some = list(
             _submissions_in(
                 folder, _without_ignored(folder, _paths_in(folder, chosen), ignore), root
@@ -127,6 +119,19 @@ def read_class(
         submissions += some
     owners.find(submissions)
     return owners.intake(" and ".join(layouts))
+
+
+def _choose_layout(folder: ClassFolder, path: Path, assignment: str) -> str:
+    """Return the layout of a class folder; raise InputError for a single submission."""
+    if assignment:
+        return "nbgrader"
+    layout = _layout_of(folder)
+    if layout == "teams" and "package.xml" in folder.children.files:
+        what = (
+            f"{printable_path(path)} is one submission and not a class: it contains a package.xml"
+        )
+        raise InputError(f"{what} (grade it with `grader grade {shell_quoted(path)}`)")
+    return layout
 
 
 def _names_of_roots(paths: Sequence[Path]) -> list[str]:
@@ -467,6 +472,20 @@ class _Owners:
         advice = f"write {place} in the column `submission` of its student{row}"
         self._unmatched.append(f"{self._shown(one)} {reason}; to assign it, {advice}")
 
+    def _submissions_of_visitors(self) -> Iterator[ClassSubmission]:
+        """Yield the submissions that nobody on the roster owns, each with a key of its own."""
+        counts = Counter(visitor.student.key for visitor in self._visitors)
+        taken = {plain(student.key) for student in self.people.students}
+        for submission in self._visitors:
+            key = submission.student.key
+            if counts[key] > 1 or not key.isprintable() or plain(key) in taken:
+                key = _path_key(self._path(submission, submission.paths[0]))
+            visitor = self._visitor(submission.student, key)
+            if visitor == submission.student:
+                yield submission
+            else:
+                yield submission._replace(student=visitor)
+
     def intake(self, layout: str) -> Intake:
         """Return what was found.
 
@@ -481,17 +500,7 @@ class _Owners:
             name = "" if claim.canvas else claim.name
             owner = claim._replace(key=students[index].key, name=name, login="")
             submissions.append(submission._replace(student=owner))
-        counts = Counter(visitor.student.key for visitor in self._visitors)
-        taken = {plain(student.key) for student in students}
-        for submission in self._visitors:
-            key = submission.student.key
-            if counts[key] > 1 or not key.isprintable() or plain(key) in taken:
-                key = _path_key(self._path(submission, submission.paths[0]))
-            visitor = self._visitor(submission.student, key)
-            if visitor == submission.student:
-                submissions.append(submission)
-            else:
-                submissions.append(submission._replace(student=visitor))
+        submissions += self._submissions_of_visitors()
         submissions.sort(key=lambda submission: submission.student.key)
         unmatched, ignored = sorted(self._unmatched), first_lines(sorted(self.ignored), _MAX_LINES)
         return Intake(

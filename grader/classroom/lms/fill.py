@@ -164,11 +164,7 @@ def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: Fil
             removed.add(row)
         elif new_row is not row:
             changed[row] = new_row
-    matched = set(grade_of_row.values())
-    for index, grade in enumerate(grades):
-        if index not in matched and _grade_text(grade, file):
-            who = named(grade.student.key, grade.student.name)
-            notes.append(_Note(_MISSING, who, "has a grade or an excuse, but matches no row"))
+    notes += _notes_on_missing(grades, set(grade_of_row.values()), file)
     rows = [changed.get(row, row) for row in file.table.rows if row not in removed]
     if options.only and "maximum" not in file.roles:
         rows = file.only_column(rows)
@@ -179,6 +175,16 @@ def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: Fil
     is_complete = all(note.kind in ("", _OPEN, _KEPT) for note in notes)
     numbers = {grades[at].student.key: people[row].moodle for row, at in grade_of_row.items()}
     return Filled(filled_table.encoded(), [*map(printable, lines)], is_complete, numbers)
+
+
+def _notes_on_missing(
+    grades: Sequence[PublishedGrade], matched: set[int], file: _GradeFile
+) -> Iterator[_Note]:
+    """Yield a note for each student with a grade or an excuse whom no row matches."""
+    for index, grade in enumerate(grades):
+        if index not in matched and _grade_text(grade, file):
+            who = named(grade.student.key, grade.student.name)
+            yield _Note(_MISSING, who, "has a grade or an excuse, but matches no row")
 
 
 def _note_lines(notes: Sequence[_Note]) -> list[str]:

@@ -363,15 +363,21 @@ def _encoded(data: bytes, rows: Sequence[Mapping[str, str]], shown: str) -> byte
     for row in rows:
         cells = []
         for title in titles or COLUMNS:
-            text = row.get(title, "")
-            if text != WITHDRAWN:
-                text = protected(_with_newlines(text))
-            if title == "points" and has_comma:
-                text = text.replace(".", ",")
-            cells.append(table.cell(text))
+            cell = _new_cell(row, title, has_comma=has_comma)
+            cells.append(table.cell(cell))
         lines.append(table.delimiter.join(cells))
     text = "".join(line + end for line in lines)
     return text.encode(table.encoding, "xmlcharrefreplace")
+
+
+def _new_cell(row: Mapping[str, str], title: str, *, has_comma: bool) -> str:
+    """Return what a cell of a new row says, as no spreadsheet misreads it."""
+    text = row.get(title, "")
+    if text != WITHDRAWN:
+        text = protected(_with_newlines(text))
+    if title == "points" and has_comma:
+        text = text.replace(".", ",")
+    return text
 
 
 def _has_decimal_comma(table: Table, rows: _Rows) -> bool:

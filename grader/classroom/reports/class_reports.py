@@ -228,11 +228,10 @@ def write_reports(
         run = run._replace(class_page=class_page)
     paths = {key: _paths_of(run, name) for key, name in files.items()}
     context = _context(book, run)
-    shown, changed = dict[str, str](), dict[str, str]()
-    for grade in grades:
-        key = grade.student.key
-        shown[key] = _shown_in(book, grade, context)
-        if not all(kept.is_current(path, shown[key]) for path in paths[key]):
+    shown = {grade.student.key: _shown_in(book, grade, context) for grade in grades}
+    changed = {}
+    for key, what_is_shown in shown.items():
+        if not all(kept.is_current(path, what_is_shown) for path in paths[key]):
             changed[key] = files[key]
     done = _render_reports(run, changed, terminal, jobs, timeout) if changed else {}
     if done:
@@ -240,17 +239,24 @@ def write_reports(
         kept.save(new_hints, book.settings.roots(book.folder))
     lost = {key: one.why_lost for key, one in done.items() if one.why_lost}
     if Format.HTML in run.formats:
-        written_files = {key: name for key, name in files.items() if key not in lost}
+        pages = {key: name for key, name in files.items() if key not in lost}
         stills = {}
-        for key in written_files:
+        for key in pages:
             one = done[key] if key in done else kept.written[str(paths[key][0])]
             stills[key] = one.still
-        if is_in_gradebook:
-            pages = {key: f"{names.REPORTS}/{name}" for key, name in written_files.items()}
-            write_class_page(book, run.gradebook, pages, stills)
-        else:
-            write_class_page(book, run.folder, written_files, stills)
+        _write_class_page_of(book, run, pages, stills)
     _tell_written(book, run, len(files) - len(lost), lost, terminal)
+
+
+def _write_class_page_of(
+    book: Gradebook, run: ReportRun, files: Mapping[str, str], stills: Mapping[str, "Still"]
+) -> None:
+    """Write the class's page beside the reports, or in the gradebook above its own folder."""
+    if run.folder == run.gradebook / names.REPORTS:
+        pages = {key: f"{names.REPORTS}/{name}" for key, name in files.items()}
+        write_class_page(book, run.gradebook, pages, stills)
+    else:
+        write_class_page(book, run.folder, files, stills)
 
 
 def _tell_written(

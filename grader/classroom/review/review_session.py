@@ -271,25 +271,18 @@ class ReviewSession:
         """
         item = self.item_at(at)
         self._check_rows()
-        items = [item]
-        for position, view in similar:
-            items.append(self.item_at(position))
-            is_other = items[-1].criterion.id != item.criterion.id or bool(item.also)
-            if is_other or items[-1].view != view:
-                return None
-        if shown.removesuffix(CONFIRMED) != item.view:
+        items = self._similar_items(item, similar)
+        if items is None or shown.removesuffix(CONFIRMED) != item.view:
             return None
         values = points.split() if item.also else [points.strip()]
         if len(values) != len(item.all) or not all(values):
             raise InputError("points are missing")
         new, replaced = dict[Key, Mark](), list[Mark]()
-        for one, value in zip([*item.all, *items[1:]], values + values * len(similar), strict=True):
+        for one, value in zip([*item.all, *items], values + values * len(similar), strict=True):
             new |= self._marks_of(one, value, comment)
-            replaced += [
-                member.mark
-                for member in one.members
-                if member.mark is not None and member.mark.points is not None
-            ]
+            for member in one.members:
+                if member.mark is not None and member.mark.points is not None:
+                    replaced.append(member.mark)
         others = [mark for mark in replaced if mark.by != self.by]
         if others and not shown.endswith(CONFIRMED):
             return others
@@ -299,6 +292,21 @@ class ReviewSession:
         self.refresh()
         write_grades_with(len(new), self.book)
         return []
+
+    def _similar_items(
+        self, item: ReviewItem, similar: Sequence[tuple[int, str]]
+    ) -> list[ReviewItem] | None:
+        """Return the items at these positions; None if one is not as the person saw it.
+
+        They are of the same criterion as the item, which is alone.
+        """
+        items = []
+        for position, view in similar:
+            items.append(self.item_at(position))
+            is_other = items[-1].criterion.id != item.criterion.id or bool(item.also)
+            if is_other or items[-1].view != view:
+                return None
+        return items
 
     def _marks_of(self, item: ReviewItem, points: str, comment: str) -> dict[Key, Mark]:
         """Return the new mark of each student of an item. Raises InputError."""

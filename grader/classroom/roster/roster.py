@@ -150,15 +150,13 @@ def read_roster(data: bytes, shown: str) -> Roster:
             mistakes.append((line, why))
             continue
         row = _row(fields, cells)
-        if is_canvas:
-            if _is_no_student_in_canvas(row):
-                continue
-            if not row["canvas"] and row["id"].isdecimal():
-                row["canvas"] = row["id"]
+        if is_canvas and _is_no_student_in_canvas(row):
+            continue
+        if is_canvas and not row["canvas"] and row["id"].isdecimal():
+            row["canvas"] = row["id"]
         mistakes += ((line, why) for why in _normalise(row))
-        student = students[line] = _student(row)
-        has_no_status = not row["late"] and _days_of(row["status"]) is None
-        if student.is_late and student.days_late is None and has_no_status:
+        students[line] = _student(row)
+        if _is_lateness_unclear(students[line], row):
             notes.append(
                 f"line {line} of {shown}: {row['status']!r} does not say clearly how late the "
                 "submission is, and counts as late: add a column `late` with `no` or a number of "
@@ -171,6 +169,12 @@ def read_roster(data: bytes, shown: str) -> Roster:
     if lines:
         raise InputError("\n".join(first_lines(lines, _MAX_MISTAKES)))
     return Roster(tuple(students.values()), tuple(first_lines(notes, _MAX_MISTAKES)))
+
+
+def _is_lateness_unclear(student: Student, row: Mapping[str, str]) -> bool:
+    """Return whether a student is late, and neither column of the row says by how many days."""
+    has_days = bool(row["late"]) or _days_of(row["status"]) is not None
+    return bool(student.is_late) and student.days_late is None and not has_days
 
 
 def _fields(header: Sequence[str], shown: str) -> list[str]:

@@ -211,7 +211,15 @@ def _built_by_cmake(submission: Submission, package: Package) -> _Files:
         return {}
     if _PROGRAMS.search(_text(submission, setup)) or package.installation.unknown:
         return {}
-    installs = []
+    text = _CMAKE_TEXT.format(name=package.name, installs="\n".join(_install_commands(package)))
+    described = _text(submission, package.path(MANIFEST)).replace("ament_python", "ament_cmake")
+    depends = "<buildtool_depend>ament_cmake</buildtool_depend>"
+    described = re.sub(r"(</license>)", rf"\1\n  {depends}", described, count=1)
+    return {setup: None, package.path(CMAKE): text, package.path(MANIFEST): described}
+
+
+def _install_commands(package: Package) -> Iterator[str]:
+    """Yield the commands of CMake that install the files of a package into its share folder."""
     share = f"{package.share.rstrip('/')}/"
     for target, path in package.installed.items():
         if not target.startswith(share) or path == MANIFEST:
@@ -220,12 +228,7 @@ def _built_by_cmake(submission: Submission, package: Package) -> _Files:
         folder, name = posixpath.split(inside)
         renamed = f" RENAME {name}" if name != posixpath.basename(path) else ""
         where = f"share/${{PROJECT_NAME}}/{folder}".rstrip("/")
-        installs.append(f"install(FILES {path} DESTINATION {where}{renamed})")
-    text = _CMAKE_TEXT.format(name=package.name, installs="\n".join(installs))
-    described = _text(submission, package.path(MANIFEST)).replace("ament_python", "ament_cmake")
-    depends = "<buildtool_depend>ament_cmake</buildtool_depend>"
-    described = re.sub(r"(</license>)", rf"\1\n  {depends}", described, count=1)
-    return {setup: None, package.path(CMAKE): text, package.path(MANIFEST): described}
+        yield f"install(FILES {path} DESTINATION {where}{renamed})"
 
 
 # --- The same launch files, written differently

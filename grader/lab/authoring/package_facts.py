@@ -185,19 +185,15 @@ def naming_facts(solution: Solution) -> Iterator[Fact]:
 
     A node without the parameter passes, as a node may have another name, or a default.
     """
-    robot, package = solution.robot.robot, solution.submission.package
+    package = solution.submission.package
     main = package.name if package is not None else ""
-    links = {link.name for link in robot.links}
-    names = {name: name for name in links}
-    for joint in robot.joints:
-        is_by_link = are_joints_free(solution) and joint.name not in links
-        names.setdefault(joint.name, f"{JOINT_OF}{joint.child}" if is_by_link else joint.name)
+    names = _names_in_rubric(solution)
     for node, name, value in _given(solution.submission):
         items = value if isinstance(value, list) else [value]
         is_naming = _NAMING.search(name.rpartition(".")[2]) is not None
-        if not items or not is_naming or any(word not in names for word in items if _is_text(word)):
+        if not items or not is_naming:
             continue
-        if not all(map(_is_text, items)):
+        if not all(isinstance(word, str) and word in names for word in items):
             continue
         meant = [names[word] for word in items]
         asked = {"has": meant} if isinstance(value, list) else {"value": meant[0]}
@@ -208,8 +204,15 @@ def naming_facts(solution: Solution) -> Iterator[Fact]:
         yield fact._replace(title=title, carried=(elsewhere,))
 
 
-def _is_text(value: Any) -> bool:
-    return isinstance(value, str)
+def _names_in_rubric(solution: Solution) -> dict[str, str]:
+    """Return what a rubric writes for the name of each link and joint of the robot."""
+    robot = solution.robot.robot
+    links = {link.name for link in robot.links}
+    names = {name: name for name in links}
+    for joint in robot.joints:
+        is_by_link = are_joints_free(solution) and joint.name not in links
+        names.setdefault(joint.name, f"{JOINT_OF}{joint.child}" if is_by_link else joint.name)
+    return names
 
 
 def value_facts(submission: Submission) -> Iterator[Fact]:
@@ -516,12 +519,17 @@ def _rviz_facts(package: Package) -> Iterator[Fact]:
         displays = dict.fromkeys(
             (display.package, display.kind) for display in rviz.displays if display.enabled
         )
-        for owner, kind in displays:
-            if kind == "RobotModel":
-                robot_shown = _package_fact("rviz_shows_robot", name, **of)
-                yield robot_shown._replace(title="a RobotModel display shows the robot")
-            else:
-                on = _package_fact(
-                    "rviz_display_on", f"{name} {kind}", **of, kind=f"{owner}/{kind}"
-                )
-                yield on._replace(title=f"RViz shows a {kind} display")
+        yield from _display_facts(displays, of)
+
+
+def _display_facts(displays: Iterable[tuple[str, str]], of: Mapping[str, str]) -> Iterator[Fact]:
+    """Yield that displays, by package and kind, are on; `of` says in which RViz file."""
+    for owner, kind in displays:
+        if kind == "RobotModel":
+            robot_shown = _package_fact("rviz_shows_robot", of["name"], **of)
+            yield robot_shown._replace(title="a RobotModel display shows the robot")
+        else:
+            on = _package_fact(
+                "rviz_display_on", f"{of['name']} {kind}", **of, kind=f"{owner}/{kind}"
+            )
+            yield on._replace(title=f"RViz shows a {kind} display")

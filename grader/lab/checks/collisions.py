@@ -110,22 +110,8 @@ def collides_as(
         relative_to: The link in whose frame the place is given, by default the link itself.
         only: Whether the link has no other collision shape.
     """
-    shapes: list[Shape] = []
-    if box is not None:
-        shapes.append(Box(box))
-    if cylinder is not None:
-        shapes.append(Cylinder(*cylinder))
-    if capsule is not None:
-        shapes.append(Capsule(*capsule))
-    if sphere is not None:
-        shapes.append(Sphere(sphere))
-    if len(shapes) != 1:
-        raise RubricError(("collides_as takes exactly one of box, cylinder, capsule and sphere",))
-    [wanted] = shapes
-    what = _shape_text(wanted)
-    what += f" at {point(xyz)} m" if xyz else ""
-    what += f" with rpy = {point(rpy)} (radians)" if any(rpy or ()) else ""
-    what += f" in {relative_to!r}" if relative_to else ""
+    wanted = _wanted_shape(box, cylinder, capsule, sphere)
+    what = _shape_text(wanted) + _place_text(xyz, rpy, relative_to)
     origin = Origin(xyz or _ZERO, rpy or _ZERO)
     pose = origin.placed_in(robot.pose(relative_to or link, relative_to=link))
     placed = PlacedShape(wanted, pose)
@@ -152,6 +138,39 @@ def collides_as(
         )
         return failed(message, other.location)
     return passed(f"{link!r} collides as {what}")
+
+
+def _wanted_shape(
+    box: Size | None,
+    cylinder: RadiusAndLength | None,
+    capsule: RadiusAndLength | None,
+    sphere: NonNegative | None,
+) -> Shape:
+    """Return the only shape that is given; raise RubricError for none or several."""
+    shapes: list[Shape] = []
+    if box is not None:
+        shapes.append(Box(box))
+    if cylinder is not None:
+        shapes.append(Cylinder(*cylinder))
+    if capsule is not None:
+        shapes.append(Capsule(*capsule))
+    if sphere is not None:
+        shapes.append(Sphere(sphere))
+    if len(shapes) != 1:
+        raise RubricError(("collides_as takes exactly one of box, cylinder, capsule and sphere",))
+    return shapes[0]
+
+
+def _place_text(xyz: Vector | None, rpy: Vector | None, relative_to: str) -> str:
+    """Return the wanted place of a shape in words, empty if none is given."""
+    text = ""
+    if xyz:
+        text += f" at {point(xyz)} m"
+    if rpy and any(rpy):
+        text += f" with rpy = {point(rpy)} (radians)"
+    if relative_to:
+        text += f" in {relative_to!r}"
+    return text
 
 
 def _solid_collisions(robot: Configuration, link: str, expected: str) -> tuple[Collision, ...]:

@@ -98,37 +98,37 @@ def require_installed(
         return passed(f"{setup.file} has an entry for {files[0]}")
     copies = [copy for copy in setup.copies if copy.source in files]
     inside = [copy for copy in copies if copy.target.startswith(package.share)]
-    twice = sorted(
-        {
-            copy.target
-            for copy in inside
-            if posixpath.basename(copy.target) == posixpath.basename(files[0])
-        }
-    )
-    if kind == "launch" and len(twice) > 1:
-        message = (
-            f"a build installs {files[0]} as {' and as '.join(twice)}; ros2 launch needs "
-            "exactly one"
-        )
-        return failed(
-            message, setup.location(inside[-1].at), mistake="a build installs the launch file twice"
-        )
+    name = posixpath.basename(files[0])
+    targets = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == name})
+    if kind == "launch" and len(targets) > 1:
+        shown = " and as ".join(targets)
+        message = f"a build installs {files[0]} as {shown}; ros2 launch needs exactly one"
+        mistake = "a build installs the launch file twice"
+        return failed(message, setup.location(inside[-1].at), mistake=mistake)
     if inside and setup.misspelt is not None:
         raise package.without_data_files(setup.misspelt.message)
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
     if despite_errors and setup.is_unknown_after_error:
         return passed(f"what {setup.file} installs is not known because of an error in it")
-    if setup.unknown:
-        reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of {setup.file})"
-        message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
-        raise NotDecided(message, f"cannot determine statically what {setup.file} installs")
-    if copies:
+    if copies and not setup.unknown:
         message = f"a build installs {copies[0].source} as {copies[0].target}"
         message += f"; ROS 2 looks for the package's files below {package.share}"
         mistake = f"a build installs the file outside of {package.share}"
         return failed(message, setup.location(copies[0].at), mistake=mistake, cause="elsewhere")
-    raise _why_not_installed(package, files, kind)
+    raise _why_no_copy(package, files, kind)
+
+
+def _why_no_copy(
+    package: Package, files: Sequence[str], kind: FileKind | None
+) -> MissingElement | NotDecided:
+    """Return why no copy of these files is known: NotDecided where not all copies are known."""
+    setup = package.needed_installation()
+    if not setup.unknown:
+        return _why_not_installed(package, files, kind)
+    reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of {setup.file})"
+    message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
+    return NotDecided(message, f"cannot determine statically what {setup.file} installs")
 
 
 def _stops_at(package: Package, files: Sequence[str], kind: FileKind | None) -> bool:

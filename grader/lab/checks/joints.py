@@ -195,12 +195,11 @@ def mimics(
     at = place(joint.mimic.location, "joint") if joint.mimic else joint.location
     if leading.name not in followed:
         message = f"the joint that moves {link!r} does not mimic the joint that moves {leader!r}"
-        last = next(reversed(followed), joint.name)
         detail = f" (joint {joint.name!r})"
         if joint.mimic is not None:
             detail = f" (joint {joint.name!r} mimics {joint.mimic.joint!r}, not {leading.name!r})"
-        is_missing = not robot.robot.has_joint(last)
-        if is_missing:
+        last = next(reversed(followed), joint.name)
+        if not robot.robot.has_joint(last):
             message = f"the joint that moves {link!r} mimics a joint that does not exist"
             detail += did_you_mean(last, (other.name for other in robot.robot.joints))
         return failed(message, at, detail=detail)

@@ -87,11 +87,7 @@ def rviz_fixed_frame(
         )
     if None in frames and actual.endswith(frame):
         raise NotDecided(_UNKNOWN_PREFIX)
-    links: list[str] = []
-    robot = submission.robot
-    # A robot that ROS 2 does not load may lack links, such as those of a file that is not there.
-    for link in robot.links if robot is not None and not robot.rejected else ():
-        links += filter(None, _frames_of_link(opened, link.name))
+    links = _known_frames(submission, opened)
     message, detail = f"the Fixed Frame is {actual!r}", ""
     if actual not in frames:
         message += f"; it should be {expected!r}"
@@ -105,6 +101,20 @@ def rviz_fixed_frame(
     return judged(
         actual in frames, message, actual, expected, at=rviz.frame_location, detail=detail
     )
+
+
+def _known_frames(submission: Submission, opened: "Launch | None") -> list[str]:
+    """Return the frames of the robot's links that are known.
+
+    A robot that ROS 2 does not load may lack links, such as those of a file that is not there: of
+    such a robot, there are none.
+    """
+    robot = submission.robot
+    frames: list[str] = []
+    if robot is not None and not robot.rejected:
+        for link in robot.links:
+            frames += filter(None, _frames_of_link(opened, link.name))
+    return frames
 
 
 def rviz_shows_robot(
@@ -233,15 +243,7 @@ def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> _Verd
         return _Verdict("failed", fault, "display")
     source = model.node.get("Description Source")
     if source is not None and source.text == "File":
-        path = model.file
-        if not path or model.reads_file_of_one_machine:
-            where = f"the file {path!r} of one machine" if path else "a file, and names none"
-            message = f"the RobotModel display reads {where}; it should read {topic!r}"
-            return _Verdict("failed", message)
-        return _Verdict(
-            "pending",
-            "the RobotModel display reads a local file instead of a topic; needs manual grading",
-        )
+        return _judge_file(model, topic)
     value = model.node.get("Description Topic", "Value") or model.node.get("Description Topic")
     verdict = _judge_topic(
         (value.text or "" if value is not None else "").strip(), topic, _Names.of(opened)
@@ -249,6 +251,19 @@ def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> _Verd
     if verdict.status != "passed":
         return verdict
     return _judge_prefix(model, opened)
+
+
+def _judge_file(model: "Display", topic: str) -> _Verdict:
+    """Return the verdict on a RobotModel display that reads a file instead of a topic."""
+    path = model.file
+    if not path or model.reads_file_of_one_machine:
+        where = f"the file {path!r} of one machine" if path else "a file, and names none"
+        message = f"the RobotModel display reads {where}; it should read {topic!r}"
+        return _Verdict("failed", message)
+    return _Verdict(
+        "pending",
+        "the RobotModel display reads a local file instead of a topic; needs manual grading",
+    )
 
 
 def _judge_topic(actual: str, topic: str, names: "_Names") -> _Verdict:

@@ -4,13 +4,13 @@ They are about its root, its joints, their types and names, and how many there a
 """
 
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from grader.base.errors import MissingElement
 from grader.base.names import did_you_mean
 from grader.base.quantities import number_text
-from grader.base.source import place
+from grader.base.source import LazyLocation, place
 from grader.base.text import counted, enumerated
 from grader.base.toml_types import Count
 from grader.lab.checks.check import About
@@ -72,9 +72,16 @@ def held_by(
     if unknown:
         may_be_wanted = bool(wanted) and len(unknown) == len(moving)
         return _fail_unknown_type(unknown[0], link, parent, may_be_wanted=may_be_wanted)
+    return _fail_other_joints(moving, link, joint_type, at)
+
+
+def _fail_other_joints(
+    moving: Sequence[Joint], link: str, joint_type: JointType, at: LazyLocation | None
+) -> Outcome:
+    """Return the failure of a link that several joints move, or one of another type."""
     if len(moving) > 1:
         names = enumerated([repr(joint.name) for joint in moving])
-        expected = "only fixed joints" if not wanted else f"one {joint_type} joint"
+        expected = "only fixed joints" if joint_type == "fixed" else f"one {joint_type} joint"
         return failed(
             f"several joints move {link!r}; there should be {expected}",
             at,

@@ -97,6 +97,11 @@ def xacro_uses(
             "and includes"
         )
     source.check_known(inventory)
+    return _fail_lacks(source, lacks)
+
+
+def _fail_lacks(source: "ExpandedSource", lacks: "Sequence[_Lack]") -> Outcome:
+    """Return the failure of a xacro that lacks things, at the place of the first."""
     message = "; ".join(lack.message for lack in lacks)
     detail = "".join(lack.detail for lack in lacks)
     places = [lack.location for lack in lacks if lack.location is not None]

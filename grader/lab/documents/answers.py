@@ -118,11 +118,9 @@ def _match_answer(
     """
     if not answers:
         return None
-    below = [index for index, answer in enumerate(answers) if answer.head.section == task]
-    all_have_task = all(answer.head.section is not None for answer in answers)
-    if task is not None and all_have_task and len(below) == 1:
-        how = f"the only {_answer_text(answers, below)} below the heading of task {task}"
-        return _AnswerMatch(tuple(below), True, how)
+    only_answer = _only_answer_of_task(task, answers)
+    if only_answer is not None:
+        return only_answer
     written = [index for index, answer in enumerate(answers) if not answer.is_empty]
     numbers = [answer.head.number for answer in answers if answer.head.number is not None]
     if len(numbers) == len(answers) and max(numbers) <= wanted.total:
@@ -138,6 +136,17 @@ def _match_answer(
     headings = f"{counted(len(indices), 'heading')} like {_answer_text(answers, indices)}"
     how = f"{headings} for {wanted.total} questions: it may answer another question"
     return _AnswerMatch(tuple(indices), False, how)
+
+
+def _only_answer_of_task(task: int | None, answers: Sequence[Passage]) -> _AnswerMatch | None:
+    """Return the only answer below the heading of a task, if all answers are below one."""
+    if task is None or any(answer.head.section is None for answer in answers):
+        return None
+    below = [index for index, answer in enumerate(answers) if answer.head.section == task]
+    if len(below) != 1:
+        return None
+    how = f"the only {_answer_text(answers, below)} below the heading of task {task}"
+    return _AnswerMatch(tuple(below), True, how)
 
 
 def _are_in_order(answers: Sequence[Passage], indices: Sequence[int]) -> bool:

@@ -89,14 +89,7 @@ def find_evidence(
     certain = [file for file in labelled if not _PRELAB.search(file.file.path)]
     if certain:
         return FoundEvidence(as_evidence(certain))
-    below, pictures = list[EvidenceFile](), list[EvidenceFile]()
-    for document, head, label in (
-        _headings_about(documents, wanted) if documents is not None else ()
-    ):
-        evidence = _evidence_below(document, head)
-        below.append(evidence)
-        if _is_certain(label, document, head) and not _PRELAB.search(evidence.path):
-            pictures.append(evidence)
+    below, pictures = _evidence_in_documents(documents, wanted)
     if pictures:
         return FoundEvidence(tuple(pictures))
     steps = [label.steps for label in wanted if label.steps]
@@ -107,6 +100,24 @@ def find_evidence(
     ]
     unlisted = _unlisted_documents(documents, perhaps)
     return FoundEvidence((), (*as_evidence(perhaps), *below, *unlisted))
+
+
+def _evidence_in_documents(
+    documents: DocumentCollection | None, wanted: Sequence[Label]
+) -> tuple[list[EvidenceFile], list[EvidenceFile]]:
+    """Return what is below the headings with these labels, and the pictures among it.
+
+    Only pictures that are certain count.
+    """
+    below, pictures = list[EvidenceFile](), list[EvidenceFile]()
+    if documents is None:
+        return below, pictures
+    for document, head, label in _headings_about(documents, wanted):
+        evidence = _evidence_below(document, head)
+        below.append(evidence)
+        if _is_certain(label, document, head) and not _PRELAB.search(evidence.path):
+            pictures.append(evidence)
+    return below, pictures
 
 
 def _unlisted_documents(

@@ -251,21 +251,32 @@ def _heading_of(
     words = _first_words(plain)
     label = _label_in(words)
     pattern, number = question_of(plain, patterns)
-    is_bold = line.lstrip().startswith(("**", "__")) and line.rstrip(" :.").endswith(("**", "__"))
     level = len(marked[1]) if marked else 0
     heading = Heading(
-        index, index, text, label, level, pattern=pattern, number=number, is_bold=is_bold
+        index, index, text, label, level, pattern=pattern, number=number, is_bold=_is_bold(line)
     )
     if label.steps or label.task is not None:
-        begins = _label_in(words[:2])
-        is_short = len(words) <= _MAX_WORDS or begins.steps or begins.task is not None
-        return heading._replace(is_mention=not (is_short or marked or pattern))
+        is_heading = marked or pattern or _begins_with_label(words)
+        return heading._replace(is_mention=not is_heading)
     if pattern or (marked and _SPACED.match(line) and has_words(line)):
         return heading
     item = _ITEM.match(plain)
     if item and above is not None and not marked and (above.is_item or _is_task(above)):
         return heading._replace(label=read_label(f"step {item[1]}"), is_item=True)
     return None
+
+
+def _is_bold(line: str) -> bool:
+    """Return whether the whole line is bold, but for a colon or point at its end."""
+    return line.lstrip().startswith(("**", "__")) and line.rstrip(" :.").endswith(("**", "__"))
+
+
+def _begins_with_label(words: list[str]) -> bool:
+    """Return whether a line with a label is short, or its first two words have one."""
+    if len(words) <= _MAX_WORDS:
+        return True
+    begins = _label_in(words[:2])
+    return bool(begins.steps) or begins.task is not None
 
 
 def _is_task(heading: Heading) -> bool:

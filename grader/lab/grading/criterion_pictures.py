@@ -47,11 +47,7 @@ def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture
     answer. If no file is named for the evidence, all files of evidence are searched; if no answer
     was found, all PDF files, and Word files.
     """
-    paths = _shown_files(result) or tuple(
-        labelled.file.path
-        for labelled in submission.labelled_files
-        if _is_evidence(result) or (_is_question(result) and labelled.file.suffix == ".pdf")
-    )
+    paths = _shown_files(result) or _searched_files(result, submission)
     loose, _ = _loose_documents(result, submission)
     paths += tuple(
         one.file.path for one in loose if one.file.suffix == ".docx" and one.has_picture()
@@ -60,6 +56,15 @@ def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture
         _limit_pictures(
             picture for path in paths for picture in _read_pictures(path, result, submission)
         )
+    )
+
+
+def _searched_files(result: Result, submission: Submission) -> tuple[str, ...]:
+    """Return the files that are shown if none is named: of a question only the PDF files."""
+    return tuple(
+        labelled.file.path
+        for labelled in submission.labelled_files
+        if _is_evidence(result) or (_is_question(result) and labelled.file.suffix == ".pdf")
     )
 
 

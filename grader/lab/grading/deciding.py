@@ -110,16 +110,12 @@ class _Grading:
             required = self.results.get(name)
             if required is not None and required.is_lost:
                 return required.because or name
-        if self._subjects.robot is None and criterion.check.subject == "robot":
-            loading = (
-                result
-                for result in self.results.values()
-                if result.criterion.check.function is urdf_loads
-            )
-            return next(
-                (result.criterion.id for result in loading if result.outcome.status == "failed"),
-                None,
-            )
+        if self._subjects.robot is not None or criterion.check.subject != "robot":
+            return None
+        for result in self.results.values():
+            is_of_loading = result.criterion.check.function is urdf_loads
+            if is_of_loading and result.outcome.status == "failed":
+                return result.criterion.id
         return None
 
     def _decide_by_check(self, criterion: Criterion) -> Result:
@@ -190,13 +186,18 @@ class _Grading:
         if other.outcome.status == "passed":  # the place to look at is that of the mistake
             outcome = outcome._replace(location=cause.outcome.location)
             return Result(result.criterion, outcome, carried=cause.carried or name)
-        # What is skipped because of a failure is shown there, unless that is carried as well.
-        is_shown = result.outcome.location is not None or (
-            result.because and not self.results[result.because].carried
-        )
-        if is_shown and other.outcome.status != "errored":
+        if self._is_shown(result) and other.outcome.status != "errored":
             return result
         return self._with_reasons(other)
+
+    def _is_shown(self, result: Result) -> bool:
+        """Return whether a report shows why a criterion is lost."""
+        if result.outcome.location is not None:
+            return True
+        if not result.because:
+            return False
+        # What is skipped because of a failure is shown there, unless that is carried as well.
+        return not self.results[result.because].carried
 
     def _is_excused(self, criterion: Criterion, cause: str) -> bool:
         """Return whether what counts instead passes.

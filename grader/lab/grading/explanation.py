@@ -81,19 +81,11 @@ def explain(
         for reported in problems
         if reported.location == place and _explains(reported, outcome, is_part=part in _DROPPING)
     ]
-    is_of_looks = "material" in looks_at
-    about = [
-        reported
-        for reported in problems
-        # A misspelt colour explains no shape.
-        if is_of_looks
-        or reported.kind is not urdf_problems.MISSPELT
-        or reported.subject not in _LOOKS
-    ]
+    inside: list[Problem] = []
     if part not in _OUTSIDE:
-        inside = [*_inside(place, about, source, is_of_link=is_of_looks)]
-    else:
-        inside = []
+        is_of_looks = "material" in looks_at
+        about = problems if is_of_looks else _without_looks(problems)
+        inside += _inside(place, about, source, is_of_link=is_of_looks)
     for problem in problems:
         if problem in at_place or problem in inside:
             message = f"{outcome.message} ({problem.code}: {problem.message})"
@@ -101,6 +93,15 @@ def explain(
                 message=message, location=problem.location, mistake=mistake, problem=problem.message
             )
     return outcome
+
+
+def _without_looks(problems: Sequence[Problem]) -> list[Problem]:
+    """Return the problems that may explain a shape: a misspelt colour explains none."""
+    return [
+        problem
+        for problem in problems
+        if problem.kind is not urdf_problems.MISSPELT or problem.subject not in _LOOKS
+    ]
 
 
 def _explains(problem: Problem, outcome: Outcome, *, is_part: bool) -> bool:

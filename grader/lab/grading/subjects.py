@@ -53,20 +53,24 @@ class Subjects:
         if solution is not None:
             self._known["reference"] = self._with_transforms(solution.robot, solution)
         if isinstance(submission.urdf, Read):
-            reading = submission.urdf.reading
-            self.source = reading.source
-            self.problems = reading.problems
-            if reading.is_meant:  # what ROS 2 rejects is corrected
-                remaining = [
-                    problem for problem in reading.problems if problem.kind.effect != "rejects"
-                ]
-                self.problems = tuple(remaining)
-            if reading.robot is not None:
-                robot = Configuration(reading.robot, is_guarded=bool(reading.unresolved))
-                reading = reading._replace(robot=robot.robot)
-                self.robot = self._with_transforms(robot, submission)
-                self._known["robot"] = self.robot
-            self._known["urdf"] = submission.urdf.as_it_stands or reading
+            self._take_urdf(submission.urdf)
+
+    def _take_urdf(self, urdf: Read) -> None:
+        """Take the URDF of the submission and its robot."""
+        reading = urdf.reading
+        self.source = reading.source
+        self.problems = reading.problems
+        if reading.is_meant:  # what ROS 2 rejects is corrected
+            remaining = [
+                problem for problem in reading.problems if problem.kind.effect != "rejects"
+            ]
+            self.problems = tuple(remaining)
+        if reading.robot is not None:
+            robot = Configuration(reading.robot, is_guarded=bool(reading.unresolved))
+            reading = reading._replace(robot=robot.robot)
+            self.robot = self._with_transforms(robot, self.submission)
+            self._known["robot"] = self.robot
+        self._known["urdf"] = urdf.as_it_stands or reading
 
     def _with_transforms(
         self, robot: Configuration, owner: Submission | ReferenceSolution

@@ -127,11 +127,8 @@ def _reference_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Pro
         links = _links_of(lost, difference)
         yield draft.corrections([*difference.names, *JOINT_TYPES])
         yield _proposals(situation, situation.exchanges)
-        pieces = difference.pieces
-        if links is not None:
-            # Those of the links that criteria name come first: there may be more than can be tried.
-            order = {link: index for index, link in enumerate(links)}
-            pieces = sorted(pieces, key=lambda piece: order.get(piece.link, len(order)))
+        # Those of the links that criteria name come first: there may be more than can be tried.
+        pieces = _pieces_by_link(difference.pieces, links or [])
         yield _proposals(situation, pieces, links)
         # these rarely find a mistake
         yield _proposals(situation, in_another_unit(difference))
@@ -227,6 +224,12 @@ def _proposals(
                 yield Proposal(every, piece.cause, piece.link, piece.rank, way, shared)
 
 
+def _pieces_by_link(pieces: Iterable[Piece], links: Sequence[str]) -> list[Piece]:
+    """Return the pieces in the order of these links; those of other links are last."""
+    order = {link: index for index, link in enumerate(links)}
+    return sorted(pieces, key=lambda piece: order.get(piece.link, len(order)))
+
+
 def _links_of(criteria: Iterable[Criterion], difference: RobotDifference) -> list[str] | None:
     """Return the links whose joints and shapes decide criteria, with all above them.
 
@@ -238,11 +241,8 @@ def _links_of(criteria: Iterable[Criterion], difference: RobotDifference) -> lis
     for criterion in criteria:
         if criterion.check.subject not in ("urdf", "robot"):
             continue
-        named = []
-        for text in texts_in(criterion.arguments):
-            name = posed.selected_or_name(text)
-            if reference.has_link(name) or robot.has_link(name):
-                named.append(name)
+        in_arguments = map(posed.selected_or_name, texts_in(criterion.arguments))
+        named = [name for name in in_arguments if reference.has_link(name) or robot.has_link(name)]
         if not named:
             return None
         for name in named:

@@ -347,6 +347,14 @@ def _missing_calls(file: PythonFile, what: str) -> Iterator[Proposal]:
         yield change([edit], f"`{method.attr}` without ()", what)
 
 
+def _find_blank_line(lines: Sequence[str], first: int) -> int:
+    """Return the index of the next blank line, or the number of lines."""
+    at = first
+    while at < len(lines) and lines[at].strip():
+        at += 1
+    return at
+
+
 def _indentations(file: PythonFile, what: str) -> Iterator[Proposal]:
     """Yield edits that indent lines as those around them, with which Python can read the file.
 
@@ -360,9 +368,7 @@ def _indentations(file: PythonFile, what: str) -> Iterator[Proposal]:
     for first in (stop, stop - 1):
         if not 0 <= first < len(lines) or not lines[first].strip():
             continue
-        end_of_block = first
-        while end_of_block < len(lines) and lines[end_of_block].strip():
-            end_of_block += 1
+        end_of_block = _find_blank_line(lines, first)
         indents = _indents_around(lines, first)
         for indent, end in product(indents, dict.fromkeys((first + 1, end_of_block))):
             rows = range(first, min(end, first + _MAX_AROUND))
@@ -455,14 +461,11 @@ def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator
 
     First of all together, then of one path each.
     """
-    named = [
-        named_reference
-        for named_reference in launch.references[:_MAX_PATHS]
-        if named_reference.path is not None
-    ]
     ways = []
-    for reference in named:
-        path = posixpath.normpath(reference.path or "").removeprefix(f"{PREFIX}/")
+    for reference in launch.references[:_MAX_PATHS]:
+        if reference.path is None:
+            continue
+        path = posixpath.normpath(reference.path).removeprefix(f"{PREFIX}/")
         if path not in task.package.installed:
             edits_of_path = _edits_of_path(task, source, reference)[:_MAX_EDITS]
             if edits_of_path:

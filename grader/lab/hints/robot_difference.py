@@ -150,11 +150,11 @@ class RobotDifference:
         The latter for what a link shows if no material has the colour.
         """
         own_materials = {
-            material.get("name") or "": material
+            material.get("name", ""): material
             for material in self.draft.root.iterchildren("material")
         }
         uses = Counter(
-            material.get("name") or "" for material in self.draft.root.iterfind("link//material")
+            material.get("name", "") for material in self.draft.root.iterfind("link//material")
         )
         undefined = [
             name for name, count in uses.items() if count > 1 and name not in own_materials
@@ -266,7 +266,7 @@ class RobotDifference:
         A link with all that names it, or alone; a joint; a material where it is used or
         defined.
         """
-        tag, old = str(element.tag), element.get("name") or ""
+        tag, old = str(element.tag), element.get("name", "")
         is_begun = 2 * sum(map(self.draft.robot.has_link, self.names)) >= len(self.names)
         if tag == "link" and not is_begun and old and near(old, [name], "link") is None:
             return  # nothing shows that it is this one
@@ -292,7 +292,7 @@ class RobotDifference:
         elif around is not None and around.tag != "geometry":  # there the shape is replaced
             cause = f"an extra <{tag}>: {{}}"
             if tag in ("link", "joint"):
-                cause = f"an extra {tag} {quoted(element.get('name') or '')}"
+                cause = f"an extra {tag} {quoted(element.get('name', ''))}"
             yield self.piece(element, cause, self.draft.remove(element), rank=STRUCTURE)
 
     @cached_property

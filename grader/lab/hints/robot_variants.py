@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, combinations
 from math import inf
+from typing import TYPE_CHECKING
 
 from grader.base.element_edits import format_number, format_numbers
 from grader.base.errors import MissingElement, NotDecided
@@ -28,6 +29,9 @@ from grader.ros.urdf.shapes import UnknownShape
 from grader.ros.urdf.standing_robot import StandingRobot
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import TAGS
+
+if TYPE_CHECKING:  # most robots are no xacro
+    from grader.ros.xacro.rewriting import NumberDefinition
 
 _SIDES = {
     "left": "right",
@@ -185,16 +189,34 @@ def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> 
     coordinates = written if element.tag == "origin" else ()
     cause = f"a number from which the {name} of {{}} is computed"
     for definition in definitions:
-        (old,) = values_of(definition.text)
-        for (new,) in plausible(unit, (old,)):
-            if new > least and _may_be_meant(old, new, coordinates):
-                edits = definition.edits_with(format_number(new))
-                if edits:
-                    yield difference.piece(element, cause, edits, rank=OWN)
+        for edits in _meant_definitions(definition, unit, least, coordinates):
+            yield difference.piece(element, cause, edits, rank=OWN)
+    yield from _exchanged_lengths(difference, element, name, definitions)
+
+
+def _meant_definitions(
+    definition: "NumberDefinition", unit: str, least: float, coordinates: tuple[float, ...]
+) -> Iterator[Edits]:
+    """Yield the edits that give a number of xacro another value, above `least`."""
+    (old,) = values_of(definition.text)
+    for (new,) in plausible(unit, (old,)):
+        if new > least and _may_be_meant(old, new, coordinates):
+            edits = definition.edits_with(format_number(new))
+            if edits:
+                yield edits
+
+
+def _exchanged_lengths(
+    difference: RobotDifference,
+    element: Element,
+    name: str,
+    definitions: "Sequence[NumberDefinition]",
+) -> Iterator[Piece]:
+    """Yield the edits that exchange two of the lengths that an attribute is computed from."""
     lengths = [number for number in definitions if abs(values_of(number.text)[0]) != 1.0]
     cause = f"the numbers from which the {name} of {{}} is computed"
     for one, other in combinations(lengths, 2):
-        edits = ()
+        edits: Edits = ()
         if one.text != other.text:
             edits = (*one.edits_with(other.text), *other.edits_with(one.text))
         yield difference.piece(element, cause, edits, rank=OWN)
@@ -295,17 +317,8 @@ def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
 
     For a robot of which they are all in centimetres or millimetres.
     """
-    lengths: list[tuple[Element, str, Values]] = []
-    is_large = False
-    for element in difference.draft.root.iter():
-        if element.tag not in TAGS:
-            continue
-        for name, attribute in TAGS[str(element.tag)].attributes.items():
-            values = values_of(element.get(name)) if attribute.unit == "m" else ()
-            if any(values):
-                lengths.append((element, name, values))
-                is_large |= element.tag != "origin" and max(values) >= LARGE
-    if not is_large:
+    lengths = [*_lengths_of(difference.draft)]
+    if not any(element.tag != "origin" and max(values) >= LARGE for element, _, values in lengths):
         return
     for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")):
         sets = []
@@ -313,6 +326,17 @@ def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
             metres = format_numbers(tuple(value / factor for value in values))
             sets.append(Set(element, "", name, metres))
         yield Piece(f"the unit of all lengths: {unit}, not metres", "", tuple(sets), (), OWN)
+
+
+def _lengths_of(draft: Draft) -> Iterator[tuple[Element, str, Values]]:
+    """Yield the attributes of a robot that are lengths, with their numbers, if one is not 0."""
+    for element in draft.root.iter():
+        if element.tag not in TAGS:
+            continue
+        for name, attribute in TAGS[str(element.tag)].attributes.items():
+            values = values_of(element.get(name)) if attribute.unit == "m" else ()
+            if any(values):
+                yield element, name, values
 
 
 def whole_links(difference: RobotDifference) -> Iterator[Piece]:

@@ -564,9 +564,13 @@ class HintSearch:
             return None
         if any(after[name].outcome.status != "passed" for name in gains):
             return None
+        new_gains = self._without_known(gains) or gains
+        return _Proof(proposal._replace(edits=edits), new_gains, together, after, is_late)
+
+    def _without_known(self, gains: Mapping[str, Decimal]) -> dict[str, Decimal]:
+        """Return what edits gain that no hint gains which was found before."""
         known = {name for hint in self.found for name in hint.gains}
-        new_gains = {name: points for name, points in gains.items() if name not in known}
-        return _Proof(proposal._replace(edits=edits), new_gains or gains, together, after, is_late)
+        return {name: points for name, points in gains.items() if name not in known}
 
     def _needed(
         self, edits: Edits, gains: dict[str, Decimal], after: _Results

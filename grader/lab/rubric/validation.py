@@ -1,6 +1,6 @@
 """Validate a rubric's TOML: every mistake is collected, with the path of the key that it is in."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from decimal import Decimal
 from functools import cache
 from typing import Any
@@ -319,20 +319,21 @@ class Validation:
             self._complain(where, f"there is no check {name!r}{hint}")
         return check
 
+    def _owners_of_totals(self) -> Iterator[tuple[TomlPath, TomlRow, str, list[TomlRow]]]:
+        """Yield the rubric and its parts, each with its place before, its name and its criteria."""
+        yield (), self.rubric, "the rubric", self.criteria
+        by_part: dict[str, list[TomlRow]] = {}
+        for row in self.criteria:
+            by_part.setdefault(row.get("part", ""), []).append(row)
+        for index, part in enumerate(self.parts):
+            name = part.get("id", "")
+            yield ("part", index), part, f"part {name!r}", by_part.get(name, [])
+
     def _check_totals(self) -> None:
         """Compare declared totals with the sums, where all points are valid."""
         if any("points" not in row for row in self.criteria):
             return
-        by_part: dict[str, list[TomlRow]] = {}
-        for row in self.criteria:
-            by_part.setdefault(row.get("part", ""), []).append(row)
-        declared: list[tuple[TomlPath, TomlRow, str, list[TomlRow]]] = [
-            ((), self.rubric, "the rubric", self.criteria)
-        ]
-        for index, part in enumerate(self.parts):
-            name = part.get("id", "")
-            declared.append((("part", index), part, f"part {name!r}", by_part.get(name, [])))
-        for where, owner, name, rows in declared:
+        for where, owner, name, rows in self._owners_of_totals():
             actual = sum((row["points"] for row in rows if not row.get("bonus")), Decimal(0))
             if owner.get("points", actual) != actual:
                 without = " without extra credit" if any(row.get("bonus") for row in rows) else ""

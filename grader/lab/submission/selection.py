@@ -120,14 +120,7 @@ def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
         if package not in lab_packages.values():
             reason = why_not(graded, package, lab.urdf)
             unused_packages.append(OtherCandidate(package.path(MANIFEST), reason))
-    several = ""
-    fitting = selection.choice.fitting
-    if fitting:
-        which = f"{urdf} was graded, not {enumerated(fitting, MAX_NAMED)}"
-        several = (
-            f"{len(fitting) + 1} robots fit this lab: {which}; to grade another one, name its "
-            "file or folder"
-        )
+    several = _note_on_several(selection.choice)
     notes = (several, _note_on_folders(selection))
     return selection._replace(
         packages=packages,
@@ -136,6 +129,17 @@ def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
         others=(*selection.choice.others, *unused_packages, *selection.others),
         notes=tuple(note for note in notes if note),
         several=several,
+    )
+
+
+def _note_on_several(choice: UrdfChoice) -> str:
+    """Return a note on other robots that fit the lab as well; empty if there are none."""
+    if not choice.fitting:
+        return ""
+    which = f"{choice.path} was graded, not {enumerated(choice.fitting, MAX_NAMED)}"
+    return (
+        f"{len(choice.fitting) + 1} robots fit this lab: {which}; to grade another one, name its "
+        "file or folder"
     )
 
 
@@ -258,32 +262,35 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
 
     # The packages are those of the best place that has any: all others are elsewhere.
     package_place = places.best_of(package_files)
-    files_elsewhere = [
-        path
-        for path in package_files
-        if package_place is None or places.place_of(path) is not package_place
-    ]
     packages: tuple[Package, ...] = ()
+    files_elsewhere = package_files
     if package_place is not None:
         package_tree = places.only(tree, (package_place,))
         is_whole = package_tree is tree
         packages = every_package if is_whole else _packages_in(package_tree, lab)
-    paths_elsewhere = sorted(project_robots)
-    paths_elsewhere += [path for path in files_elsewhere if path.rpartition("/")[2] == MANIFEST]
-    others = [
-        OtherCandidate(path, _ELSEWHERE[labs.belonging(path)])
-        for path in paths_elsewhere[:_MAX_ELSEWHERE]
-    ]
+        files_elsewhere = [
+            path for path in package_files if places.place_of(path) is not package_place
+        ]
+    packages_elsewhere = every_package if files_elsewhere else ()
     return _Selection(
         choice,
         tree=own_tree,
         packages=packages,
-        no_package=_why_no_package(
-            packages, every_package if files_elsewhere else (), lab, searched_tree
-        ),
-        others=tuple(others),
+        no_package=_why_no_package(packages, packages_elsewhere, lab, searched_tree),
+        others=_list_elsewhere(labs, project_robots, files_elsewhere),
         own_folder=next(map(labs.around, own_tree.files), "") if has_own_folder else "",
         other_lab=other_lab,
+    )
+
+
+def _list_elsewhere(
+    labs: LabFolders, project_robots: Collection[str], package_files: Sequence[str]
+) -> tuple[OtherCandidate, ...]:
+    """Return the robots and packages outside of the searched places, with the reason."""
+    paths = sorted(project_robots)
+    paths += [path for path in package_files if path.rpartition("/")[2] == MANIFEST]
+    return tuple(
+        OtherCandidate(path, _ELSEWHERE[labs.belonging(path)]) for path in paths[:_MAX_ELSEWHERE]
     )
 
 

@@ -4,7 +4,7 @@ It has its shapes in their colours, frames, and driving directions of wheels; of
 what `graded_picture.py` adds to it.
 """
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from math import isfinite
@@ -145,8 +145,13 @@ def scene_of(
         missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")
     shown = tuple(bodies)[:_MAX_BODIES]
     scene = Scene(robot, frame, poses, shown, (), tuple(missing), tuple(boxed))
-    turning = (_wheel(scene, link) for link in wheels)
-    return replace(scene, wheels=tuple(wheel for wheel in turning if wheel is not None))
+    return replace(scene, wheels=_turning_wheels(scene, wheels))
+
+
+def _turning_wheels(scene: Scene, links: Iterable[str]) -> tuple[Wheel, ...]:
+    """Return the wheels among the links that are meant to roll."""
+    turning = (_wheel(scene, link) for link in links)
+    return tuple(wheel for wheel in turning if wheel is not None)
 
 
 def _list_omitted(omitted: Mapping[str, Collection[str]]) -> list[str]:

@@ -42,6 +42,19 @@ def space_data(
         if name not in placed:
             link["pose"] = _rows(pose)
         links.append(link)
+    data = {
+        "frame": scene.frame,
+        "root": scene.root,
+        "links": links,
+        "joints": joints,
+        "pins": _pins(picture, cards),
+    }
+    drive = drive_data(picture)
+    return data if drive is None else {**data, "drive": drive}
+
+
+def _pins(picture: Picture, cards: Mapping[str, str]) -> list[dict[str, Any]]:
+    """Return the numbers at links, each with the card on the page that it leads to."""
     pins = []
     for callout in picture.callouts:
         if callout.point is not None:
@@ -50,15 +63,7 @@ def space_data(
             if card is not None:
                 pin["card"] = f"criterion-{card}"
             pins.append(pin)
-    data = {
-        "frame": scene.frame,
-        "root": scene.root,
-        "links": links,
-        "joints": joints,
-        "pins": pins,
-    }
-    drive = drive_data(picture)
-    return data if drive is None else {**data, "drive": drive}
+    return pins
 
 
 def without_names(space: Mapping[str, Any]) -> dict[str, Any]:

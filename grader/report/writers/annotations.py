@@ -67,6 +67,11 @@ def _findings(report: Report, base: Base) -> Iterator[Annotation]:
         remarks = remarks_on(result) if not is_failure(result) else ()
         if remarks:
             yield Annotation(result.criterion.id, "note", "\n".join(remarks))
+    yield from _problem_findings(report, source_of, base)
+
+
+def _problem_findings(report: Report, source_of: SourceOf, base: Base) -> Iterator[Annotation]:
+    """Yield the problems that no criterion has reported."""
     for problem in other_problems(report):
         where = problem.location
         text = annotation_text([printable(problem.message)], where, base)
