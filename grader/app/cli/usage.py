@@ -124,9 +124,14 @@ def message_on_path(error: NotThereError, arguments: Sequence[str]) -> str:
         meant = [command, *others, "--rubric", error.path]
     elif is_bare:
         meant = [command, *bare]
-    start = f"{error.path} does not exist"
     if meant is not None:
-        return f"{start}; did you mean `grader {_shown(meant)}`?"
+        return f"{error.path} does not exist; did you mean `grader {_shown(meant)}`?"
+    return _message_without_guess(error)
+
+
+def _message_without_guess(error: NotThereError) -> str:
+    """Return one line on a path that does not exist: an address, a pattern or another one."""
+    start = f"{error.path} does not exist"
     if re.match(r"\w+:/", error.path):
         return f"{start}: download it, and grade the copy"
     if re.search(r"[*?]", error.path):

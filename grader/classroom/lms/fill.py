@@ -382,16 +382,24 @@ def _clues(student: Student, lms: str) -> list[set[str]]:
     return [{*map(plain, kind)} - {""} for kind in ([lms_id], ids, [name])]
 
 
+def _index_by_clue(
+    people: Sequence[list[set[str]]],
+) -> defaultdict[tuple[int, str], set[int]]:
+    """Return which people have a clue, by its kind and text."""
+    having = defaultdict[tuple[int, str], set[int]](set)
+    for at, clues in enumerate(people):
+        for kind, words in enumerate(clues):
+            for word in words:
+                having[kind, word].add(at)
+    return having
+
+
 def _fitting(some: Sequence[list[set[str]]], others: Sequence[list[set[str]]]) -> list[list[int]]:
     """Return the others that fit each of some.
 
     They have its most reliable clue that is known, and no other id in the LMS.
     """
-    having = defaultdict[tuple[int, str], set[int]](set)
-    for at, clues in enumerate(others):
-        for kind, words in enumerate(clues):
-            for word in words:
-                having[kind, word].add(at)
+    having = _index_by_clue(others)
     fitting = []
     for clues in some:
         candidates = set[int]()

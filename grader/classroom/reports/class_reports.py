@@ -240,12 +240,19 @@ def write_reports(
     lost = {key: one.why_lost for key, one in done.items() if one.why_lost}
     if Format.HTML in run.formats:
         pages = {key: name for key, name in files.items() if key not in lost}
-        stills = {}
-        for key in pages:
-            one = done[key] if key in done else kept.written[str(paths[key][0])]
-            stills[key] = one.still
-        _write_class_page_of(book, run, pages, stills)
+        first_paths = {key: str(paths[key][0]) for key in pages}
+        _write_class_page_of(book, run, pages, _stills_of(done, kept, first_paths))
     _tell_written(book, run, len(files) - len(lost), lost, terminal)
+
+
+def _stills_of(
+    done: Mapping[str, _Done], kept: KeptReports, paths: Mapping[str, str]
+) -> "dict[str, Still]":
+    """Return the small pictures of students' robots, of new and of older reports."""
+    stills = {}
+    for key, path in paths.items():
+        stills[key] = done[key].still if key in done else kept.written[path].still
+    return stills
 
 
 def _write_class_page_of(

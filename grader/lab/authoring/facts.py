@@ -423,11 +423,17 @@ def _joints_in_words(moving: Sequence[Joint]) -> str:
         [(joint_type, count)] = leaders.items()
         verb = "moves" if count == 1 else "move"
         return f"{counted(count, f'{joint_type} joint')} {verb}, and no other joint does"
-    kinds = [f"{count} {joint_type}" for joint_type, count in leaders.items()]
+    kinds = [*_kinds_in_words(leaders, followers)]
+    return f"the robot has {counted(len(moving), 'moving joint')}: {enumerated(kinds)}"
+
+
+def _kinds_in_words(leaders: Counter[str], followers: Counter[str]) -> Iterator[str]:
+    """Yield how many joints of each type move by themselves, and how many follow another one."""
+    for joint_type, count in leaders.items():
+        yield f"{count} {joint_type}"
     for joint_type, count in followers.items():
         verb = "follows" if count == 1 else "follow"
-        kinds.append(f"{count} {joint_type} that {verb} another joint")
-    return f"the robot has {counted(len(moving), 'moving joint')}: {enumerated(kinds)}"
+        yield f"{count} {joint_type} that {verb} another joint"
 
 
 def _words_of_joints(joints: Iterable[Joint], *checks: str) -> tuple[str, ...]:

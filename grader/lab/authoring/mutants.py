@@ -316,6 +316,11 @@ def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator
         for node in file.imports:
             place = f"{label} {file.segment(node)}"
             yield MutantEdit("import deleted", place, *file.span(node), "pass")
+    yield from _string_changes(file, label)
+
+
+def _string_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+    """Yield that a string is misspelt, but none for people."""
     ignored = [*_for_people(file)]
     for text, start, end in file.literals:
         is_ignored = any(first <= start < last for first, last in ignored)

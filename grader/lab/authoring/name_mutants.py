@@ -61,6 +61,13 @@ def name_changes(
         yield from _yaml_changes(source, label)
     elif name.endswith(_WORLDS) and "topics" in families:
         yield from _world_changes(source, label)
+    yield from _name_edits(source, label, names)
+
+
+def _name_edits(
+    source: Source, label: str, names: Iterable[tuple[Fact, Edit]]
+) -> Iterator[MutantEdit]:
+    """Yield the changes of the compared names that are in a file."""
     for fact, edit in names:
         if edit.path == source.path:
             start = source.offset(edit.line, edit.column)

@@ -119,6 +119,13 @@ def _code_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
                     if isinstance(callback, ast.Attribute) and name in _ANSWERING:
                         answering.add(callback.attr)
     yield from _call_changes(file, label)
+    yield from _return_changes(file, label, answering)
+
+
+def _return_changes(
+    file: PythonFile, label: str, answering: Collection[str]
+) -> Iterator[MutantEdit]:
+    """Yield that one of these callbacks does not return its response."""
     for node in file.nodes:
         if isinstance(node, ast.FunctionDef) and node.name in answering:
             last = node.body[-1]

@@ -321,6 +321,20 @@ def _is_spawner(file: PythonFile, entry: ast.expr) -> bool:
 # --- Names that are free
 
 
+def _replace_name(
+    submission: Submission, texts: Mapping[str, str], name: str, new: str
+) -> dict[str, str]:
+    """Return the files that name another file, with its new name; `texts` are changed already."""
+    word = re.compile(rf"(?<![\w.-]){re.escape(name)}(?![\w.-])")
+    uses = {}
+    for other in submission.whole_tree.files:
+        if other.endswith(_TEXTS):
+            text = texts.get(other, _text(submission, other))
+            if word.search(text):
+                uses[other] = word.sub(new, text)
+    return uses
+
+
 def _with_renamed_files(submission: Submission, package: Package, named: Collection[str]) -> _Files:
     """Return the files of parameters and worlds under other names.
 
@@ -334,13 +348,7 @@ def _with_renamed_files(submission: Submission, package: Package, named: Collect
         is_asked = any(name in text or f"/{stem}" in text for text in named)
         if not _FREE_FILES.search(path) or is_asked or "*" in name:
             continue
-        word = re.compile(rf"(?<![\w.-]){re.escape(name)}(?![\w.-])")
-        uses = {}
-        for other in submission.whole_tree.files:
-            if other.endswith(_TEXTS):
-                text = texts.get(other, _text(submission, other))
-                if word.search(text):
-                    uses[other] = word.sub(f"{stem}_2x{ending}", text)
+        uses = _replace_name(submission, texts, name, f"{stem}_2x{ending}")
         old = package.path(path)
         if uses and old not in uses:
             texts.update(uses)

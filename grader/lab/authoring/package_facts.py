@@ -338,14 +338,13 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
             elsewhere.add(path)
         installed.append(path)
     rest = [path for path in installed if path not in elsewhere]
-    kinds = {"urdf": [urdf] if urdf in rest else [], "rviz": package.rviz_files}
-    for kind, paths in kinds.items():
-        for path in paths:
-            if path not in elsewhere:
-                name = posixpath.basename(path)
-                yield _package_fact(
-                    "build_installs", name, kind=kind, name=name, despite_errors=True
-                )._replace(title=f"a build installs {name}")
+    named_files = [("urdf", urdf)] if urdf in rest else []
+    named_files += [("rviz", path) for path in package.rviz_files if path not in elsewhere]
+    for kind, path in named_files:
+        name = posixpath.basename(path)
+        yield _package_fact(
+            "build_installs", name, kind=kind, name=name, despite_errors=True
+        )._replace(title=f"a build installs {name}")
     yield from _install_facts(package, rest, {posixpath.splitext(file)[1] for file in elsewhere})
 
 

@@ -37,7 +37,7 @@ from grader.lab.rubric.rubric import Rubric, read_rubric
 from grader.lab.submission.edited import content, with_files, with_urdf
 from grader.lab.submission.opening import read_submission
 from grader.lab.submission.submission import Lab, Submission
-from grader.ros.package.package import MANIFEST
+from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.link_tree import JOINT_OF
 from grader.ros.workspace.rules.names import Fact
@@ -175,19 +175,23 @@ class Trial:
         ]
         for path in self.robot_files:
             yield from mutants(self.text(path), path, hidden)
-        package, urdf = self.reference.package, self.reference.urdf
-        if package is not None:
-            robot = urdf.reading.robot if isinstance(urdf, Read) else None
-            links = [link.name for link in robot.links] if robot is not None else []
-            packages = [
-                lab_package
-                for lab_package in self.reference.lab_packages.values()
-                if lab_package.folder != package.folder
-            ]
-            for one in (package, *packages):
-                prefix = "" if one is package else f"{one.name}/"
-                made = package_mutants(one, links, self.text, self._name_changes, prefix=prefix)
-                yield from filter(self._is_looked_at, made)
+        if self.reference.package is not None:
+            yield from self._mutants_of_packages(self.reference.package)
+
+    def _mutants_of_packages(self, package: Package) -> Iterator[Mutant]:
+        """Yield the mutants of the packages, the main one first, that a criterion may look at."""
+        urdf = self.reference.urdf
+        robot = urdf.reading.robot if isinstance(urdf, Read) else None
+        links = [link.name for link in robot.links] if robot is not None else []
+        packages = [
+            lab_package
+            for lab_package in self.reference.lab_packages.values()
+            if lab_package.folder != package.folder
+        ]
+        for one in (package, *packages):
+            prefix = "" if one is package else f"{one.name}/"
+            made = package_mutants(one, links, self.text, self._name_changes, prefix=prefix)
+            yield from filter(self._is_looked_at, made)
 
     def _name_changes(self, source: Source, label: str) -> Iterable[MutantEdit]:
         """Return the changes of names and values in a file, if a criterion compares them."""

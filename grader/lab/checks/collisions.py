@@ -203,6 +203,23 @@ def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> ShapeDi
     return shown.mismatch(solid, tolerance + SLACK)
 
 
+def _refuse_other_meshes(link: str, lonely: Sequence[Visual], others: Sequence[Collision]) -> None:
+    """Raise NotDecided for a collision mesh that is not shown, if all shapes are meshes."""
+    shown_meshes = [visual.geometry for visual in lonely if isinstance(visual.geometry, Mesh)]
+    meshes = [collision.geometry for collision in others if isinstance(collision.geometry, Mesh)]
+    if len(meshes) < len(others) or len(shown_meshes) < len(lonely):
+        return
+    files = {mesh.filename for mesh in shown_meshes}
+    for mesh in meshes:
+        if mesh.filename not in files:
+            cause = "mesh files are not opened"
+            message = (
+                f"whether the collision mesh {quoted_end(mesh.filename)} of {link!r} has the "
+                f"shape that is shown cannot be determined: {cause}"
+            )
+            raise NotDecided(message, cause)
+
+
 def _judge_unmatched(
     link: str, lonely: Sequence[Visual], others: Sequence[Collision], tolerance: float
 ) -> Outcome:
@@ -210,18 +227,7 @@ def _judge_unmatched(
 
     These are visuals without a collision shape, and collision shapes without a visual.
     """
-    shown_meshes = [visual.geometry for visual in lonely if isinstance(visual.geometry, Mesh)]
-    meshes = [collision.geometry for collision in others if isinstance(collision.geometry, Mesh)]
-    if len(meshes) == len(others) and len(shown_meshes) == len(lonely):
-        files = {mesh.filename for mesh in shown_meshes}
-        for mesh in meshes:
-            if mesh.filename not in files:
-                cause = "mesh files are not opened"
-                message = (
-                    f"whether the collision mesh {quoted_end(mesh.filename)} of {link!r} has the "
-                    f"shape that is shown cannot be determined: {cause}"
-                )
-                raise NotDecided(message, cause)
+    _refuse_other_meshes(link, lonely, others)
     pairs = [
         (_mismatch(visual, other, tolerance), visual, other)
         for visual in lonely

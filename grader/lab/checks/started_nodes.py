@@ -74,15 +74,20 @@ def find_faults(
         wanted: What else is wanted.
     """
     workspace = submission.workspace
-    started = [node for node in launch.nodes if node.when is not False]
-    named = [node._replace(node_name=workspace.code.name_of(node)) for node in started]
-    launch = launch._replace(nodes=tuple(named))
+    launch = _with_node_names(launch, workspace)
     faults: list[Fault | None] = [*_started_although(launch, wanted.absent or ())]
     if wanted.remap or wanted.arguments:
         faults += [_ill_started(launch, names, wanted) for names in choices]
     faults += [_not_included(launch, end) for end in wanted.includes or ()]
     faults += _not_opened(launch, workspace, wanted)
     return [fault for fault in faults if fault is not None]
+
+
+def _with_node_names(launch: "Launch", workspace: "Workspace") -> "Launch":
+    """Return a launch file with the nodes that may start, named as their programs name them."""
+    started = [node for node in launch.nodes if node.when is not False]
+    named = [node._replace(node_name=workspace.code.name_of(node)) for node in started]
+    return launch._replace(nodes=tuple(named))
 
 
 def _not_opened(launch: "Launch", workspace: "Workspace", wanted: Wanted) -> Iterator[Fault | None]:

@@ -172,13 +172,13 @@ class RobotDifference:
         shown = next(link.iter("material"), None) if link is not None else None
         if shown is None:
             return
-        name = shown.get("name") or ""
+        name = shown.get("name", "")
         like = self.reference.material(name)
         colour = child_of(like, "color") if like is not None else None
         if like is None or colour is None:
             return
-        if (used.get("name") or "") not in own_names:
-            yield self.piece_of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
+        if used.get("name", "") not in own_names:
+            yield self.piece_of_sets([Set(used, "color", "rgba", colour.get("rgba", ""))])
             return
         own_name = self._names["material"].get(name, "")
         if self.draft.material(name) is None and self.draft.material(own_name) is None:

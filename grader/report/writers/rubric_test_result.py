@@ -132,6 +132,11 @@ def _count_lines(test: RubricTest) -> Iterator[str]:
         if samples.skipped:
             line += f", {samples.skipped} of other rubrics skipped"
         yield line
+    yield _mutants_line(test)
+
+
+def _mutants_line(test: RubricTest) -> str:
+    """Return how many mutants were graded, and what became of them."""
     line = f"Mutants      {test.tried}"
     if test.tried < test.total:
         line += f" of {test.total}"
@@ -140,7 +145,7 @@ def _count_lines(test: RubricTest) -> Iterator[str]:
         line += f", {test.same} {'is' if test.same == 1 else 'are'} the same robot"
     if test.ignored:
         line += f", {len(test.ignored)} ignored"
-    yield f"{line}, {_count_or_none(len(test.survivors), 'survives', 'survive')}"
+    return f"{line}, {_count_or_none(len(test.survivors), 'survives', 'survive')}"
 
 
 def _count_or_none(count: int, one: str, several: str) -> str:

@@ -40,7 +40,7 @@ from grader.report.criteria import (
     remarks_on,
     status_of,
 )
-from grader.report.locations import diff_lines, location_text
+from grader.report.locations import SourceOf, diff_lines, location_text
 from grader.report.screen import link_to
 from grader.report.statuses import STYLES
 from grader.report.writers.terminal_page import (
@@ -213,13 +213,20 @@ def _show_entry(entry: Entry, report: Report, page: Page, blocks: Iterable[Block
                 source = source_of(part.path)
                 if source is not None and source.line(part.line).strip():
                     page.rows.append(excerpt_block(page.console, source, part, INDENT))
-            case Answer(title, lines):
-                page.inset(f"{title}:", "bold")
-                for line in lines:
-                    page.inset(line, indent=2 * INDENT)
-            case Diff(edits):
-                for line in diff_lines(edits, source_of):
-                    page.inset(line, _DIFF_STYLES.get(line[0], "dim"), 2 * INDENT)
+            case Answer() | Diff():
+                _show_lines(part, source_of, page)
+
+
+def _show_lines(part: Answer | Diff, source_of: SourceOf, page: Page) -> None:
+    """Add the lines of an answer or of edits."""
+    match part:
+        case Answer(title, lines):
+            page.inset(f"{title}:", "bold")
+            for line in lines:
+                page.inset(line, indent=2 * INDENT)
+        case Diff(edits):
+            for line in diff_lines(edits, source_of):
+                page.inset(line, _DIFF_STYLES.get(line[0], "dim"), 2 * INDENT)
 
 
 def _mistake_head(entry: Entry, page: Page) -> Text:
