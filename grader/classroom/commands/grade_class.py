@@ -128,6 +128,15 @@ class _ClassInputs:
         )
 
 
+def _refuse_other_rubric(folder: Path, settings: ClassSettings, rubric: Rubric) -> None:
+    """Raise InputError if a gradebook is that of another rubric."""
+    if settings.rubric_id not in ("", rubric.id):
+        raise InputError(
+            f"{printable_path(folder)} is the gradebook of {settings.rubric_id}, not of "
+            f"{rubric.id}: name another folder"
+        )
+
+
 def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
     """Return the inputs of a run; raise InputError and RubricError. Nothing is written."""
     usual = load_rubric(options.usual_rubric)
@@ -136,19 +145,17 @@ def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
     is_new = not names.is_gradebook(folder)
     names.check_free(folder)
     settings = ClassSettings() if is_new else read_settings(folder)
-    rubric = named_rubric or usual
-    if named_rubric is None and not is_new:
+    rubric = usual
+    if named_rubric is not None:
+        rubric = named_rubric
+        _refuse_other_rubric(folder, settings, rubric)
+    elif not is_new:
         rubric = load_rubric(folder / settings.rubric)
         if options.usual_rubric != DEFAULT_RUBRIC and usual.id != rubric.id:
             warn(
                 f"{printable_path(folder)} keeps its rubric {rubric.id}, not {usual.id}: "
                 "name it with --rubric"
             )
-    elif named_rubric is not None and settings.rubric_id not in ("", rubric.id):
-        raise InputError(
-            f"{printable_path(folder)} is the gradebook of {settings.rubric_id}, not of "
-            f"{rubric.id}: name another folder"
-        )
     if not (options.paths or settings.submissions):
         raise InputError("name the PATH of the submissions, a folder or the zip of an LMS")
     last_due = settings.deadline(folder) if options.due is None else None

@@ -104,8 +104,7 @@ def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatisti
     """Return the statistics of the grades of a class."""
     everyone = list(grades)
     present = [grade.stored for grade in everyone if grade.stored is not None and not grade.is_gone]
-    on_roster = [grade for grade in everyone if grade.student.is_on_roster]
-    enrolled = [grade for grade in on_roster if grade.has_final or not grade.is_gone]
+    enrolled = _find_enrolled(everyone)
     statuses = Counter(grade.status for grade in enrolled)
     counted = [grade for grade in enrolled if grade.is_counted]
     totals = [grade.total or Decimal(0) for grade in counted]
@@ -125,6 +124,15 @@ def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatisti
         equal=equal_work(present, book.settings.handed_out),
         names={grade.student.key: grade.student.name for grade in everyone},
     )
+
+
+def _find_enrolled(grades: Iterable[StudentGrade]) -> list[StudentGrade]:
+    """Return the grades of students on the roster, without those whose submission is gone.
+
+    With a final mark, the submission may be gone.
+    """
+    on_roster = [grade for grade in grades if grade.student.is_on_roster]
+    return [grade for grade in on_roster if grade.has_final or not grade.is_gone]
 
 
 def _tenths(grades: Iterable[StudentGrade], maximum: Decimal) -> list[list[str]]:

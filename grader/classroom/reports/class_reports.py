@@ -220,29 +220,49 @@ def write_reports(
     book, kept = Gradebook(run.gradebook), KeptReports(run.gradebook)
     grades = [grade for grade in book if grade.stored is not None or grade.has_final]
     files = file_names([grade.student.key for grade in grades])
-    # Beside the reports, but in the gradebook above those in its own folder.
-    is_in_gradebook = run.folder == run.gradebook / names.REPORTS
     run = run._replace(time=book.run.time)
     if Format.HTML in run.formats:
-        class_page = f"../{_CLASS_PAGE}" if is_in_gradebook else _CLASS_PAGE
-        run = run._replace(class_page=class_page)
+        run = run._replace(class_page=_path_of_class_page(run))
     paths = {key: _paths_of(run, name) for key, name in files.items()}
     context = _context(book, run)
     shown = {grade.student.key: _shown_in(book, grade, context) for grade in grades}
-    changed = {}
-    for key, what_is_shown in shown.items():
-        if not all(kept.is_current(path, what_is_shown) for path in paths[key]):
-            changed[key] = files[key]
+    changed = dict[str, str]()
+    for key in _find_outdated(kept, shown, paths):
+        changed[key] = files[key]
     done = _render_reports(run, changed, terminal, jobs, timeout) if changed else {}
     if done:
         new_hints = _keep(kept, done, paths, shown)
         kept.save(new_hints, book.settings.roots(book.folder))
     lost = {key: one.why_lost for key, one in done.items() if one.why_lost}
     if Format.HTML in run.formats:
-        pages = {key: name for key, name in files.items() if key not in lost}
-        first_paths = {key: str(paths[key][0]) for key in pages}
-        _write_class_page_of(book, run, pages, _stills_of(done, kept, first_paths))
+        pages, first_paths = dict[str, str](), dict[str, str]()
+        for key, name in files.items():
+            if key not in lost:
+                pages[key] = name
+                first_paths[key] = str(paths[key][0])
+        stills = _stills_of(done, kept, first_paths)
+        _write_class_page_of(book, run, pages, stills)
     _tell_written(book, run, len(files) - len(lost), lost, terminal)
+
+
+def _path_of_class_page(run: ReportRun) -> str:
+    """Return the path of the class's page from the reports.
+
+    It is beside them, but in the gradebook above those in its own folder.
+    """
+    is_in_gradebook = run.folder == run.gradebook / names.REPORTS
+    return f"../{_CLASS_PAGE}" if is_in_gradebook else _CLASS_PAGE
+
+
+def _find_outdated(
+    kept: KeptReports, shown: Mapping[str, str], paths: Mapping[str, Sequence[Path]]
+) -> list[str]:
+    """Return the students whose reports do not show what they should."""
+    outdated = []
+    for key, what_is_shown in shown.items():
+        if not all(kept.is_current(path, what_is_shown) for path in paths[key]):
+            outdated.append(key)
+    return outdated
 
 
 def _stills_of(

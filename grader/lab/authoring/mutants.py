@@ -83,12 +83,18 @@ def _as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator
         yield Mutant(name, family, path, text.count("\n", 0, start) + 1, start, end, new)
 
 
-def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
-    places = list(_places(text))
+def _names_by_tag(elements: Iterable[Element]) -> dict[str, list[str]]:
+    """Return the names of links, joints and materials, each where it is written."""
     names: dict[str, list[str]] = {"link": [], "joint": [], "material": []}
-    for element, *_ in places:
+    for element in elements:
         if element.tag in names:
             names[str(element.tag)].append(element.get("name", ""))
+    return names
+
+
+def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
+    places = list(_places(text))
+    names = _names_by_tag(element for element, *_ in places)
     for element, label, start in places:
         for attribute in attributes(text, start):
             yield from _attribute_changes(text, element, label, attribute, names)
@@ -134,6 +140,15 @@ def _places(text: str) -> Iterator[tuple[Element, str, int]]:
         yield element, label, start
 
 
+def _next_name(known: Sequence[str], value: str) -> str:
+    """Return the name after this one, or the first; empty if there is no other one."""
+    at = known.index(value) + 1 if value in known else 0
+    for name in (*known[at:], *known[:at]):
+        if name != value:
+            return name
+    return ""
+
+
 def _attribute_changes(
     text: str,
     element: Element,
@@ -148,10 +163,7 @@ def _attribute_changes(
         value = text[slice(*span)]
         known = names.get(str(element.tag), names.get(name, names["link"]))
         yield MutantEdit("name misspelt", place, *span, misspelt(value))
-        at = known.index(value) + 1 if value in known else 0
-        other = next(
-            (known_value for known_value in (*known[at:], *known[:at]) if known_value != value), ""
-        )
+        other = _next_name(known, value)
         if other:
             yield MutantEdit("name exchanged", f"{place} -> {other}", *span, other)
     elif name == "type" and element.tag == "joint":

@@ -4,7 +4,7 @@ This is what its reference does not pass, and what an edit likely forgot.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from math import degrees, inf, pi, radians
@@ -69,7 +69,6 @@ def reference_failures(rubric: Rubric) -> _Failures:
     Criteria with one message share a line.
     """
     assert rubric.solution is not None
-    places: dict[Outcome, list[tuple[TomlPath, str]]] = {}
     unearned = grade(rubric, rubric.solution.submission).unearned
     failures = [
         (_path_of(result.criterion), result.criterion.id, result.outcome) for result in unearned
@@ -77,10 +76,7 @@ def reference_failures(rubric: Rubric) -> _Failures:
     failures += _carried_failures(rubric)
     failures.sort(key=lambda failure: failure[0][1])
     unresolved = {path[1]: (path, line) for path, line in _unresolved_selectors(rubric)}
-    for path, name, outcome in failures:
-        if path[1] not in unresolved:
-            what = Outcome(outcome.status, outcome.message)
-            places.setdefault(what, []).append((path, name))
+    places = _places_by_message(failures, unresolved)
     mistakes = [*unresolved.values()]
     undecided = 0
     for outcome, places_of_outcome in places.items():
@@ -102,17 +98,30 @@ def _path_of(criterion: Criterion) -> TomlPath:
     return ("criterion", criterion.position, "with")
 
 
+def _places_by_message(
+    failures: Iterable[tuple[TomlPath, str, Outcome]], unresolved: Collection[int | str]
+) -> dict[Outcome, list[tuple[TomlPath, str]]]:
+    """Return the places and criteria of failures with one status and message.
+
+    Criteria whose selectors are `unresolved` are left out.
+    """
+    places: dict[Outcome, list[tuple[TomlPath, str]]] = {}
+    for path, name, outcome in failures:
+        if path[1] not in unresolved:
+            what = Outcome(outcome.status, outcome.message)
+            places.setdefault(what, []).append((path, name))
+    return places
+
+
 def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]:
     """Yield what counts instead of a criterion, if the reference does not pass it.
 
     It counts where an error is carried forward.
     """
     assert rubric.solution is not None
-    for criterion in (
-        counted_criterion
-        for counted_criterion in rubric.criteria
-        if not (counted_criterion.adjustment or counted_criterion.bonus)
-    ):
+    for criterion in rubric.criteria:
+        if criterion.adjustment or criterion.bonus:
+            continue
         for index, one in enumerate(criterion.carried):
             if one.at:  # a fact of robots with that mistake only
                 continue

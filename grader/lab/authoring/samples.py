@@ -16,6 +16,7 @@ from grader.lab.grading.report import Result
 from grader.lab.rubric.keys import NAMES
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.opening import open_submission
+from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 
 _EXPECTED = "expected.toml"
@@ -119,10 +120,21 @@ def _differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
     verdict = submission.urdf.loaded.verdict if isinstance(submission.urdf, Read) else "missing"
     if sample.verdict not in ("", verdict):
         yield "verdict", f"is {verdict}, expected {sample.verdict}"
-    expected = {name: words for kind, words in _WORDS.items() for name in getattr(sample, kind)}
+    yield from _differences_of_criteria(sample, rubric, submission)
+
+
+def _differences_of_criteria(
+    sample: Sample, rubric: Rubric, submission: Submission
+) -> Iterator[tuple[str, str]]:
+    """Yield the criteria whose results differ from the expected ones, each with a message."""
+    expected = {}
+    for kind, words in _WORDS.items():
+        for name in getattr(sample, kind):
+            expected[name] = words
     known = {criterion.id: criterion.adjustment is None for criterion in rubric.criteria}
-    for name in (name for name in expected if name not in known):
-        yield name, f"the rubric has no such criterion{did_you_mean(name, known)}"
+    for name in expected:
+        if name not in known:
+            yield name, f"the rubric has no such criterion{did_you_mean(name, known)}"
     graded = {
         result.criterion.id: (_actual(result), f": {result.outcome.message}")
         for result in grade(rubric, submission).results

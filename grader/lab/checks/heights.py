@@ -111,11 +111,14 @@ def under_the_base(
     lowest, missing = _measure_each(wheels, lambda wheel: span(robot, wheel, link, Z_AXIS)[0])
     off = {wheel: value for wheel, value in lowest.items() if not within(value, 0.0, tolerance)}
     faults = [*_find_pose_faults(base, T_link_base, tolerance, angle)]
-    heights = {wheel: difference(value, "above", "below") for wheel, value in off.items()}
-    faults += [f"the lowest point of {wheel!r} is {height} it" for wheel, height in heights.items()]
+    for wheel, value in off.items():
+        height = difference(value, "above", "below")
+        faults.append(f"the lowest point of {wheel!r} is {height} it")
     if missing is not None and not faults:
         raise missing
-    verb, explanation = ("should be", f": {'; '.join(faults)}") if faults else ("is", "")
+    verb, explanation = "is", ""
+    if faults:
+        verb, explanation = "should be", f": {'; '.join(faults)}"
     message = (
         f"the frame {link!r} {verb} under {base!r}, "
         f"level with the bottoms of the wheels{explanation}"

@@ -29,14 +29,13 @@ def build_error(package: Package, *, where_there: bool = False) -> Outcome | Non
     if package.ignored_by:
         message = f"colcon does not build the package, because there is a file {package.ignored_by}"
         return failed(message, problem=message)
-    stops = [stop for stop in setup.stops if stop.path != MANIFEST or package.manifest is not None]
     errors = [(fault.message, "", fault.at) for fault in setup.faults]
     there = package.tree.files.keys() | package.tree.folders
-    errors += [
-        (stop.message, stop.hint, stop.at)
-        for stop in stops
-        if not where_there or not stop.path or stop.path.rstrip("/") in there
-    ]
+    for stop in setup.stops:
+        if stop.path == MANIFEST and package.manifest is None:
+            continue
+        if not where_there or not stop.path or stop.path.rstrip("/") in there:
+            errors.append((stop.message, stop.hint, stop.at))
     if errors:
         messages = list(dict.fromkeys(message for message, _, _ in errors))
         _, hint, at = errors[0]

@@ -137,19 +137,30 @@ def node_runs(
         calls=calls,
     )
     faults = find_faults(submission, evaluated, choices, wanted) if any(wanted) else []
-    certain = [fault for fault in faults if fault.is_certain]
-    if certain:
-        wrong = certain[0]
-        return failed(wrong.message, wrong.at, detail=wrong.detail, cause=wrong.cause)
-    if fault := _faulty_program(package, evaluated, choices):
-        raise fault
-    stopped = _stop_at_files(package, places, built=built)
-    if stopped is not None:
-        return stopped
+    failure = _fail_certainly(package, evaluated, choices, faults)
+    failure = failure or _stop_at_files(package, places, built=built)
+    if failure is not None:
+        return failure
     if built or not any(place.is_in_misnamed(package) for place in places):
         _check_starts(evaluated)
     _check_decided(evaluated, missing, faults, places)
     return _pass_started(evaluated, wanted_nodes)
+
+
+def _fail_certainly(
+    package: Package,
+    launch: "Launch",
+    choices: Sequence[Sequence[str]],
+    faults: Sequence[Fault],
+) -> Outcome | None:
+    """Return the failure of the first certain fault; raise that of a program that ends at once."""
+    for fault in faults:
+        if fault.is_certain:
+            return failed(fault.message, fault.at, detail=fault.detail, cause=fault.cause)
+    ending = _faulty_program(package, launch, choices)
+    if ending is not None:
+        raise ending
+    return None
 
 
 def _pass_started(launch: "Launch", wanted_nodes: tuple[str, ...]) -> Outcome:

@@ -85,7 +85,23 @@ def parameter_is(
         raise NotDecided(f"{cause}: {parameter_value.value.reason}", cause)
     if measure is not None:
         value = measured(submission, measure, links or [])
-    actual, wanted, fits = parameter_value.value, "", True
+    actual = parameter_value.value
+    wanted, fits = _compare_value(actual, value, one_of, has, tolerance)
+    message = f"{said} {_text(actual)}"
+    if measure is not None:
+        wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
+    return passed(message) if fits else failed(f"{message}; it {wanted}", parameter_value.location)
+
+
+def _compare_value(
+    actual: Any,
+    value: Content | None,
+    one_of: list[Scalar] | None,
+    has: list[Scalar] | None,
+    tolerance: float,
+) -> tuple[str, bool]:
+    """Return what a value should be, in words, and whether it is so."""
+    wanted, fits = "", True
     if value is not None:
         shown = round(value, _DIGITS) if isinstance(value, float) else value
         wanted, fits = f"should be {_text(shown)}", _equal(actual, value, tolerance)
@@ -96,10 +112,7 @@ def parameter_is(
         items = actual if isinstance(actual, list) else [actual]
         wanted = f"should have {enumerated([*map(_text, has)])}"
         fits = all(_has(items, expected, tolerance) for expected in has)
-    message = f"{said} {_text(actual)}"
-    if measure is not None:
-        wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
-    return passed(message) if fits else failed(f"{message}; it {wanted}", parameter_value.location)
+    return wanted, fits
 
 
 def _value_or_default(

@@ -59,26 +59,28 @@ def held_by(
     moving = [joint for joint in chain if joint.type != "fixed"]
     wanted = [] if joint_type == "fixed" else [joint_type]
     if [joint.type for joint in moving] == wanted:
-        blocked = _driven_or_blocked(moving[0], link) if free and moving else None
+        if free and moving:
+            blocked = _driven_or_blocked(moving[0], link)
+            if blocked is not None:
+                return blocked
         connecting = (moving or [joint])[0].name
-        message = f"the {joint_type} joint {connecting!r} connects {link!r} to {parent!r}"
-        return blocked or passed(message)
+        return passed(f"the {joint_type} joint {connecting!r} connects {link!r} to {parent!r}")
     if not moving:
         message = f"{link!r} cannot move: its joint is fixed; it should be {joint_type}"
         raise MissingElement(
             "moving joint", link, message=message, detail=f" (joint {joint.name!r})", location=at
         )
-    unknown = [joint for joint in moving if joint.type not in JOINT_TYPES]
-    if unknown:
-        may_be_wanted = bool(wanted) and len(unknown) == len(moving)
-        return _fail_unknown_type(unknown[0], link, parent, may_be_wanted=may_be_wanted)
-    return _fail_other_joints(moving, link, joint_type, at)
+    return _fail_other_joints(moving, link, parent, joint_type, at)
 
 
 def _fail_other_joints(
-    moving: Sequence[Joint], link: str, joint_type: JointType, at: LazyLocation | None
+    moving: Sequence[Joint], link: str, parent: str, joint_type: JointType, at: LazyLocation | None
 ) -> Outcome:
     """Return the failure of a link that several joints move, or one of another type."""
+    unknown = [joint for joint in moving if joint.type not in JOINT_TYPES]
+    if unknown:
+        may_be_wanted = joint_type != "fixed" and len(unknown) == len(moving)
+        return _fail_unknown_type(unknown[0], link, parent, may_be_wanted=may_be_wanted)
     if len(moving) > 1:
         names = enumerated([repr(joint.name) for joint in moving])
         expected = "only fixed joints" if joint_type == "fixed" else f"one {joint_type} joint"

@@ -213,6 +213,11 @@ def find_headings(
         headings.append(
             heading._replace(task=own_task if own_task is not None else task, section=section)
         )
+    return _with_ends(headings, lines)
+
+
+def _with_ends(headings: Collection[Heading], lines: list[str]) -> tuple[Heading, ...]:
+    """Return headings with the ends of the passages below them."""
     ending = [heading for heading in headings if not heading.is_mention]
     starts = [heading.start for heading in ending]
     return tuple(

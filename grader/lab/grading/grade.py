@@ -155,9 +155,14 @@ def _choose_parts(
         notes.append(_ELSEWHERE)
     skipped = [part.id for part in parts if part.id not in chosen]
     if skipped:
-        only, verb = enumerated(chosen) or "nothing", "need" if len(skipped) > 1 else "needs"
-        notes.append(f"only {only} is graded: {enumerated(skipped)} {verb} the whole folder")
+        notes.append(_note_on_skipped(chosen, skipped))
     return chosen, notes
+
+
+def _note_on_skipped(chosen: Sequence[str], skipped: Sequence[str]) -> str:
+    """Return a note on parts that are not graded because they need more than a URDF."""
+    only, verb = enumerated(chosen) or "nothing", "need" if len(skipped) > 1 else "needs"
+    return f"only {only} is graded: {enumerated(skipped)} {verb} the whole folder"
 
 
 def _is_outside_of_package(submission: Submission) -> bool:

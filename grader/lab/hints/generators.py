@@ -206,6 +206,13 @@ STAGES: tuple[Stage, ...] = (
 )
 
 
+def _is_left_out(piece: Piece, situation: Situation, links: Collection[str] | None) -> bool:
+    """Return whether a piece is of another link that the robot has, or a pose that is right."""
+    if situation.has_reversed and piece.is_pose:
+        return True
+    return links is not None and piece.link not in links and situation.is_known(piece.link)
+
+
 def _proposals(
     situation: Situation, pieces: Iterable[Piece], links: Collection[str] | None = None
 ) -> Iterator[Proposal]:
@@ -213,9 +220,7 @@ def _proposals(
     draft = situation.draft
     assert draft is not None
     for piece in pieces:
-        if situation.has_reversed and piece.is_pose:
-            continue
-        if links is not None and piece.link not in links and situation.is_known(piece.link):
+        if _is_left_out(piece, situation, links):
             continue
         shared = draft.shared(piece.sets)
         for way, edits in enumerate(draft.ways(piece.sets)):

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from functools import partial
-from itertools import takewhile
+from itertools import chain, takewhile
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.base.errors import InputError
@@ -85,14 +85,13 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
         with trials.isolated():
             hints[name] = _hint_for(name, found_hint, entries, results, level, submission)
     if level == "edit":
-        others = [name for name in costs if name not in hints and name not in entries.values()]
+        shown_at = {*hints, *entries.values()}
+        others = [results[name] for name in costs if name not in shown_at]
         with trials.isolated():
-            hints |= _hints_of_others([results[name] for name in others], search, entries)
+            hints |= _hints_of_others(others, search, entries)
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete)
-    edits: list[Edit] = []
-    for found_hint in _written(search.found):
-        edits += found_hint.edits
+    edits = chain.from_iterable(found_hint.edits for found_hint in _written(search.found))
     return _HintedReport(report, tuple(edits), trials.faults)
 
 

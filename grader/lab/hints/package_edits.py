@@ -341,8 +341,8 @@ def _missing_calls(file: PythonFile, what: str) -> Iterator[Proposal]:
         elif isinstance(node, ast.Attribute):
             inside.add(node.value)
     attributes = [node for node in file.nodes if isinstance(node, ast.Attribute)]
-    read = [node for node in attributes if isinstance(node.ctx, ast.Load)]
-    for method in [node for node in read if node not in inside][:_MAX_WORDS]:
+    outside = [node for node in attributes if node not in inside and isinstance(node.ctx, ast.Load)]
+    for method in outside[:_MAX_WORDS]:
         edit = file.replaced(method, f"{file.segment(method)}()")
         yield change([edit], f"`{method.attr}` without ()", what)
 

@@ -82,12 +82,18 @@ def steps(own_node: Node, like: Node) -> list[Step]:
             moved.append(Step("move", alike, other, parent=step.own))
             moved += _steps(alike, other)
             spare = [node for node in spare if node is not alike]
+    kept = _without_removals(left, spare)
+    return moved + sorted(kept, key=lambda step: _ORDER.get(step.verb, 0))
+
+
+def _without_removals(steps_left: Sequence[Step], spare: Sequence[Node]) -> list[Step]:
+    """Return the steps without the removal of nodes that are moved: those that are not `spare`."""
     kept: list[Step] = []
-    for step in left:
+    for step in steps_left:
         was_moved = not any(node is step.own for node in spare)
         if step.verb != "remove" or not was_moved:
             kept.append(step)
-    return moved + sorted(kept, key=lambda step: _ORDER.get(step.verb, 0))
+    return kept
 
 
 def _steps(own_node: Node, like: Node) -> Iterator[Step]:
