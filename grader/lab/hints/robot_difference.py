@@ -90,7 +90,7 @@ class RobotDifference:
         """The links and joints of the reference that the robot does not have."""
         parts: list[MissingPart] = []
         for step in self._steps:
-            if step.verb == "add" and step.own.tag == "robot" and step.like is not None:
+            if step.verb == "add" and step.own_node.tag == "robot" and step.like is not None:
                 like: Element = step.like.of
                 if like.tag == "link":
                     parts.append(MissingPart("link", like.get("name") or ""))
@@ -218,7 +218,7 @@ class RobotDifference:
         for values in _values_of_one(steps_of_one):
             yield from self._value_pieces(values)
         for step in steps_of_one:
-            own_node, like = step.own, step.like
+            own_node, like = step.own_node, step.like
             aliases = TAGS[own_node.tag].aliases if own_node.tag in TAGS else {}
             match step.verb:
                 case "rename" | "unset" if new := step.other or aliases.get(step.name):
@@ -239,7 +239,7 @@ class RobotDifference:
 
     def _value_pieces(self, steps_of_one: Sequence[Step]) -> Iterator[Piece]:
         """Yield the values of one element: each alone, and all together."""
-        element: Element = steps_of_one[0].own.of
+        element: Element = steps_of_one[0].own_node.of
         wanted = {step.name: _wanted_value(step) for step in steps_of_one}
         values = {name: value for name, value in wanted.items() if value is not None}
         if element.tag in ("link", "joint", "material", "visual", "collision") and "name" in values:
@@ -408,7 +408,7 @@ def _wanted_value(step: Step) -> str | None:
     """
     if step.verb == "set" and step.like is not None:
         return step.like.values[step.name]
-    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
+    known = TAGS[step.own_node.tag].attributes.get(step.name) if step.own_node.tag in TAGS else None
     return known.default or None if known is not None else None
 
 
@@ -477,7 +477,7 @@ def _values_of_one(steps_in_order: Iterable[Step]) -> Iterator[list[Step]]:
     together: list[Step] = []
     for step in steps_in_order:
         is_value = step.verb in ("set", "unset")
-        if together and not (is_value and together[0].own is step.own):
+        if together and not (is_value and together[0].own_node is step.own_node):
             yield together
             together = []
         if is_value:

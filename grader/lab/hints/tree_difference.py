@@ -37,15 +37,15 @@ class Node(NamedTuple):
 class Step(NamedTuple):
     """One step from a tree to another.
 
-    What happens to `own`, a node of the first tree, as in `like` of the other one.
+    What happens to `own_node`, a node of the first tree, as in `like` of the other one.
 
     set: the value `name` becomes that of `like`. unset: it goes. rename: it is called `other`.
-    retag: the node gets the tag of `like`. add: `like` is added to `own`. remove: `own` goes. move:
-    `own` becomes a child of `parent`.
+    retag: the node gets the tag of `like`. add: `like` is added to `own_node`. remove: `own_node`
+    goes. move: `own_node` becomes a child of `parent`.
     """
 
     verb: Literal["set", "unset", "rename", "retag", "add", "remove", "move"]
-    own: Node
+    own_node: Node
     like: Node | None = None
     name: str = ""
     other: str = ""
@@ -69,7 +69,7 @@ def steps(own_node: Node, like: Node) -> list[Step]:
     What is to move, the values, then what is to be added and removed.
     """
     every_step = [*_steps(own_node, like)]
-    spare = [step.own for step in every_step if step.verb == "remove"]
+    spare = [step.own_node for step in every_step if step.verb == "remove"]
     moved: list[Step] = []
     left: list[Step] = []
     for step in every_step:
@@ -79,7 +79,7 @@ def steps(own_node: Node, like: Node) -> list[Step]:
         if other is None or alike is None:
             left.append(step)
         else:
-            moved.append(Step("move", alike, other, parent=step.own))
+            moved.append(Step("move", alike, other, parent=step.own_node))
             moved += _steps(alike, other)
             spare = [node for node in spare if node is not alike]
     kept = _without_removals(left, spare)
@@ -90,7 +90,7 @@ def _without_removals(steps_left: Sequence[Step], spare: Sequence[Node]) -> list
     """Return the steps without the removal of nodes that are moved: those that are not `spare`."""
     kept: list[Step] = []
     for step in steps_left:
-        was_moved = not any(node is step.own for node in spare)
+        was_moved = not any(node is step.own_node for node in spare)
         if step.verb != "remove" or not was_moved:
             kept.append(step)
     return kept
@@ -149,7 +149,7 @@ class _Pairing:
     """The nodes of two lists that are being paired."""
 
     def __init__(self, own_nodes: Sequence[Node], like: Sequence[Node]) -> None:
-        self.own = own_nodes
+        self.own_nodes = own_nodes
         self.extra, self.missing = [*own_nodes], [*like]
         self.both: list[tuple[Node, Node]] = []
 
@@ -170,7 +170,7 @@ class _Pairing:
 
     def in_order(self) -> list[tuple[Node, Node]]:
         """Return the pairs in the order of the first list."""
-        return [pair for node in self.own for pair in self.both if pair[0] is node]
+        return [pair for node in self.own_nodes for pair in self.both if pair[0] is node]
 
 
 def _likeness(one: Node, other: Node) -> float:
