@@ -30,8 +30,9 @@ __all__ = list(_MODULES)
 
 
 def __getattr__(name: str) -> object:
-    """Return a public name; its module is imported when it is used, because most commands need few
-    of them.
+    """Return a public name, whose module is imported when it is used.
+
+    Most commands need few of them.
     """
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

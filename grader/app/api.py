@@ -15,8 +15,9 @@ from grader.lab.submission.opening import open_submission
 def grade(
     path: str | Path, rubric: str | Path | Rubric = DEFAULT_RUBRIC, *, parts: Iterable[str] = ()
 ) -> Report:
-    """Grade one submission: a URDF, a package, a workspace, a repository or an archive. Nothing of
-    it is executed.
+    """Grade one submission: a URDF, a package, a workspace, a repository or an archive.
+
+    Nothing of it is executed.
 
     Args:
         path: The file or folder; `-` for a URDF on standard input.

@@ -1,5 +1,6 @@
-"""A submission that is graded as the options of `grader grade` say, once or with --watch again
-and again.
+"""A submission that is graded as the options of `grader grade` say.
+
+Once, or with --watch again and again.
 """
 
 import os
@@ -118,15 +119,12 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     for kind in (request.output_format, *(kind for kind, _ in request.saves)):
         inputs_of(kind)  # as well
     from grader.lab.grading.grade import grade
-    from grader.lab.rubric.criterion import worth
     from grader.lab.submission.opening import open_submission
     from grader.lab.submission.submission import Opening
 
     rubric = requested_rubric(request)
     if threshold is not None:
-        parts = request.part or [part.id for part in rubric.parts]
-        graded = worth(row for row in rubric.criteria if row.part in parts)
-        check_threshold(threshold, graded.points + graded.bonus)
+        _check_threshold_of(rubric, request, threshold)
     reports = frozenset(os.path.realpath(file) for _, file in request.saves if not is_source(file))
     opening = Opening(request.max_size, read_arguments(request.arg or ()), reports=reports)
     submission = open_submission(request.path, rubric.lab, opening, with_neighbours=True)
@@ -147,6 +145,17 @@ def grade_submission(request: GradeRequest, warn: Warn) -> GradeRun:
     return GradeRun(
         report, base_of(request.path, folder), exit_code(report, threshold), fix, besides
     )
+
+
+def _check_threshold_of(
+    rubric: "Rubric", request: GradeRequest, threshold: tuple[Decimal, bool]
+) -> None:
+    """Raise GraderError for a threshold above what the graded parts are worth."""
+    from grader.lab.rubric.criterion import worth
+
+    parts = request.part or [part.id for part in rubric.parts]
+    graded = worth(row for row in rubric.criteria if row.part in parts)
+    check_threshold(threshold, graded.points + graded.bonus)
 
 
 def save_reports(request: GradeRequest, run: GradeRun) -> None:
@@ -170,8 +179,9 @@ def _package_around(path: str) -> str:
 
 
 def requested_rubric(request: GradeRequest) -> "Rubric":
-    """Return the rubric. Raises GraderError if it is not the expected one or lacks a part that is
-    named.
+    """Return the rubric.
+
+    Raises GraderError if it is not the expected one or lacks a part that is named.
     """
     expected = request.expect_rubric
     if expected is not None and not re.fullmatch(_SHA256, expected):

@@ -1,5 +1,6 @@
-"""Hints of one submission: `--hints` and the rubric decide how much they tell, `--fix` writes
-their edits.
+"""Hints of one submission.
+
+`--hints` and the rubric decide how much they tell, `--fix` writes their edits.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -21,8 +22,9 @@ _FILES = (*ROBOT_ENDINGS, ".zip")  # endings that no folder has
 def add_hints(
     report: Report, submission: Submission, wanted: HintLevel | None, warn: Warn, *, is_fixed: bool
 ) -> tuple[Report, FixedFiles]:
-    """Return a report with hints up to the wanted level, and the edits of all of them if they are
-    to be written.
+    """Return a report with hints up to the wanted level, and the edits of all of them.
+
+    The edits if they are to be written.
 
     The level cannot exceed the rubric's. At the levels `none` and `place`, pictures of the report
     do not show the reference. Raises InputError if edits are to be written at a level that does not
@@ -44,17 +46,17 @@ def add_hints(
     if level == "none" or not report.has_failures:
         return report, fix
     try:
-        found = hinted(report, submission, level)
+        hinted_report = hinted(report, submission, level)
     except (Exception, OutOfTime) as error:  # noqa: BLE001  a fault of the search must not cost the report
-        own = f"the grader itself failed ({type(error).__name__}); please report it"
-        warn(f"no hints: {error if isinstance(error, MachineError) else own}")
+        own_fault = f"the grader itself failed ({type(error).__name__}); please report it"
+        warn(f"no hints: {error if isinstance(error, MachineError) else own_fault}")
         return report, fix._replace(why_nothing="the search for edits failed")
-    if found.faults:
+    if hinted_report.faults:
         warn(
-            f"some hints are missing: the grader itself failed ({found.faults[0]}); please "
+            f"some hints are missing: the grader itself failed ({hinted_report.faults[0]}); please "
             "report it"
         )
-    return found.report, fixed(found, submission) if is_fixed else fix
+    return hinted_report.report, fixed(hinted_report, submission) if is_fixed else fix
 
 
 def files_to_fix(
@@ -65,8 +67,9 @@ def files_to_fix(
     besides: Sequence[Path],
     others: Iterable[Path],
 ) -> dict[Path, bytes]:
-    """Return the files to write that edits change. Raises InputError if one of them may not be
-    written.
+    """Return the files to write that edits change.
+
+    Raises InputError if one of them may not be written.
 
     A folder gets each file under its path; of a submission that is one file, the target may be a
     file. `besides` are the files that were read besides a single one, `others` what else the run
@@ -107,8 +110,9 @@ def _is_folder(target: Path, report: Report) -> bool:
 def write_fix(
     target: Path, graded: str, report: Report, fix: FixedFiles, written: Mapping[Path, bytes]
 ) -> str:
-    """Write the files that edits change, and return what was done in a sentence. Raises
-    InputError.
+    """Write the files that edits change, and return what was done in a sentence.
+
+    Raises InputError.
     """
     if not written:
         return f"--fix: nothing was written: {fix.why_nothing}"

@@ -47,8 +47,9 @@ def _longest(codes: Iterable[str], problem: Problem) -> int:
 
 
 def _matches(path: str, pattern: str) -> bool:
-    """Return whether a pattern is that of a path, of the name of the file, or of a folder around
-    it; * stands for slashes as well.
+    """Return whether a pattern is that of a path.
+
+    It may be of the name of the file, or of a folder around it; * stands for slashes as well.
     """
     name = path.rpartition("/")[2]
     folder = pattern.rstrip("/") + "/*"
@@ -58,8 +59,9 @@ def _matches(path: str, pattern: str) -> bool:
 def without_ignored(
     inspection: Inspection, tree: Tree, files: Sequence[str], selection: Selection
 ) -> Inspection:
-    """Return an inspection without the problems that are ignored, which are counted, and with the
-    comments that ignore nothing.
+    """Return an inspection without the problems that are ignored, which are counted.
+
+    It has the comments that ignore nothing.
 
     Args:
         inspection: The inspection of everything.

@@ -26,8 +26,9 @@ def is_source(file: Path) -> bool:
 
 
 def check_saves(saves: Saves[FormatRow], rubric: Sequence[Path], *paths: str) -> None:
-    """Raise InputError if a report has no folder, would overwrite an input, or leads through a
-    symlink of a submission.
+    """Raise InputError if a report cannot be saved.
+
+    It has no folder, would overwrite an input, or leads through a symlink of a submission.
 
     Inputs are the files of the rubric and the submissions that are files.
     """

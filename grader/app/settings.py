@@ -53,6 +53,7 @@ class Settings(NamedTuple):
 
 def read_settings(path: str) -> Settings:
     """Return the settings of the nearest file at or above a path; of a file its folder is meant.
+
     Raises GraderError.
     """
     if path == "-":
@@ -109,7 +110,7 @@ def _unknown_codes(codes: Iterable[str]) -> Iterator[tuple[str, str]]:
     """Yield the texts that no code begins with, between quotes, and what is wrong with each."""
     known = [kind.code for kind in EVERY_KIND]
     for code in codes:
-        is_code = bool(code) and any(it.startswith(code) for it in known)
+        is_code = bool(code) and any(known_code.startswith(code) for known_code in known)
         if not is_code and code not in RULES:
             guess = did_you_mean(code, known) or did_you_mean(code, RULES)
             yield repr(code), f" is no problem code, its beginning or a rule{guess}"

@@ -1,5 +1,6 @@
-"""CSV files: a cell can change while every other byte stays, and a spreadsheet finds nothing to run
-as a formula.
+"""CSV files.
+
+A cell can change while every other byte stays, and a spreadsheet finds nothing to run as a formula.
 
 An LMS compares the file with what it exported, so nothing else may change. Python's csv module
 gives values, but not how they were written (which cells were quoted, the line ends, blank lines):
@@ -70,8 +71,9 @@ class TableRow(NamedTuple):
         return [_unquoted(cell) for cell in self.cells]
 
     def value(self, column: int | None) -> str:
-        """Return the stripped value in a column; empty if the row is shorter or the column is
-        None.
+        """Return the stripped value in a column.
+
+        Empty if the row is shorter or the column is None.
         """
         if column is not None and column < len(self.cells):
             return _unquoted(self.cells[column]).strip()
@@ -101,15 +103,17 @@ class Table(NamedTuple):
         ]
 
     def encoded(self) -> bytes:
-        """Return the file's bytes. A character that the encoding lacks becomes an HTML character
-        reference.
+        """Return the file's bytes.
+
+        A character that the encoding lacks becomes an HTML character reference.
         """
         text = "".join(self.delimiter.join(row.cells) + row.end for row in self.rows)
         return self.bom + text.encode(self.encoding, "xmlcharrefreplace")
 
     def changed(self, row: TableRow, column: int, value: str) -> TableRow:
-        """Return a row with another value in one cell, quoted if the old one was, or if
-        necessary.
+        """Return a row with another value in one cell.
+
+        It is quoted if the old one was, or if necessary.
         """
         new = self.cell(value, is_quoted=row.cells[column].startswith('"'))
         return row._replace(cells=(*row.cells[:column], new, *row.cells[column + 1 :]))
@@ -141,10 +145,12 @@ def read_table(data: bytes, shown: str, *, is_from_person: bool = False) -> Tabl
     if "\0" in text:
         raise InputError(f"{shown} is not a CSV file: it contains a NUL character")
     header = re.match(r'\s*((?:"(?:[^"]++|"")*+"|[^"\r\n])*+)', text)
-    found = re.findall(f"[{_DELIMITERS}]", re.sub(r'"[^"]*"', "", header[1] if header else "")) or [
-        ","
-    ]
-    delimiter = max(dict.fromkeys(found), key=found.count) if is_from_person else found[0]
+    delimiters = re.findall(
+        f"[{_DELIMITERS}]", re.sub(r'"[^"]*"', "", header[1] if header else "")
+    ) or [","]
+    delimiter = (
+        max(dict.fromkeys(delimiters), key=delimiters.count) if is_from_person else delimiters[0]
+    )
     return Table(_split_rows(text, delimiter, shown), delimiter, encoding, bom)
 
 
@@ -171,10 +177,10 @@ def _decode(data: bytes, shown: str) -> tuple[bytes, str, str]:
 
 
 def _unquoted(cell: str) -> str:
-    found = _QUOTED.match(cell)
-    if found is None:
+    match = _QUOTED.match(cell)
+    if match is None:
         return cell
-    return found[0][1:-1].replace('""', '"') + cell[found.end() :]
+    return match[0][1:-1].replace('""', '"') + cell[match.end() :]
 
 
 def _split_rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
@@ -185,20 +191,20 @@ def _split_rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
     rows: list[TableRow] = []
     cells: list[str] = []
     while at < len(text) or cells:  # a text that ends after a delimiter has one more empty cell
-        found = pattern.match(text, at)
-        if found is None:
+        match = pattern.match(text, at)
+        if match is None:
             raise InputError(
                 f"{shown} is not a CSV file: a quotation mark in row {len(rows) + 1} is "
                 "never closed"
             )
-        cells.append(found[1])
+        cells.append(match[1])
         count += 1
         if count > _CELL_LIMIT:
             raise InputError(f"{shown} has more than {_CELL_LIMIT} cells, the limit")
-        at = found.end()
-        if found[2] != delimiter:
+        at = match.end()
+        if match[2] != delimiter:
             rows.append(
-                TableRow(len(rows) + 1, line, () if cells == [""] else tuple(cells), found[2])
+                TableRow(len(rows) + 1, line, () if cells == [""] else tuple(cells), match[2])
             )
             line += 1 + sum(len(cell.splitlines()) - 1 for cell in cells if cell[:1] == '"')
             cells = []
@@ -206,8 +212,9 @@ def _split_rows(text: str, delimiter: str, shown: str) -> tuple[TableRow, ...]:
 
 
 def write_table(header: Sequence[str], rows: Iterable[Sequence[CellValue]]) -> str:
-    """Return a table as CSV: commas, CRLF, quotes where necessary. Numbers stay numbers, None is
-    an empty cell.
+    """Return a table as CSV: commas, CRLF, quotes where necessary.
+
+    Numbers stay numbers, None is an empty cell.
     """
     text = io.StringIO(newline="")
     writer = csv.writer(text)
@@ -217,8 +224,9 @@ def write_table(header: Sequence[str], rows: Iterable[Sequence[CellValue]]) -> s
 
 
 def protected(text: str) -> str:
-    """Return text that no spreadsheet takes for a formula, and that `unprotected` returns
-    unchanged.
+    """Return text that no spreadsheet takes for a formula.
+
+    `unprotected` returns it unchanged.
     """
     if text.isalnum():
         return text
@@ -226,8 +234,9 @@ def protected(text: str) -> str:
 
 
 def unprotected(text: str) -> str:
-    """Return text without what keeps a spreadsheet from running it, or from reading it as a
-    number.
+    """Return text without what protects it from a spreadsheet.
+
+    That keeps one from running it, or from reading it as a number.
     """
     if "'" not in text and text[:1] != "=":
         return text
@@ -238,7 +247,7 @@ def spelt_out(text: str) -> str:
     """Return text with escapes for controls, lone surrogates and bidirectional marks."""
     if text.isprintable():
         return text
-    return _ESCAPED.sub(lambda found: f"\\x{ord(found[0]):02x}", text)
+    return _ESCAPED.sub(lambda match: f"\\x{ord(match[0]):02x}", text)
 
 
 def _cell_text(value: CellValue) -> str:

@@ -1,5 +1,6 @@
-"""The content of a report, for every format to lay out: the order of its criteria, and what it says
-of the submission.
+"""The content of a report, for every format to lay out.
+
+It has the order of its criteria, and what it says of the submission.
 
 People read a report from the top: what to fix comes first, what is fine last. All of it is
 printable text.
@@ -52,8 +53,9 @@ _MAX_LISTED = 12
 
 
 class ReportSections(NamedTuple):
-    """A report, except for the criteria that passed and have no remark, in the order in which a
-    student needs it.
+    """A report in the order in which a student needs it.
+
+    Criteria that passed and have no remark are left out.
     """
 
     mistakes: tuple[
@@ -105,8 +107,9 @@ class ReportSections(NamedTuple):
 
 
 def report_sections(report: Report, *, everything: bool = False) -> ReportSections:
-    """Return the description of a report; with `everything` the rubric's feedback where there is
-    a hint, too.
+    """Return the description of a report.
+
+    With `everything` it has the rubric's feedback where there is a hint, too.
     """
     if report.is_bare:
         return ReportSections((), (), (), (), (), ())
@@ -165,8 +168,9 @@ def _remarks(others: Sequence[Entry], adjusted: Sequence[Entry]) -> Iterator[Sec
 
 
 def _skipped_alone(cause: str, some: Sequence[Entry]) -> Entry:
-    """Return the entry of criteria that are skipped although no mistake says so: a mark may
-    override their cause.
+    """Return the entry of criteria that are skipped although no mistake says so.
+
+    A mark may override their cause.
     """
     if cause:
         why = f"Skipped because {cause} failed."
@@ -177,8 +181,9 @@ def _skipped_alone(cause: str, some: Sequence[Entry]) -> Entry:
 
 
 def _building_order(entry: Entry) -> tuple[int, bool, int]:
-    """Return the rank of what is not built yet: criteria about one thing first, those with a
-    hint, as in the rubric.
+    """Return the rank of what is not built yet.
+
+    Criteria about one thing come first, those with a hint, as in the rubric.
     """
     return (
         len(entry.result.outcome.absent),
@@ -202,12 +207,13 @@ def _missing_lines(report: Report, results: Sequence[Result]) -> Iterator[Line]:
 
 
 def _pictures_to_add(report: Report, results: Sequence[Result]) -> list[str]:
-    """Return names for the pictures that are missing as evidence, and are not wanted by criteria
-    with these results.
+    """Return names for the pictures that are missing as evidence.
+
+    Criteria with these results do not want them.
     """
     wanted = {result.outcome.expected for result in results}
     evidence = [
-        found.evidence.names for found in report.evidence if not (found.files or found.possible)
+        result.evidence.names for result in report.evidence if not (result.files or result.possible)
     ]
     return [picture_name(names) for names in evidence if picture_named(names) not in wanted]
 
@@ -250,20 +256,21 @@ def _unmatched(report: Report) -> list[str]:
 def entries(report: Report, *, everything: bool = False) -> Mapping[str, Entry]:
     """Return the entry of every criterion by its id, in the rubric's order."""
     failed = {failure.id: failure for failure in failures(report)}
-    found = (failed.get(result.criterion.id, Entry(result)) for result in report.results)
+    entries_in_order = (failed.get(result.criterion.id, Entry(result)) for result in report.results)
     filled = {
         one.id: one._replace(blocks=tuple(blocks_of(one, report, everything=everything)))
-        for one in found
+        for one in entries_in_order
     }
     return {
-        name: one._replace(also=tuple(filled[it.id] for it in one.also))
+        name: one._replace(also=tuple(filled[other.id] for other in one.also))
         for name, one in filled.items()
     }
 
 
 def failures(report: Report) -> tuple[Entry, ...]:
-    """Return the criteria that failed or lost points, without blocks; those that one edit fixes
-    follow each other.
+    """Return the criteria that failed or lost points, without blocks.
+
+    Those that one edit fixes follow each other.
 
     What keeps ROS 2 from loading the file comes first, then the costliest mistake; what is carried
     forward comes last. Equals are in the rubric's order.
@@ -274,10 +281,10 @@ def failures(report: Report) -> tuple[Entry, ...]:
             lambda one: one.because or "",
         )
     )
-    found = [
+    mistakes_found = [
         Entry(one, skipped.get(one.criterion.id, ())) for one in report.results if is_failure(one)
     ]
-    mistakes = [_fixed_together(some) for _, some in alike(found, _shared_edit)]
+    mistakes = [_fixed_together(some) for _, some in alike(mistakes_found, _shared_edit)]
     is_rejected = report.submission.verdict == "rejected"
 
     def rank(mistake: tuple[Entry, ...]) -> tuple[bool, bool, Decimal]:
@@ -291,8 +298,9 @@ def failures(report: Report) -> tuple[Entry, ...]:
 
 
 def _shared_edit(failure: Entry) -> str:
-    """Return what failures have in common that one edit fixes, or else what is said of them; a
-    mark stands alone.
+    """Return what failures have in common that one edit fixes.
+
+    Or else what is said of them. A mark stands alone.
     """
     result, outcome = failure.result, failure.result.outcome
     if result.why_given or result.manual_mark is not None:
@@ -303,8 +311,9 @@ def _shared_edit(failure: Entry) -> str:
 
 
 def _fixed_together(some: tuple[Entry, ...]) -> tuple[Entry, ...]:
-    """Return failures that one edit fixes: the one that shows the hint first, then those of the
-    file, the costliest.
+    """Return failures that one edit fixes.
+
+    The one that shows the hint comes first, then those of the file, the costliest.
     """
 
     def rank(failure: Entry) -> tuple[bool, bool, Decimal]:
@@ -326,8 +335,9 @@ def _join_equal(entries: Iterable[Entry]) -> Iterator[Entry]:
 
 
 def _reason_to_join(entry: Entry) -> str:
-    """Return why a criterion could not be graded; of others, and of those with an answer or a
-    comment, the id.
+    """Return why a criterion could not be graded.
+
+    Of others, and of those with an answer or a comment, the id.
     """
     outcome, has_own = (
         entry.result.outcome,
@@ -340,44 +350,59 @@ def _reason_to_join(entry: Entry) -> str:
 
 
 def result_line(report: Report) -> str:
-    """Return the result in a line: the points of what is decided, what they were lost by, and what
-    is open.
+    """Return the result in a line.
+
+    It has the points of what is decided, what they were lost by, and what is open.
 
     Of a student in a class it is the grade, and how it came about.
     """
     if report.grade is not None:
-        texts = [grade_line(report)]
-        if report.counting is not None:
-            texts.insert(0, f"{score_text(report)}.")
-        if report.open_points:
-            texts.append(f"{_pending_points(report)}.")
-        return " ".join(texts)
-    found, decided = report_sections(report), report.max_score - report.pending
-    if decided == 0 and not found.mistakes:
+        return _result_with_grade(report)
+    sections, decided = report_sections(report), report.max_score - report.pending
+    if decided == 0 and not sections.mistakes:
         return sentence(_pending_points(report)) if report.pending else "Nothing to grade."
     points = f"{format_points(report.score)} of {counted_points(decided)}"
-    open_points = (
-        f"; {format_points(report.pending)} more {'needs' if report.pending == 1 else 'need'} "
-        "manual grading"
-    )
-    faulty = [entry for entry in found.mistakes if entry.status == "errored"]
-    mistakes = [entry for entry in found.mistakes if entry.status != "errored"]
+    reasons = _reasons_of_loss(sections)
+    if reasons:
+        text = f"{points}: {', '.join(reasons)}"
+    elif report.pending_automatic:
+        text = f"No mistakes found: {points}"
+    else:
+        text = f"All automatic checks passed: {points}"
+    if report.pending:
+        verb = "needs" if report.pending == 1 else "need"
+        text += f"; {format_points(report.pending)} more {verb} manual grading"
+    return f"{text}."
+
+
+def _result_with_grade(report: Report) -> str:
+    """Return the result of a student in a class in a line: the grade, and how it came about."""
+    texts = [grade_line(report)]
+    if report.counting is not None:
+        texts.insert(0, f"{score_text(report)}.")
+    if report.open_points:
+        texts.append(f"{_pending_points(report)}.")
+    return " ".join(texts)
+
+
+def _reasons_of_loss(sections: ReportSections) -> list[str]:
+    """Return what the points were lost by, each with the points."""
+    faulty = [entry for entry in sections.mistakes if entry.status == "errored"]
+    mistakes = [entry for entry in sections.mistakes if entry.status != "errored"]
     reasons = []
     if mistakes:
         reasons.append(
             f"{counted(len(mistakes), 'mistake costs', 'mistakes cost')} {_lost_by(mistakes)}"
         )
-    if found.unbuilt:
+    if sections.unbuilt:
         reasons.append(
-            f"what is not built yet{'' if reasons else ' costs'} {_lost_by(found.unbuilt)}"
+            f"what is not built yet{'' if reasons else ' costs'} {_lost_by(sections.unbuilt)}"
         )
     if faulty:  # no mistake of the student
         reasons.append(
             f"{counted(len(faulty), 'faulty check costs', 'faulty checks cost')} {_lost_by(faulty)}"
         )
-    passed = "No mistakes found" if report.pending_automatic else "All automatic checks passed"
-    text = f"{points}: {', '.join(reasons)}" if reasons else f"{passed}: {points}"
-    return f"{text}{open_points if report.pending else ''}."
+    return reasons
 
 
 def _lost_by(entries: Iterable[Entry]) -> str:
@@ -385,8 +410,9 @@ def _lost_by(entries: Iterable[Entry]) -> str:
 
 
 def score_text(report: Report) -> str:
-    """Return the points that count and the maximum, 58.5 / 70 points, or that the student is
-    excused.
+    """Return the points that count and the maximum: 58.5 / 70 points.
+
+    Or that the student is excused.
     """
     points = counting_text(report)
     if report.counting is not None:
@@ -395,8 +421,9 @@ def score_text(report: Report) -> str:
 
 
 def counting_text(report: Report) -> str:
-    """Return the points that count for the student: 58.5, excused, or a dash if nothing is
-    decided.
+    """Return the points that count for the student.
+
+    For example 58.5, excused, or a dash if nothing is decided.
     """
     if report.grade is None:
         return sum_text(report.results)
@@ -406,8 +433,9 @@ def counting_text(report: Report) -> str:
 
 
 def grade_line(report: Report) -> str:
-    """Return how the grade of a student in a class came about; empty if it is the score of
-    automatic criteria.
+    """Return how the grade of a student in a class came about.
+
+    Empty if it is the score of automatic criteria.
     """
     if report.grade is None:
         return ""
@@ -424,8 +452,9 @@ def grade_line(report: Report) -> str:
 
 
 def graded_line(report: Report) -> str:
-    """Return the rubric and what is graded with it: the URDF, else the submission; in a class whose
-    it is.
+    """Return the rubric and what is graded with it.
+
+    This is the URDF, else the submission; in a class whose it is.
     """
     graded = f"{report.rubric.id}: {report.submission.path or report.submission.id}"
     return printable(f"{graded} ({report.student})" if report.student else graded)
@@ -466,8 +495,9 @@ def package_line(report: Report) -> str:
 
 
 def head(report: Report) -> Iterator[Line]:
-    """Yield what a report says first: what is graded, the result, whether ROS 2 loads the URDF, the
-    package, notes.
+    """Yield what a report says first.
+
+    This is what is graded, the result, whether ROS 2 loads the URDF, the package, and notes.
     """
     yield Line("graded", graded_line(report))
     yield Line("result", result_line(report))
@@ -496,7 +526,9 @@ def notes(report: Report) -> list[str]:
 
 
 def closing(report: Report) -> Iterator[Section]:
-    """Yield the evidence, the problems that no criterion has reported, and other candidates with
+    """Yield what a report says last.
+
+    This is the evidence, the problems that no criterion has reported, and other candidates with
     ignored files.
     """
     files = [
@@ -513,7 +545,10 @@ def closing(report: Report) -> Iterator[Section]:
         ),
         Section(
             "Ignored files",
-            lines=tuple(Line("ignored", printable(it)) for it in first_lines(files, _MAX_LISTED)),
+            lines=tuple(
+                Line("ignored", printable(first_line))
+                for first_line in first_lines(files, _MAX_LISTED)
+            ),
         ),
     )
     yield from (section for section in sections if section.lines)
@@ -530,48 +565,53 @@ def closing_lines(report: Report) -> list[str]:
 
 def _evidence(report: Report) -> Iterator[Line]:
     """Yield the title of each part, then its evidence; last the other pictures."""
-    for part, of_part in groupby(report.evidence, key=lambda found: found.evidence.part):
+    for part, of_part in groupby(report.evidence, key=lambda result: result.evidence.part):
         yield Line("part", printable(report.rubric.part(part).title))
         yield from (
-            Line("found" if found.files else "missing", _evidence_text(found)) for found in of_part
+            Line("found" if result.files else "missing", _evidence_text(result))
+            for result in of_part
         )
     if report.other_pictures:
         yield Line("part", "Other pictures and documents")
         yield from (Line("found", printable(file.words)) for file in report.other_pictures)
 
 
-def _evidence_text(found: EvidenceResult) -> str:
+def _evidence_text(result: EvidenceResult) -> str:
     """Return a piece of evidence with its files, or with those that are perhaps meant."""
-    files = ", ".join(file.words for file in found.files)
-    perhaps = enumerated([file.words for file in found.possible], _MAX_LISTED, "or")
+    files = ", ".join(file.words for file in result.files)
+    perhaps = enumerated([file.words for file in result.possible], _MAX_LISTED, "or")
     return printable(
-        f"{found.evidence.title}: {files or (f'perhaps {perhaps}' if perhaps else 'missing')}"
+        f"{result.evidence.title}: {files or (f'perhaps {perhaps}' if perhaps else 'missing')}"
     )
 
 
 def other_problems(report: Report) -> list[Problem]:
     """Return the problems that no failed criterion has reported."""
     failed = [result for result in report.results if result.outcome.status == "failed"]
-    reported = {(it.outcome.location, it.outcome.problem or it.outcome.message) for it in failed}
-    payers = {it.criterion.id for it in failed}
+    reported = {
+        (result.outcome.location, result.outcome.problem or result.outcome.message)
+        for result in failed
+    }
+    payers = {result.criterion.id for result in failed}
     for paid in report.meant.paid if report.meant is not None else ():
         if paid.payer in payers:
             reported.add((paid.slip.location, paid.slip.assumption))
-    told = [(RECOVERED, "") for it in failed if it.criterion.check.function is urdf_loads]
+    told = [(RECOVERED, "") for result in failed if result.criterion.check.function is urdf_loads]
     left = (problem for problem in report.problems if (problem.kind, problem.subject) not in told)
     return [problem for problem in left if (problem.location, problem.message) not in reported]
 
 
 def next_command(report: Report) -> str:
-    """Return the command that explains the costliest failure, or else what is undecided; empty
-    without either.
+    """Return the command that explains the costliest failure, or else what is undecided.
+
+    Empty without either.
     """
     if report.student and not report.rubric.is_copy_of_shipped:  # which the student does not have
         return ""
-    found = report_sections(report)
+    sections = report_sections(report)
     failed = [
         entry.result
-        for entry in (*found.mistakes, *found.unbuilt)
+        for entry in (*sections.mistakes, *sections.unbuilt)
         if entry.result.manual_mark is None
     ]
     first = next(iter((*failed, *report.pending_automatic)), None)

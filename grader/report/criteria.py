@@ -1,5 +1,6 @@
-"""Criteria in a report: their status and points, alone and in groups, and what is said about each,
-block by block.
+"""Criteria in a report, alone and in groups.
+
+Their status and points, and what is said about each, block by block.
 
 A writer decides how a block looks in its medium and which roles it leaves out, but neither words
 nor order.
@@ -57,8 +58,9 @@ Role = Literal[
 
 
 def status_of(result: Result) -> str:
-    """Return the status of a criterion: `adjusted` by the rubric, else that of the manual mark or
-    the check.
+    """Return the status of a criterion.
+
+    It is `adjusted` by the rubric, else that of the manual mark or the check.
 
     A manual mark is `passed` if it gives all points, and `partial` if it gives a part of them.
     """
@@ -72,8 +74,9 @@ def status_of(result: Result) -> str:
 
 
 def is_failure(result: Result) -> bool:
-    """Return whether a criterion failed or lost points; a manual mark or an adjustment overrides
-    the check.
+    """Return whether a criterion failed or lost points.
+
+    A manual mark or an adjustment overrides the check.
     """
     return status_of(result) in ("failed", "partial", "errored")
 
@@ -84,16 +87,18 @@ def has_passed(result: Result) -> bool:
 
 
 def lost_points(results: Iterable[Result]) -> Decimal:
-    """Return the points that criteria lost: no extra credit, and nothing that needs manual
-    grading.
+    """Return the points that criteria lost.
+
+    Extra credit does not count, and nothing that needs manual grading.
     """
     decided = (result for result in results if not (result.criterion.bonus or result.is_open))
     return sum((result.criterion.maximum - result.points for result in decided), Decimal(0))
 
 
 def is_absent(result: Result) -> bool:
-    """Return whether a criterion failed only because what it is about is not built yet: no hint
-    makes it pass.
+    """Return whether a criterion failed only because its subject is not built yet.
+
+    No hint makes it pass.
     """
     is_found = result.hint is not None and bool(result.hint.gains)
     return (
@@ -119,8 +124,9 @@ def is_manual(result: Result) -> bool:
 
 
 def sum_text(results: tuple[Result, ...]) -> str:
-    """Return the points of some criteria together: 58.5, or a dash if all of them need manual
-    grading.
+    """Return the points of some criteria together.
+
+    For example 58.5, or a dash if all of them need manual grading.
     """
     is_open = bool(results) and all(result.is_open for result in results)
     if is_open:
@@ -129,7 +135,8 @@ def sum_text(results: tuple[Result, ...]) -> str:
 
 
 def earned_text(*results: Result) -> str:
-    """Return the points and the maximum of criteria together: 8/14, above it with extra credit;
+    """Return the points and the maximum of criteria together: 8/14, above it with extra credit.
+
     –/14; 5/5 bonus.
     """
     most = worth(result.criterion for result in results)
@@ -138,8 +145,9 @@ def earned_text(*results: Result) -> str:
 
 
 def points_of(results: Iterable[Result]) -> str:
-    """Return the maximum of some criteria together: 14 points, 14 points and 5 bonus points, 5
-    bonus points.
+    """Return the maximum of some criteria together.
+
+    For example 14 points, 14 points and 5 bonus points, 5 bonus points.
     """
     return worth(result.criterion for result in results).text
 
@@ -190,11 +198,12 @@ class Entry(NamedTuple):
 
     @property
     def results(self) -> tuple[Result, ...]:
-        """All criteria of the mistake: this one, those that its edit fixes, and those that are
-        skipped because.
+        """All criteria of the mistake.
+
+        This one, those that its edit fixes, and those that are skipped because of it.
         """
-        own = (self.result, *self.skipped)
-        return (*own, *(result for other in self.also for result in other.results))
+        own_results = (self.result, *self.skipped)
+        return (*own_results, *(result for other in self.also for result in other.results))
 
     @property
     def lost(self) -> Decimal:
@@ -203,8 +212,9 @@ class Entry(NamedTuple):
 
     @property
     def cost(self) -> str:
-        """The points that the mistake costs in all, as in `-8 points`; of extra credit what was
-        earned.
+        """The points that the mistake costs in all, as in `-8 points`.
+
+        Of extra credit what was earned.
         """
         if self.result.criterion.bonus and not self.lost:
             return f"{earned_text(self.result)} points"
@@ -215,8 +225,9 @@ class Entry(NamedTuple):
 
     @property
     def names(self) -> str:
-        """The criteria that lose points by the mistake: the only one, or each with its points, this
-        one first.
+        """The criteria that lose points by the mistake.
+
+        This is the only one, or each with its points, this one first.
         """
         costly = [result for result in self.results if lost_points((result,))]
         if [result.criterion.id for result in costly] in ([], [self.id]):
@@ -261,8 +272,9 @@ class CriteriaGroup(NamedTuple):
 
     @property
     def status(self) -> str:
-        """The status of its worst criterion, without extra credit; one with all its points counts
-        as passed.
+        """The status of its worst criterion, without extra credit.
+
+        One with all its points counts as passed.
         """
         counting = [result for result in self.results if not result.criterion.bonus] or self.results
         statuses = [
@@ -275,8 +287,9 @@ class CriteriaGroup(NamedTuple):
 
 
 def groups(report: Report) -> Iterator[CriteriaGroup]:
-    """Yield the criteria in the rubric's order, those about one thing together, else under the
-    title of their part.
+    """Yield the criteria in the rubric's order, those about one thing together.
+
+    Others stand under the title of their part.
     """
     for (part, about), results in groupby(
         report.results, lambda one: (one.criterion.part, one.criterion.about)
@@ -286,15 +299,16 @@ def groups(report: Report) -> Iterator[CriteriaGroup]:
 
 def alike(items: Iterable[_T], key: Callable[[_T], _K]) -> list[tuple[_K, tuple[_T, ...]]]:
     """Return each value of a key with the items that have it, in the order of the first ones."""
-    found: dict[_K, list[_T]] = {}
+    items_by_key: dict[_K, list[_T]] = {}
     for item in items:
-        found.setdefault(key(item), []).append(item)
-    return [(value, tuple(some)) for value, some in found.items()]
+        items_by_key.setdefault(key(item), []).append(item)
+    return [(value, tuple(some)) for value, some in items_by_key.items()]
 
 
 def blocks_of(entry: Entry, report: Report, *, everything: bool = False) -> Iterator[Block]:
-    """Yield what is said about a criterion: what is wrong and where, the answer, what to do, what
-    was expected.
+    """Yield what is said about a criterion.
+
+    This is what is wrong and where, the answer, what to do, and what was expected.
 
     A hint is in place of the rubric's feedback; with `everything` there are both.
     """
@@ -385,13 +399,14 @@ def remarks_on(result: Result) -> list[str]:
 
 
 def _answers(result: Result) -> Iterator[Answer]:
-    """Yield the student's answer to a question, and the model answer if the rubric was loaded with
-    its answers.
+    """Yield the student's answer to a question, and the model answer.
+
+    The latter if the rubric was loaded with its answers.
     """
-    found = tuple(printable(line) for line in answer_lines(result.outcome) if line.strip())
+    lines = tuple(printable(line) for line in answer_lines(result.outcome) if line.strip())
     model = tuple(printable(line) for line in model_lines(result.criterion) if line.strip())
-    if found:
-        yield Answer("Found", found)
+    if lines:
+        yield Answer("Found", lines)
     if model:
         yield Answer("Model answer", model)
 
@@ -409,22 +424,25 @@ def answer_lines(outcome: Outcome) -> list[str]:
 
 
 def model_lines(criterion: Criterion) -> list[str]:
-    """Return the lines of the model answer; none if the criterion has no answer or is loaded
-    without.
+    """Return the lines of the model answer.
+
+    None if the criterion has no answer or is loaded without.
     """
     return criterion.answer.strip("\n").splitlines()
 
 
 def counts_lines(location: Location) -> bool:
-    """Return whether editors count the lines of a file; of a PDF or Word file, a message names the
-    page or heading.
+    """Return whether editors count the lines of a file.
+
+    Of a PDF or Word file, a message names the page or heading.
     """
     return not location.path.lower().endswith((".pdf", ".docx"))
 
 
 def hint_text(entry: Entry, hint: Hint) -> str:
-    """Return the message of the hint of a failure, and which criteria have to be looked at after
-    that edit.
+    """Return the message of the hint of a failure.
+
+    And which criteria have to be looked at after that edit.
     """
     if entry.first:
         return f"Fixed by the same edit as {entry.first}."
@@ -448,14 +466,15 @@ def plain_lines(entry: Entry, source_of: SourceOf) -> list[str]:
                 lines.append(text)
             case Location():
                 lines += [location_text(block), *excerpt_lines(block, source_of)]
-            case Answer("Found", found):
-                lines += ["Found:", *(f"  {line}" for line in found)]
+            case Answer("Found", answer_text):
+                lines += ["Found:", *(f"  {line}" for line in answer_text)]
     return lines
 
 
 def pending_reason(result: Result) -> str:
-    """Return where the answer or the pictures are that need manual grading, or why a check cannot
-    decide.
+    """Return where the answer or the pictures are that need manual grading.
+
+    Or why a check cannot decide.
     """
     outcome = result.outcome
     if not is_manual(result):
@@ -473,8 +492,9 @@ def pending_reason(result: Result) -> str:
 
 
 def carried_text(cause: str, results: Sequence[Result]) -> str:
-    """Return which criteria fail only because of a mistake that is counted elsewhere, and have
-    their points.
+    """Return which criteria fail only because of a mistake that is counted elsewhere.
+
+    They have their points.
     """
     names, verb = (
         enumerated([one.criterion.id for one in results]),

@@ -1,5 +1,6 @@
-"""What docs/examples/ has for a problem code, a rule or a check: an explanation, what is wrong and
-what is right.
+"""What docs/examples/ has for a problem code, a rule or a check.
+
+This is an explanation, what is wrong and what is right.
 """
 
 from collections.abc import Iterator, Mapping
@@ -23,16 +24,18 @@ class _ExampleBlock(NamedTuple):
 
 
 def explanation_of(kind: Kind) -> str:
-    """Return what ROS 2 does about a problem and how to fix the file, in one line; the title if
-    that is unknown.
+    """Return what ROS 2 does about a problem and how to fix the file, in one line.
+
+    The title if that is unknown.
     """
     entry = _family(_family_of(kind.code)).get(kind.code, {})
     return " ".join(entry.get("explanation", kind.title).split())
 
 
 def example_blocks(name: str) -> Iterator[_ExampleBlock]:
-    """Yield a check's row in a rubric, and the example of a check, a rule or a code, if known; that
-    of a code may be that of one of its rules.
+    """Yield a check's row in a rubric, and the example of a check, a rule or a code.
+
+    Only if it is known; that of a code may be that of one of its rules.
     """
     family = _family_of(name)
     entries = _family(family)
@@ -47,8 +50,9 @@ def example_blocks(name: str) -> Iterator[_ExampleBlock]:
 
 
 def blocks_of(example: Mapping[str, Any], frames: Mapping[str, str]) -> Iterator[_ExampleBlock]:
-    """Yield what is wrong and what is right in an example, which is in the first frame unless it
-    names another one, and what is in other files beside it.
+    """Yield what is wrong and what is right in an example.
+
+    It is in the first frame unless it names another one. Then come the other files beside it.
     """
     file = _name_of(example.get("frame", next(iter(frames))))
     yield _ExampleBlock("Wrong", file, example["wrong"].rstrip() or "(an empty file)")

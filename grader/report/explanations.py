@@ -1,5 +1,6 @@
-"""Rubrics, checks and problem codes in plain text, with what docs/examples/ has for a code or a
-check.
+"""Rubrics, checks and problem codes in plain text.
+
+With what docs/examples/ has for a code or a check.
 """
 
 import textwrap
@@ -76,8 +77,9 @@ def rubric_overview(rubric: Rubric) -> str:
 
 
 def checks_text() -> str:
-    """Return every check with the package that it comes from, the fact that it tests, and its
-    arguments.
+    """Return every check.
+
+    It has the package that it comes from, the fact that it tests, and its arguments.
     """
     listed = []
     for name in check_names():
@@ -97,17 +99,14 @@ def checks_text() -> str:
 
 
 def explanation(name: str, rubric: Rubric) -> str:
-    """Return the explanation of a code, a criterion, a check, a parameter of a well-known node or
-    the known releases. Raises InputError for another name.
+    """Return the explanation of a name.
+
+    It is a code, a criterion, a check, a parameter of a well-known node or the known releases.
+    Raises InputError for another name.
     """
-    kind = next((kind for kind in EVERY_KIND if kind.code == name.upper()), None)
-    if kind is not None:
-        texts = [
-            f"{kind.code} ({kind.severity}): {kind.title}",
-            _fill(explanation_of(kind)),
-            EFFECTS[kind.effect],
-        ]
-        return _paragraphs([*texts, _rules_text(kind), *_examples(kind.code)])
+    for kind in EVERY_KIND:
+        if kind.code == name.upper():
+            return _explain_kind(kind)
     if name in RULES:
         return _rule_text(RULES[name])
     for criterion in rubric.criteria:
@@ -115,28 +114,45 @@ def explanation(name: str, rubric: Rubric) -> str:
             return _paragraphs(_criterion_texts(criterion, rubric))
     check = find_check(name)
     if check is not None:
-        source = f", from the package {check.distribution}" if check.distribution else ""
-        texts = [
-            f"{check.name}: a check for rubrics{source}",
-            *map(_fill, check.documentation.paragraphs),
-        ]
-        return _paragraphs(
-            [*texts, _arguments(check).rstrip("\n"), _causes(check), *_examples(check.name)]
-        )
+        return _explain_check(check)
     fact = releases_explanation() if name == _RELEASES else parameter_explanation(name)
     if fact:
         return fact
-    known = (
-        [kind.code for kind in EVERY_KIND]
-        + [*RULES]
-        + [criterion.id for criterion in rubric.criteria]
-        + check_names()
+    guess = _guess_name(name, rubric)
+    raise InputError(f"there is no problem code, rule, criterion or check {name!r}{guess}")
+
+
+def _explain_kind(kind: Kind) -> str:
+    """Return the explanation of a problem code."""
+    texts = [
+        f"{kind.code} ({kind.severity}): {kind.title}",
+        _fill(explanation_of(kind)),
+        EFFECTS[kind.effect],
+    ]
+    return _paragraphs([*texts, _rules_text(kind), *_examples(kind.code)])
+
+
+def _explain_check(check: Check) -> str:
+    """Return the explanation of a check."""
+    source = f", from the package {check.distribution}" if check.distribution else ""
+    texts = [
+        f"{check.name}: a check for rubrics{source}",
+        *map(_fill, check.documentation.paragraphs),
+    ]
+    return _paragraphs(
+        [*texts, _arguments(check).rstrip("\n"), _causes(check), *_examples(check.name)]
     )
+
+
+def _guess_name(name: str, rubric: Rubric) -> str:
+    """Return what an unknown name may mean, or where the names are listed, after a semicolon."""
+    criteria = [criterion.id for criterion in rubric.criteria]
+    known = [kind.code for kind in EVERY_KIND] + [*RULES] + criteria + check_names()
     lists = (
         f"`{rubric.shown_by}` lists the criteria, `grader rubric checks` lists the checks, "
         "reports show the codes, and a parameter of a well-known node is NODE.NAME"
     )
-    begun = [criterion.id for criterion in rubric.criteria if criterion.id.startswith(name)]
+    begun = [criterion_id for criterion_id in criteria if criterion_id.startswith(name)]
     if begun:
         verb = "is" if len(begun) == 1 else "are"
         similar = f"; there {verb} {enumerated(begun, _MAX_SIMILAR)}: `grader explain {begun[0]}`"
@@ -146,8 +162,7 @@ def explanation(name: str, rubric: Rubric) -> str:
         similar = f"; `grader inspect {shell_quoted(name)}` lists the problems of a file"
     else:
         similar = ""
-    guess = similar or did_you_mean(name, known) or f"; {lists}"
-    raise InputError(f"there is no problem code, rule, criterion or check {name!r}{guess}")
+    return similar or did_you_mean(name, known) or f"; {lists}"
 
 
 def rules_of(kind: Kind) -> list[Rule]:
@@ -192,6 +207,11 @@ def _criterion_texts(criterion: Criterion, rubric: Rubric) -> Iterator[str]:
     given = " ".join(f"{name}:={value}" for name, value in criterion.args.items())
     launched = f"Launch files and the robot are read under the arguments {given}." if given else ""
     yield _check_text("Check", criterion.check, criterion.arguments, pose, launched)
+    yield from _carried_texts(criterion)
+
+
+def _carried_texts(criterion: Criterion) -> Iterator[str]:
+    """Yield the checks that count instead after mistakes of other criteria."""
     for carried in criterion.carried:
         failures = f"If it fails and {enumerated(carried.causes, word='or')} failed before it"
         yield _check_text(

@@ -1,5 +1,6 @@
-"""What is wrong in a report or an inspection, as findings with a place each: what editors and CI
-systems list.
+"""What is wrong in a report or an inspection, as findings with a place each.
+
+Editors and CI systems list them.
 """
 
 import re
@@ -60,8 +61,9 @@ def finding_of_problem(problem: Problem) -> Finding:
 
 
 def place_in_repository(finding: Finding, base: Base) -> tuple[str, Location | None]:
-    """Return the file of a finding from the root of the repository, and where to look in it; of one
-    in an archive the archive, and None.
+    """Return the file of a finding from the root of the repository, and where to look.
+
+    Of one in an archive the archive, and None.
     """
     path = finding.location.path
     archive = base.archive or archive_around(path)
@@ -78,8 +80,9 @@ def message_in_repository(finding: Finding, base: Base) -> str:
 
 
 def fingerprints(findings: Iterable[Finding], base: Base) -> Iterator[str]:
-    """Yield what identifies each finding in later runs: it does not change with the line, and no
-    two have the same.
+    """Yield what identifies each finding in later runs.
+
+    It does not change with the line, and no two have the same.
     """
     counts = Counter[str]()
     for finding in findings:

@@ -1,5 +1,6 @@
-"""The formats of a report: the one registry from which options, completion, files and documentation
-take them.
+"""The formats of a report.
+
+This is the one registry from which options, completion, files and documentation take them.
 """
 
 import os
@@ -20,8 +21,10 @@ _Need = Literal["", "console", "base", "identity"]
 
 
 class FormatRow(StrEnum):
-    """A format: its name, `module:function` in this package, what that function needs, and the
-    ending of its files.
+    """A format.
+
+    It has its name, `module:function` in this package, what that function needs, and the ending
+    of its files.
 
     The function takes the report and returns text. With the need `console` it prints on a rich
     console instead; `base` is where the submission is in its repository; `identity` is whose result
@@ -41,8 +44,9 @@ class FormatRow(StrEnum):
 
 
 class Format(FormatRow):
-    """The formats of a report. Their endings differ, so that one folder can contain a report in all
-    of them.
+    """The formats of a report.
+
+    Their endings differ, so that one folder can contain a report in all of them.
     """
 
     TERMINAL = "terminal", "writers.terminal:render_terminal", "console", "txt"
@@ -149,8 +153,9 @@ def _load(place: str) -> Any:
 
 
 def inputs_of(kind: Format, base: "Base | None" = None) -> tuple[object, ...]:
-    """Return what the function of a format takes after the report. Raises InputError if it cannot
-    be had.
+    """Return what the function of a format takes after the report.
+
+    Raises InputError if it cannot be had.
     """
     match kind.needs:
         case "base":

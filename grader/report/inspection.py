@@ -1,5 +1,6 @@
-"""Robots as `grader inspect` shows them: problems, tree, joints, poses; and what is wrong in
-packages.
+"""Robots as `grader inspect` shows them.
+
+This is problems, tree, joints and poses, and what is wrong in packages.
 """
 
 from collections.abc import Callable, Iterator
@@ -33,8 +34,9 @@ _NO_BASE = Base(is_outside=True)
 
 @dataclass(frozen=True, slots=True)
 class InspectedRobot:
-    """A URDF as read, with its joints at given positions; without `configuration`, ROS 2 reads
-    nothing.
+    """A URDF as read, with its joints at given positions.
+
+    Without `configuration`, ROS 2 reads nothing.
     """
 
     path: str
@@ -54,7 +56,7 @@ class InspectedRobot:
     @property
     def problems(self) -> tuple[Problem, ...]:
         """What is wrong with it, and not ignored."""
-        return tuple(it for it in self.reading.problems if it not in self.hidden)
+        return tuple(problem for problem in self.reading.problems if problem not in self.hidden)
 
     @property
     def is_passed(self) -> bool:
@@ -73,8 +75,9 @@ class InspectedRobot:
         return f"robot {self.configuration.robot.name!r}"
 
     def poses(self) -> Iterator[tuple[str, Transform | str]]:
-        """Yield the pose of every link in the frame `relative_to`, in file order, or the reason why
-        it has none.
+        """Yield the pose of every link in the frame `relative_to`, in file order.
+
+        Or the reason why it has none.
         """
         robot = self.configuration
         if robot is None or self.relative_to is None:
@@ -116,8 +119,8 @@ class Inspection:
     @property
     def problems(self) -> tuple[Problem, ...]:
         """The problems of the robots, then those of packages."""
-        found = [problem for robot in self.robots for problem in robot.problems]
-        return (*dict.fromkeys(found), *self.package_problems)
+        robot_problems = [problem for robot in self.robots for problem in robot.problems]
+        return (*dict.fromkeys(robot_problems), *self.package_problems)
 
     def source(self, path: str) -> Source | None:
         """Return the text of a file, for quoting."""
@@ -133,8 +136,9 @@ def main_root(robot: Configuration) -> str | None:
 
 
 def lists(robot: InspectedRobot | None) -> Iterator[tuple[str, list[tuple[str, str]]]]:
-    """Yield the links of a robot as a tree with their joints, and their poses: a title, and names
-    with words about each.
+    """Yield the links of a robot as a tree with their joints, and their poses.
+
+    Each is a title, and names with words about each.
     """
     if robot is None or robot.configuration is None or robot.relative_to is None:
         return  # there is neither a tree nor a frame
@@ -170,13 +174,14 @@ def effect(inspection: Inspection) -> str:
 
 
 def look_of(inspection: Inspection) -> str:
-    """Return the verdict whose look the whole has: that of the only robot; else the worst of
-    all.
+    """Return the verdict whose look the whole has.
+
+    This is that of the only robot, else the worst of all.
     """
-    found = {robot.verdict for robot in inspection.robots}
+    verdicts = {robot.verdict for robot in inspection.robots}
     if inspection.robot is None and not inspection.is_passed:
         return "rejected"
-    return next((it for it in reversed(EFFECTS) if it in found), "clean")
+    return next((verdict for verdict in reversed(EFFECTS) if verdict in verdicts), "clean")
 
 
 def robot_line(robot: InspectedRobot) -> str:

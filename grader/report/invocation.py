@@ -1,5 +1,6 @@
-"""How a command is called and answers: the values of --fail-under, --save and --arg, and its
-exit code.
+"""How a command is called and answers.
+
+This is the values of --fail-under, --save and --arg, and its exit code.
 """
 
 import os
@@ -36,6 +37,7 @@ class ExitCode(IntEnum):
 
 def read_threshold(text: str) -> tuple[Decimal, bool]:
     """Return the score of `--fail-under`, such as 58.5 or 80%, and whether it is in percent.
+
     Raises GraderError.
     """
     if not re.fullmatch(_THRESHOLD, text) or (
@@ -104,8 +106,9 @@ def _read_save(text: str, formats: type[_Row]) -> tuple[_Row, Path]:
 
 
 def read_arguments(texts: Sequence[str]) -> dict[str, str]:
-    """Return the values that `--arg` gives arguments of xacro, by their names. Raises
-    GraderError.
+    """Return the values that `--arg` gives arguments of xacro, by their names.
+
+    Raises GraderError.
     """
     arguments: dict[str, str] = {}
     for text in texts:

@@ -1,5 +1,6 @@
-"""JSON text that is the same bytes everywhere, and descriptions of its objects, from which data and
-schemas follow.
+"""JSON text that is the same bytes everywhere, and descriptions of its objects.
+
+Data and schemas follow from these.
 """
 
 import json
@@ -36,12 +37,13 @@ def list_to_json(objects: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _harmless(text: str) -> str:
-    """Return JSON with escapes for unprintable characters, and for what a CI system takes for a
-    command.
+    """Return JSON with escapes for unprintable characters.
+
+    And for what a CI system takes for a command.
     """
     if not text.isascii() or "\x7f" in text:
         text = _UNPRINTABLE.sub(
-            lambda found: found[0] if found[0].isprintable() else json.dumps(found[0])[1:-1], text
+            lambda match: match[0] if match[0].isprintable() else json.dumps(match[0])[1:-1], text
         )
     return without_tag_commands(text, "\\u005b")
 
@@ -57,8 +59,9 @@ def _is_of_objects(value: Any) -> bool:
 
 
 def _objects(values: Sequence[Mapping[str, Any]], first: str) -> str:
-    """Return objects between commas; each that begins with the key `first` starts a line, also in
-    an inner list.
+    """Return objects between commas.
+
+    Each that begins with the key `first` starts a line, also in an inner list.
     """
     text = ""
     for value in values:
@@ -91,8 +94,9 @@ def exact(points: Decimal | None) -> int | float | None:
 
 
 def rounded(value: Any) -> Any:
-    """Return plain data: points exact, floats to 1e-6, because machines differ beyond; no -0, NaN
-    or infinity.
+    """Return plain data: points exact, floats to 1e-6, because machines differ beyond.
+
+    No -0, NaN or infinity.
     """
     if value is None or isinstance(value, str | int):
         return value
@@ -182,11 +186,11 @@ class JsonObject:
 
     def data(self, value: Any) -> dict[str, Any]:
         """Return the object that describes a value."""
-        found = {name: read(value) for name, read in self._readers.items()}
+        values = {name: read(value) for name, read in self._readers.items()}
         for name in self.optional:
-            if not found[name]:
-                del found[name]
-        return found
+            if not values[name]:
+                del values[name]
+        return values
 
 
 @dataclass(frozen=True, slots=True)
@@ -235,8 +239,8 @@ def _reader(kind: KeyType, origin: _Origin) -> Callable[[Any], Any]:
     return lambda value: rounded(get(value))
 
 
-def _optional(of: JsonObject, found: Any) -> dict[str, Any] | None:
-    return of.data(found) if found is not None else None
+def _optional(of: JsonObject, value: Any) -> dict[str, Any] | None:
+    return of.data(value) if value is not None else None
 
 
 def inner(owner: str, keys: Mapping[str, KeyType]) -> dict[str, Key]:

@@ -89,8 +89,9 @@ class LocalServer(ThreadingTCPServer):
         self.url = f"http://{self.hosts[0]}/{self.token}/"
 
     def finish_request(self, request: Any, client_address: Any) -> None:
-        """Serve a connection; the whole request must arrive in time, however slowly its bytes
-        do.
+        """Serve a connection.
+
+        The whole request must arrive in time, however slowly its bytes do.
         """
         timer = Timer(_PATIENCE, _stop_reading, [request])
         timer.daemon = True
@@ -165,9 +166,9 @@ class _Handler(BaseHTTPRequestHandler):
 
     def _body(self) -> bytes:
         """Return the body of a request, which must be JSON from the page."""
-        own = f"http://{self.headers['Host'].lower()}"
+        own_origin = f"http://{self.headers['Host'].lower()}"
         if (
-            self.headers.get("Origin") != own
+            self.headers.get("Origin") != own_origin
             or self.headers.get("Sec-Fetch-Site", "same-origin") != "same-origin"
         ):
             raise _RefusedError(HTTPStatus.FORBIDDEN, "this request is not from the page")
@@ -211,8 +212,9 @@ def json_response(status: HTTPStatus = HTTPStatus.OK, **answer: object) -> Respo
 def shown_until_interrupted(
     address: str, file: Path, terminal: Terminal, ending: str, *, opens: bool = True
 ) -> Iterator[None]:
-    """Print the address of a server, and open it in the browser while a block runs, until Ctrl-C or
-    a signal ends the block.
+    """Print the address of a server, and open it in the browser while a block runs.
+
+    Ctrl-C or a signal ends the block.
 
     Args:
         address: The address of a page, with its secret.

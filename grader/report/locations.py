@@ -1,9 +1,10 @@
-"""Locations in a submission: in words, with their source line or an edit of it, and their path
-in the repository.
+"""Locations in a submission.
+
+In words, with their source line or an edit of it, and their path in the repository.
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from difflib import SequenceMatcher
 from itertools import groupby
 
@@ -26,8 +27,9 @@ _MAX_LINES = 40  # of a diff
 
 
 def _end_in_line(source: Source, where: Location) -> int:
-    """Return the offset in its line after what begins at a location: the line's end where it goes
-    on in others.
+    """Return the offset in its line after what begins at a location.
+
+    This is the line's end where it goes on in others.
     """
     end_line, end_column = end_of(source, where)
     if end_line != where.line:
@@ -38,8 +40,9 @@ def _end_in_line(source: Source, where: Location) -> int:
 def excerpt(
     source: Source, where: Location, room: int, indent: int | None = None
 ) -> tuple[str, str, str]:
-    """Return the source line of a location: the text before what is meant, that text as far as it
-    is in the line, and the rest.
+    """Return the source line of a location in three parts.
+
+    The text before what is meant, that text as far as it is in the line, and the rest.
 
     Together they have a number of characters around the marked part; without `indent` the line is
     not indented.
@@ -55,8 +58,9 @@ def excerpt(
 
 
 def calls_text(where: Location) -> str:
-    """Return the macro calls of xacro that led to a location, innermost first; empty if there
-    are none.
+    """Return the macro calls of xacro that led to a location, innermost first.
+
+    Empty if there are none.
     """
     calls = [
         f"in macro {printable(macro)}, called at {printable(at.path)}:{at.line}"
@@ -66,15 +70,17 @@ def calls_text(where: Location) -> str:
 
 
 def location_text(where: Location) -> str:
-    """Return a location as editors take it, path:line:column, and the macro calls that led to
-    it.
+    """Return a location as editors take it, path:line:column.
+
+    And the macro calls that led to it.
     """
     return f"{printable(where.path)}:{where.line}:{where.column}{calls_text(where)}"
 
 
 def excerpt_lines(where: Location, source_of: SourceOf) -> Iterator[str]:
-    """Yield the source line of a location, and a line that underlines the marked part; nothing
-    without the file.
+    """Yield the source line of a location, and a line that underlines the marked part.
+
+    Nothing without the file.
     """
     source = source_of(where.path)
     if source is not None:
@@ -85,8 +91,9 @@ def excerpt_lines(where: Location, source_of: SourceOf) -> Iterator[str]:
 
 
 def source_lines(where: Location, source_of: SourceOf, many: int = _AROUND) -> list[SourceLine]:
-    """Return the lines around a location, as `many` before as after it, without their common
-    indentation.
+    """Return the lines around a location, without their common indentation.
+
+    There are `many` before as after it.
 
     Of a very long line it is the part around the marked text; there are none if the line is empty.
     """
@@ -112,29 +119,37 @@ def source_lines(where: Location, source_of: SourceOf, many: int = _AROUND) -> l
 
 def archive_around(path: str) -> str:
     """Return the archive in a submission that a file is in; empty if it is in none."""
-    found = re.match(_ARCHIVE, path)
-    return found[1] if found else ""
+    match = re.match(_ARCHIVE, path)
+    return match[1] if match else ""
 
 
 def diff_lines(edits: Sequence[Edit], source_of: SourceOf) -> list[str]:
-    """Return the printable lines of a diff: each file, and each changed line before and after; of
-    many the first.
+    """Return the printable lines of a diff.
+
+    They are each file, and each changed line before and after; of many the first.
     """
     lines: list[str] = []
     for path, of_file in groupby(sorted(edits), key=lambda edit: edit.path):
         changes, source = list(of_file), source_of(path)
         new_path = next((edit.renamed for edit in changes if edit.renamed), path)
         lines += [f"--- {path if source is not None else '/dev/null'}", f"+++ {new_path}"]
-        for line, of_line in groupby(changes, key=lambda edit: edit.line):
-            some = [edit for edit in of_line if edit.old or edit.new]
-            if some:
-                lines += [f"@@ line {line} @@", *_diff(*_texts_around(some, source))]
+        lines += _changed_lines(changes, source)
     return [printable(line) for line in first_lines(lines, _MAX_LINES)]
 
 
+def _changed_lines(edits: Iterable[Edit], source: Source | None) -> Iterator[str]:
+    """Yield the lines of a file before and after edits, each below its number."""
+    for line, of_line in groupby(edits, key=lambda edit: edit.line):
+        some = [edit for edit in of_line if edit.old or edit.new]
+        if some:
+            yield f"@@ line {line} @@"
+            yield from _diff(*_texts_around(some, source))
+
+
 def _texts_around(edits: list[Edit], source: Source | None) -> tuple[str, str]:
-    """Return the whole lines of edits that begin in one line, before and after; of long lines only
-    what changes.
+    """Return the whole lines of edits that begin in one line, before and after.
+
+    Of long lines only what changes.
     """
     height = 1 + max(edit.old.count("\n") for edit in edits)
     start = edits[0].line

@@ -14,16 +14,17 @@ from grader.report.locations import calls_text
 
 
 def findings_in_report(report: Report) -> list[Finding]:
-    """Return the criteria that lose points or cannot be decided, and the other problems, in the
-    order of their places.
+    """Return the mistakes and other problems of a report, in the order of their places.
+
+    Mistakes are the criteria that lose points or cannot be decided.
     """
-    found = [finding_of_problem(problem) for problem in other_problems(report)]
+    findings = [finding_of_problem(problem) for problem in other_problems(report)]
     undecided = {result.criterion.id for result in report.pending_automatic}
     for entry in entries(report).values():
         is_mistake = is_failure(entry.result) and not entry.result.why_given
         if is_mistake or entry.id in undecided:
-            found.append(_criterion_finding(entry, report))
-    return sorted(found, key=place_of)
+            findings.append(_criterion_finding(entry, report))
+    return sorted(findings, key=place_of)
 
 
 class Mistake(NamedTuple):
@@ -41,7 +42,7 @@ class Mistake(NamedTuple):
 def mistakes_in_report(report: Report) -> list[Mistake]:
     """Return the mistakes in the order of a report, then the criteria that cannot be decided."""
     sections = report_sections(report)
-    found = [
+    mistakes = [
         _mistake(entry, report)
         for entry in (*sections.mistakes, *sections.unbuilt)
         if is_failure(entry.result)
@@ -50,8 +51,8 @@ def mistakes_in_report(report: Report) -> list[Mistake]:
     for result in report.pending_automatic:
         entry = known[result.criterion.id]
         mistake = _mistake(entry, report)
-        found.append(mistake._replace(cost=points_of([result])))
-    return found
+        mistakes.append(mistake._replace(cost=points_of([result])))
+    return mistakes
 
 
 def _mistake(entry: Entry, report: Report) -> Mistake:
@@ -96,8 +97,9 @@ def _criterion_rule(criterion: Criterion) -> FindingKind:
 
 
 def _main_file(result: Result, report: Report) -> str:
-    """Return the file to look at if a criterion has no place: the package's or the URDF; empty
-    without both.
+    """Return the file to look at if a criterion has no place: the package's or the URDF.
+
+    Empty without both.
     """
     package = report.submission.package
     if package is not None and result.criterion.check.subject not in ("urdf", "robot"):

@@ -15,8 +15,9 @@ _PRIVATE = 0o600
 
 @contextmanager
 def opened_in_browser(address: str, file: Path) -> Iterator[bool]:
-    """Open an address while a block runs; yields whether there is a browser that a window shows,
-    and the file could be written.
+    """Open an address while a block runs.
+
+    Yields whether there is a browser that a window shows, and the file could be written.
 
     It opens a private file that leads to the address: all users of the machine see the arguments of
     a process. Some browsers cannot see the folder for temporary files.
@@ -41,8 +42,9 @@ def opened_in_browser(address: str, file: Path) -> Iterator[bool]:
 
 
 def _has_window() -> bool:
-    """Return whether the browser is not one of the terminal, such as w3m, which would take the
-    terminal away.
+    """Return whether the browser is not one of the terminal.
+
+    Such as w3m, which would take the terminal away.
     """
     try:
         browser = webbrowser.get()

@@ -15,8 +15,9 @@ def folder_of(path: str, inside: str | None) -> Path:
 
 
 def base_of(path: str, single: Path | None) -> Base:
-    """Return where a submission is in its repository, and seen from the current folder; `single`
-    is the folder in which paths of a single URDF start.
+    """Return where a submission is in its repository, and seen from the current folder.
+
+    `single` is the folder in which paths of a single URDF start.
     """
     if path == "-":
         return Base(is_outside=True)
@@ -49,8 +50,9 @@ def _base_in_repository(path: str, single: Path | None) -> Base:
 
 
 def _repository(place: Path) -> Path | None:
-    """Return the root of a path's repository: the CI checkout, else the folder with .git, else the
-    current folder.
+    """Return the root of a path's repository.
+
+    This is the CI checkout, else the folder with .git, else the current folder.
     """
     around = [place, *place.parents]
     for name in CHECKOUTS:

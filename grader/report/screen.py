@@ -25,8 +25,10 @@ def columns(terminal: int = _DEFAULT_WIDTH) -> int:
 
 
 class Screen(NamedTuple):
-    """The terminal or file of a report: its width in columns, its encoding, whether it shows
-    colours, and the folder whose files links lead to, if it has links.
+    """The terminal or file of a report.
+
+    It has its width in columns, its encoding, whether it shows colours, and the folder whose
+    files links lead to, if it has links.
     """
 
     width: int
@@ -69,8 +71,9 @@ def link_to(console: "Console", path: str) -> str | None:
 
 
 class _Buffer(io.StringIO):
-    """A stream that collects output and reports the encoding of its destination, and the folder
-    that its links lead to.
+    """A stream that collects output and reports what its destination is like.
+
+    This is its encoding, and the folder that its links lead to.
     """
 
     def __init__(self, screen: Screen) -> None:

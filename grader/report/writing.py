@@ -1,5 +1,6 @@
-"""Where commands write: the terminal, standard output, and files, which are replaced as a whole or
-not at all.
+"""Where commands write: the terminal, standard output, and files.
+
+Files are replaced as a whole or not at all.
 
 No file is written through a symlink of a submission, and none over the gradebook.
 """
@@ -47,8 +48,9 @@ class Terminal(NamedTuple):
 
 
 def write_stdout(text: str | bytes) -> None:
-    """Write to standard output; bytes unchanged, text in its encoding. Raises InputError if it is
-    closed.
+    """Write to standard output; bytes unchanged, text in its encoding.
+
+    Raises InputError if it is closed.
     """
     stream = sys.stdout
     if stream is None:
@@ -141,8 +143,9 @@ def make_folder(folder: Path) -> None:
 
 
 def _write_beside(target: Path, data: bytes, mode: int | None) -> Path:
-    """Write a file that is to replace another one beside it, with its permissions, and return its
-    path.
+    """Write a file that is to replace another one beside it, and return its path.
+
+    It has the other's permissions.
     """
     _remove_strays(target.parent)
     # An unpredictable name, created exclusively: no student can prepare a file or symlink there.
@@ -174,7 +177,7 @@ def _write_beside(target: Path, data: bytes, mode: int | None) -> Path:
 def _remove_strays(folder: Path) -> None:
     """Remove the files that writers which were killed have left in a folder."""
     for path in folder.glob(".*.tmp"):
-        if (found := _TEMPORARY.fullmatch(path.name)) and not _is_running(int(found[1] or 0)):
+        if (match := _TEMPORARY.fullmatch(path.name)) and not _is_running(int(match[1] or 0)):
             with suppress(OSError):
                 path.unlink()
 
@@ -231,8 +234,9 @@ def _student_folders(submissions: Sequence[Path | str]) -> Iterator[Path]:
 
 
 def _symlinks(path: Path) -> Iterator[Path]:
-    """Yield every symlink on the way to a file, and the file if it is one; the parents of each are
-    no symlinks.
+    """Yield every symlink on the way to a file, and the file if it is one.
+
+    The parents of each are no symlinks.
     """
     absolute = path.absolute()
     here, rest, count = Path(absolute.anchor), list(reversed(absolute.parts[1:])), 0
@@ -251,13 +255,14 @@ def _symlinks(path: Path) -> Iterator[Path]:
 
 
 def refuse_inputs(option: str, path: Path, inputs: Iterable[Path]) -> None:
-    """Raise InputError if a file that an option names is one of the inputs, or exists in one that
-    is a folder.
+    """Raise InputError if a file that an option names is one of the inputs.
+
+    Or if it exists in one that is a folder.
     """
     real = Path(os.path.realpath(path))
-    for found in inputs:
-        if is_same_file(path, found) or (
-            real.exists() and Path(os.path.realpath(found)) in real.parents
+    for input_path in inputs:
+        if is_same_file(path, input_path) or (
+            real.exists() and Path(os.path.realpath(input_path)) in real.parents
         ):
             shown = printable_path(path)
             raise InputError(
@@ -267,8 +272,9 @@ def refuse_inputs(option: str, path: Path, inputs: Iterable[Path]) -> None:
 
 
 def is_same_file(path: Path, other: Path) -> bool:
-    """Return whether two paths lead to one file, by symlinks or hard links as well; it need not
-    exist yet.
+    """Return whether two paths lead to one file, by symlinks or hard links as well.
+
+    It need not exist yet.
     """
     try:
         return os.path.realpath(path) == os.path.realpath(other) or path.samefile(other)

@@ -1,5 +1,6 @@
-"""The autograder zip for Gradescope: the grader, a rubric, and the scripts that install and run
-them there.
+"""The autograder zip for Gradescope.
+
+It has the grader, a rubric, and the scripts that install and run them there.
 """
 
 import json
@@ -23,8 +24,9 @@ _EXTRA = re.compile(
 
 
 def autograder_zip(rubric: Rubric) -> bytes:
-    """Return the zip to upload under "Configure Autograder". Raises InputError if the rubric
-    cannot be used there.
+    """Return the zip to upload under "Configure Autograder".
+
+    Raises InputError if the rubric cannot be used there.
     """
     for criterion in rubric.criteria:
         package = criterion.check.function.__module__.split(".")[0]
@@ -52,8 +54,9 @@ def autograder_zip(rubric: Rubric) -> bytes:
 
 
 def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
-    """Return the files of the reference solution, by which hints are found and with which checks
-    compare.
+    """Return the files of the reference solution.
+
+    By these hints are found, and with these checks compare.
 
     Without such a check there are none if it is not below the rubric's folder. Raises GraderError.
     """
@@ -73,11 +76,12 @@ def _reference(rubric: Rubric) -> dict[PurePosixPath, bytes]:
 
 
 def package_files() -> dict[str, bytes]:
-    """Return the files of the package by their paths in a wheel: with the rubrics, without
-    references and examples.
+    """Return the files of the package by their paths in a wheel.
+
+    With the rubrics, without references and examples.
     """
     data = ("rubrics", "examples")  # in a wheel; in a checkout they are outside of the package
-    own = {
+    own_files = {
         path: content
         for path, content in _files_of(_PACKAGE, _PACKAGE).items()
         if path.parts[0] not in data
@@ -86,22 +90,23 @@ def package_files() -> dict[str, bytes]:
         PurePosixPath("rubrics", name, RUBRIC_FILE): path.read_bytes()
         for name, path in shipped_rubrics().items()
     }
-    return {str(_PACKAGE.name / path): data for path, data in (own | rubrics).items()}
+    return {str(_PACKAGE.name / path): data for path, data in (own_files | rubrics).items()}
 
 
 def _files_of(place: Path, root: Path) -> dict[PurePosixPath, bytes]:
-    """Return the files at or below a place by their paths from a folder, without those of
-    editors and Python.
+    """Return the files at or below a place by their paths from a folder.
+
+    Without those of editors and Python.
     """
     paths = [place] if place.is_file() else [path for path in place.rglob("*") if path.is_file()]
-    own = {
+    own_files = {
         PurePosixPath(*path.relative_to(root).parts): path
         for path in paths
         if path.suffix != ".pyc"
     }
     return {
         name: path.read_bytes()
-        for name, path in own.items()
+        for name, path in own_files.items()
         if not any(map(_is_left_out, name.parts))
     }
 
@@ -123,12 +128,15 @@ def requirements(extra: str) -> list[str]:
             f"cannot determine the requirements of the grader: {_DISTRIBUTION} is not "
             "installed; install it with pip"
         ) from None
-    return sorted(own for requirement in declared if (own := _without_extra(requirement, extra)))
+    return sorted(
+        plain for requirement in declared if (plain := _without_extra(requirement, extra))
+    )
 
 
 def _without_extra(requirement: str, extra: str) -> str:
-    """Return a requirement without its condition on an extra; empty if it belongs to another
-    extra.
+    """Return a requirement without its condition on an extra.
+
+    Empty if it belongs to another extra.
     """
     name, _, marker = requirement.partition(";")
     condition = _EXTRA.search(marker)

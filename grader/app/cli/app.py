@@ -75,8 +75,10 @@ def _root(
 
 
 def make_app(names: Collection[str], *, completes: bool = False) -> typer.Typer:
-    """Return the command line with these commands: importing all of them takes longer than to grade
-    a URDF. With `completes` it may answer a shell that completes a word.
+    """Return the command line with these commands.
+
+    Importing all of them takes longer than to grade a URDF. With `completes` it may answer a
+    shell that completes a word.
     """
     app = typer.Typer(
         name="grader",
@@ -144,8 +146,9 @@ def _reason_of(error: OSError) -> str:
 
 
 def _complete() -> int:
-    """Print the completions of the word at the cursor; nothing if there is an error, which the
-    shell would show.
+    """Print the completions of the word at the cursor.
+
+    Nothing if there is an error, which the shell would show.
     """
     with redirect_stderr(StringIO()), suppress(Exception):
         try:

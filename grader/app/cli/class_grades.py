@@ -1,5 +1,6 @@
-"""grader export, stats and diff: the grades of a class for an LMS, their figures, and what changed
-between runs.
+"""grader export, stats and diff.
+
+The grades of a class for an LMS, their figures, and what changed between runs.
 """
 
 from pathlib import Path

@@ -99,11 +99,11 @@ def _ids_in(file: Path, table: str) -> Iterator[str]:
     """Yield the ids in the tables of a kind."""
     current = ""
     for line in _text_of(file).splitlines():
-        found = re.match(r"""id\s*=\s*["']([^"']+)""", line)
+        match = re.match(r"""id\s*=\s*["']([^"']+)""", line)
         if line.startswith("["):
             current = line.strip("[] ")
-        elif current == table and found:
-            yield found[1]
+        elif current == table and match:
+            yield match[1]
 
 
 def _tags(context: typer.Context, tag: str) -> Iterator[str]:
@@ -120,9 +120,9 @@ def _tags(context: typer.Context, tag: str) -> Iterator[str]:
 def _names_of(tags: Iterable[str]) -> Iterator[str]:
     """Yield the names in start tags, but those that xacro computes."""
     for tag in tags:
-        found = re.search(r"""\sname\s*=\s*["']([^"'$]+)["']""", tag)
-        if found:
-            yield found[1]
+        match = re.search(r"""\sname\s*=\s*["']([^"'$]+)["']""", tag)
+        if match:
+            yield match[1]
 
 
 def _gradebook(context: typer.Context) -> Path:

@@ -1,5 +1,6 @@
-"""What ends a command early: Ctrl-C, without the interpreter's messages, and limits of processor
-time and memory.
+"""What ends a command early.
+
+Ctrl-C, without the interpreter's messages, and limits of processor time and memory.
 
 Everything that reads a student's files counts its own work. The outer limits are for work that is
 not counted.
@@ -25,9 +26,9 @@ _MEMORY = 2 * 1024**3  # bytes more than at the start
 
 @contextmanager
 def quiet_interrupts() -> Iterator[None]:
-    """Ctrl-C raises KeyboardInterrupt as always, but Python prints nothing about what it
-    interrupts.
+    """Let Python print nothing about what Ctrl-C interrupts.
 
+    It raises KeyboardInterrupt as always.
     It can arrive where Python cannot raise an exception (a finalizer, a callback of an import):
     there Python would print the KeyboardInterrupt and go on, so it is raised again afterwards.
     Files that the interrupted code leaves open are no mistake.
@@ -46,14 +47,14 @@ def quiet_interrupts() -> Iterator[None]:
         else:
             signal.default_int_handler(number, frame)
 
-    def ignored(found: "sys.UnraisableHookArgs") -> None:
+    def ignored(unraisable: "sys.UnraisableHookArgs") -> None:
         nonlocal is_in_hook
-        if issubclass(found.exc_type, KeyboardInterrupt):
+        if issubclass(unraisable.exc_type, KeyboardInterrupt):
             is_in_hook = True
             Timer(_DELAY, _interrupt).start()  # not here: an exception in a hook is printed, too
             is_in_hook = False
-        elif not (arrived and issubclass(found.exc_type, ResourceWarning)):
-            hook(found)
+        elif not (arrived and issubclass(unraisable.exc_type, ResourceWarning)):
+            hook(unraisable)
 
     hook, sys.unraisablehook = sys.unraisablehook, ignored
     signal.signal(signal.SIGINT, interrupt)

@@ -112,8 +112,9 @@ def grade(
 
 
 def _grade_once(request: GradeRequest) -> int:
-    """Grade, and print the report; in a job of GitHub Actions also publish it. Return the exit
-    code.
+    """Grade, and print the report; in a job of GitHub Actions also publish it.
+
+    Return the exit code.
     """
 
     def show(run: GradeRun) -> None:

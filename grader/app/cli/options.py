@@ -42,19 +42,20 @@ _NOT_NAMED = Path("*")  # no folder is searched for --help
 
 
 def only_gradebook(named: Path = _NOT_NAMED) -> Path:
-    """Return the gradebook that is named, else the only one in the current folder. Raises
-    InputError.
+    """Return the gradebook that is named, else the only one in the current folder.
+
+    Raises InputError.
     """
     if named != _NOT_NAMED or os.environ.get("_GRADER_COMPLETE"):  # which looks for it itself
         return named
     from grader.classroom.marks.gradebook_folder import CLASS_FILE
 
-    found = sorted(file.parent for file in Path().glob(f"*/{CLASS_FILE}"))
-    if len(found) == 1:
-        return found[0]
-    if found:
+    folders = sorted(file.parent for file in Path().glob(f"*/{CLASS_FILE}"))
+    if len(folders) == 1:
+        return folders[0]
+    if folders:
         raise InputError(
-            f"name one with --gradebook: {enumerated([*map(printable_path, found)], 10, 'or')}"
+            f"name one with --gradebook: {enumerated([*map(printable_path, folders)], 10, 'or')}"
         )
     raise InputError(
         "there is no gradebook here: name one with --gradebook; `grader batch PATH` makes it"

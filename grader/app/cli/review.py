@@ -1,5 +1,6 @@
-"""grader mark and grader review: manual grading by command, on a page in the browser, or in a
-spreadsheet.
+"""grader mark and grader review.
+
+Manual grading by command, on a page in the browser, or in a spreadsheet.
 """
 
 from pathlib import Path

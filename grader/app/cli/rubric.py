@@ -1,5 +1,6 @@
-"""grader rubric and grader bundle: list, show, write, check and test rubrics, and pack one for a
-grading platform.
+"""grader rubric and grader bundle.
+
+List, show, write, check and test rubrics, and pack one for a grading platform.
 """
 
 from pathlib import Path

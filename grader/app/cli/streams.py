@@ -22,8 +22,10 @@ _LINE_SECONDS, _TERMINAL_SECONDS = 10.0, 0.1
 
 
 def screen(here: str | None = None) -> Screen:
-    """Return the width and encoding of standard output, and whether it is a terminal. `here` is
-    what comes before the paths of a report in the current folder, to which links may lead.
+    """Return the width and encoding of standard output, and whether it is a terminal.
+
+    `here` is what comes before the paths of a report in the current folder, to which links may
+    lead.
     """
     out = sys.stdout
     is_terminal = out is not None and out.isatty()
@@ -64,10 +66,10 @@ def write_stderr(text: str) -> None:
 
 @contextmanager
 def show_class(work: str) -> Iterator[Callable[["Progress"], None]]:
-    """Show the progress of a pass over a class, whose work is named; yields the function that
-    receives it.
+    """Show the progress of a pass over a class, whose work is named.
 
-    It is one line that changes on a terminal, else a line every ten seconds.
+    Yields the function that receives it. It is one line that changes on a terminal, else a line
+    every ten seconds.
     """
     began = last_line = time.monotonic()
     is_terminal = sys.stderr is not None and sys.stderr.isatty()

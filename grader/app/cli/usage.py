@@ -61,7 +61,7 @@ class _CommandLine(NamedTuple):
     @property
     def loose(self) -> list[int]:
         """The indices of the words that are neither options nor their values."""
-        found = list[int]()
+        positions = list[int]()
         is_value = False
         for index, word in enumerate(self.words[self.start :], self.start):
             if is_value:
@@ -70,8 +70,8 @@ class _CommandLine(NamedTuple):
                 option = self.options.get(word)
                 is_value = option is not None and not option.is_flag
             else:
-                found.append(index)
-        return found
+                positions.append(index)
+        return positions
 
     def replaced(self, start: int, end: int, *words: str) -> list[str]:
         """Return the words with others in place of some of them."""
@@ -86,8 +86,9 @@ class _Correction(NamedTuple):
 
 
 def usage_message(error: Any, arguments: Sequence[str], root: Any) -> str:
-    """Return one line on an error of usage: what is wrong, and what to type. `root` is the command
-    line of typer with all commands.
+    """Return one line on an error of usage: what is wrong, and what to type.
+
+    `root` is the command line of typer with all commands.
     """
     line = _command_line(arguments, root)
     correction = _correct_hyphens(line) or _correct_command(line)
@@ -123,9 +124,14 @@ def message_on_path(error: NotThereError, arguments: Sequence[str]) -> str:
         meant = [command, *others, "--rubric", error.path]
     elif is_bare:
         meant = [command, *bare]
-    start = f"{error.path} does not exist"
     if meant is not None:
-        return f"{start}; did you mean `grader {_shown(meant)}`?"
+        return f"{error.path} does not exist; did you mean `grader {_shown(meant)}`?"
+    return _message_without_guess(error)
+
+
+def _message_without_guess(error: NotThereError) -> str:
+    """Return one line on a path that does not exist: an address, a pattern or another one."""
+    start = f"{error.path} does not exist"
     if re.match(r"\w+:/", error.path):
         return f"{start}: download it, and grade the copy"
     if re.search(r"[*?]", error.path):
@@ -219,7 +225,7 @@ def _correct_option(line: _CommandLine, error: Any) -> _Correction | None:
     if not hasattr(error, "possibilities"):
         return None
     wrong = error.option_name
-    at = next((n for n, it in enumerate(line.words) if it.partition("=")[0] == wrong), None)
+    at = next((n for n, word in enumerate(line.words) if word.partition("=")[0] == wrong), None)
     if at is None:
         return None
     why = f"there is no option {wrong}"
@@ -228,14 +234,18 @@ def _correct_option(line: _CommandLine, error: Any) -> _Correction | None:
         kinds = [kind for kind in Format if name.endswith(f".{kind.ending}")]
         if kinds:
             return _Correction(why, line.replaced(at, at + 2, "--save", f"{kinds[0]}={name}"))
-    if wrong.startswith("--"):
-        meant = closest(wrong, [name for name in line.options if name.startswith("--")])
-    else:
-        fitting = [name for name in line.options if name.startswith(f"-{wrong}")]
-        meant = fitting[0] if len(fitting) == 1 else None
+    meant = _find_option(wrong, line)
     if meant is None:
         return None
     return _Correction(why, line.replaced(at, at + 1, meant + line.words[at].removeprefix(wrong)))
+
+
+def _find_option(wrong: str, line: _CommandLine) -> str | None:
+    """Return the option that is meant: the closest one, or the only one with these letters."""
+    if wrong.startswith("--"):
+        return closest(wrong, [name for name in line.options if name.startswith("--")])
+    fitting = [name for name in line.options if name.startswith(f"-{wrong}")]
+    return fitting[0] if len(fitting) == 1 else None
 
 
 def _correct_extra_words(line: _CommandLine, error: Any) -> _Correction | None:
@@ -254,7 +264,7 @@ def _correct_extra_words(line: _CommandLine, error: Any) -> _Correction | None:
         why += " (grader batch grades a class)"
     there = [index for index in loose if os.path.lexists(line.words[index])]
     others = {*loose} - {*(there or loose)[:1]}
-    return _Correction(why, [it for n, it in enumerate(line.words) if n not in others])
+    return _Correction(why, [word for n, word in enumerate(line.words) if n not in others])
 
 
 def _correct_repetition(line: _CommandLine, loose: list[int]) -> _Correction | None:

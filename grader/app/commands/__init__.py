@@ -1,5 +1,6 @@
-"""The work of each command, without typer and without printing: the command passes the functions
-that print.
+"""The work of each command, without typer and without printing.
+
+The command passes the functions that print.
 
 It imports everything below. Begin with `grade_submission.py`; for a class with `grade_class.py`.
 """

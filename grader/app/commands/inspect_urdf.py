@@ -1,5 +1,6 @@
-"""Read the robots at a path as ROS 2 does, with joints at given positions, and what is wrong in the
-packages around them.
+"""Read the robots at a path as ROS 2 does, with joints at given positions.
+
+And what is wrong in the packages around them.
 """
 
 import os
@@ -63,8 +64,9 @@ class InspectRequest(NamedTuple):
         return settings.stated
 
     def selection(self, folder: Path) -> Selection:
-        """Return which problems are shown, of files whose paths begin in a folder. Raises
-        GraderError.
+        """Return which problems are shown, of files whose paths begin in a folder.
+
+        Raises GraderError.
         """
         select = read_codes("--select", self.select or ())
         ignore = read_codes("--ignore", self.ignore or ())
@@ -72,8 +74,10 @@ class InspectRequest(NamedTuple):
 
 
 def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
-    """Show an inspection, and save the reports that `--save` names; with `--watch` after every
-    change. Return whether nothing is certainly wrong. Raises GraderError.
+    """Show an inspection, and save the reports that `--save` names.
+
+    With `--watch` after every change. Return whether nothing is certainly wrong. Raises
+    GraderError.
     """
     saves = request.saves
     check_saves(saves, (), request.path)
@@ -112,6 +116,7 @@ def _show_and_save(inspection: Inspection, request: InspectRequest, terminal: Te
 
 def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
     """Return the inspection of the robots and the packages at a path; of one robot, if it is named.
+
     Raises GraderError.
     """
     path, joints, relative_to = request.path, request.joint or (), request.relative_to
@@ -120,14 +125,14 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
     opened = open_workspace(path, request.max_size, read_arguments(request.arg or ()), stated)
     if opened.is_single:
         return _inspect_file(opened, request, selection, warn)
-    read = [it for it in opened.robots if isinstance(it, Read)]
-    unread = [it for it in opened.robots if isinstance(it, Unreadable)]
+    read = [robot for robot in opened.robots if isinstance(robot, Read)]
+    unread = [robot for robot in opened.robots if isinstance(robot, Unreadable)]
     if not opened.robots and not (opened.packages or opened.ros1_packages):
         raise InputError(
             f"{printable_path(path)} has neither a URDF nor a package: no file in it has a <robot>"
         )
-    for reason in [it.reason for it in unread]:
-        warn(reason)
+    for robot in unread:
+        warn(robot.reason)
     base = base_of(path, None)
     if request.robot:
         chosen = _named(request.robot, read)
@@ -136,10 +141,10 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
         return without_ignored(inspection, opened.whole_tree, _texts_of(chosen), selection)
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
-    robots = tuple(_inspected(opened, it, joints, relative_to) for it in read)
-    found, extent = opened.package_problems(), opened.extent()
-    found += opened.mesh_size_problems()  # last: it takes what is left of the budget
-    inspection = Inspection(opened.id, robots, tuple(found), extent, opened.source, base)
+    robots = tuple(_inspected(opened, robot, joints, relative_to) for robot in read)
+    problems, extent = opened.package_problems(), opened.extent()
+    problems += opened.mesh_size_problems()  # last: it takes what is left of the budget
+    inspection = Inspection(opened.id, robots, tuple(problems), extent, opened.source, base)
     return without_ignored(inspection, opened.whole_tree, [*opened.whole_tree.files], selection)
 
 
@@ -178,14 +183,14 @@ def _notes(urdf: Read) -> Iterator[str]:
 
 def _named(name: str, robots: Sequence[Read]) -> Read:
     """Return the robot with a name, or whose path ends so. Raises GraderError if it is not one."""
-    found = [it for it in robots if f"/{it.path}".endswith(f"/{name.strip('/')}")]
-    if not found:
-        models = [(it, it.loaded.robot) for it in robots]
-        found = [it for it, model in models if model is not None and model.name == name]
-    if len(found) == 1:
-        return found[0]
-    paths = enumerated([it.path for it in found or robots], MAX_NAMED)
-    if found:
+    matches = [robot for robot in robots if f"/{robot.path}".endswith(f"/{name.strip('/')}")]
+    if not matches:
+        models = [(robot, robot.loaded.robot) for robot in robots]
+        matches = [robot for robot, model in models if model is not None and model.name == name]
+    if len(matches) == 1:
+        return matches[0]
+    paths = enumerated([robot.path for robot in matches or robots], MAX_NAMED)
+    if matches:
         raise GraderError(f"--robot: {name!r} means several: {paths}")
     raise GraderError(f"--robot: there is no robot {name!r}; there are: {paths or 'none'}")
 
@@ -194,15 +199,16 @@ def _which_one(path: str, robots: Sequence[Read]) -> str:
     """Return that joints and frames are those of one robot."""
     if not robots:
         return f"{printable_path(path)} has no URDF: there are no joints and no frames"
-    paths = enumerated([it.path for it in robots], MAX_NAMED)
+    paths = enumerated([robot.path for robot in robots], MAX_NAMED)
     return f"name the robot whose joints and frames are meant with --robot: {paths}"
 
 
 def _inspected(
     opened: OpenedWorkspace, urdf: Read, joints: Sequence[str], relative_to: str | None
 ) -> InspectedRobot:
-    """Return a robot with its joints at given positions. Raises GraderError for other joints and
-    frames.
+    """Return a robot with its joints at given positions.
+
+    Raises GraderError for other joints and frames.
     """
     robot = _configuration(urdf.loaded, joints)
     if robot is not None and relative_to is None:
@@ -233,8 +239,9 @@ def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None
 
 
 def _read_position(text: str) -> tuple[str, float]:
-    """Return the joint and its position in radians or metres that `--joint` gives. Raises
-    GraderError.
+    """Return the joint and its position in radians or metres that `--joint` gives.
+
+    Raises GraderError.
     """
     name, equals, value = text.rpartition("=")
     try:

@@ -40,7 +40,7 @@ def refuse_watching(path: str, output_format: str) -> None:
 
 def repeat_on_change(
     watched: Sequence[Path],
-    own: Collection[Path],
+    own_paths: Collection[Path],
     terminal: Terminal,
     work: Callable[[], tuple[_Result, Sequence[Path]]],
     show: Callable[[_Result], None],
@@ -51,14 +51,14 @@ def repeat_on_change(
 
     Args:
         watched: The files and folders, the first of which is named.
-        own: The files that are written, whose changes do not count.
+        own_paths: The files that are written, whose changes do not count.
         terminal: Where it is said what is watched.
         work: Returns a result, and the files that were read besides, which are watched as well.
         show: Shows the result; what it raises ends the watch.
     """
     gc.enable()  # unlike other commands, this one may run for hours
     terminal.warn(f"watching {printable_path(watched[0])}; stop with Ctrl-C")
-    for besides in changes(watched, frozenset(map(os.path.realpath, own))):
+    for besides in changes(watched, frozenset(map(os.path.realpath, own_paths))):
         try:
             result, read = work()
         except (InputError, MachineError, RubricError) as error:
@@ -89,7 +89,7 @@ def drawn_rows(rows: list[Text], screen: Screen) -> str:
 
 def changes(
     watched: Sequence[Path],
-    own: Collection[str] = (),
+    own_paths: Collection[str] = (),
     poll: float = _POLL,
     wait: Callable[[float], object] | None = None,
 ) -> Iterator[list[Path]]:
@@ -99,7 +99,7 @@ def changes(
 
     Args:
         watched: The files and folders.
-        own: The real paths of files that do not count: the reports that are written.
+        own_paths: The real paths of files that do not count: the reports that are written.
         poll: The seconds between two looks, at least.
         wait: Waits for some seconds; if it returns true, the next look counts as a change.
     """
@@ -110,20 +110,21 @@ def changes(
     is_asked: object = False
     while True:
         start, began = time.monotonic(), time_ns()
-        now = _stamps([*watched, *besides], own)
+        now = _stamps([*watched, *besides], own_paths)
         looks = [looks[-1], time.monotonic() - start]
         pause = max(poll, _SHARE * min(looks))  # a look that a busy machine interrupts is longer
         # What changed since the last look may be half written.
         if is_asked or seen is None or before == now != seen:
             yield besides
-            seen = {**_stamps_before(began, _stamps(besides, own)), **now}
+            seen = {**_stamps_before(began, _stamps(besides, own_paths)), **now}
         before = now
         is_asked = (wait or time.sleep)(pause)
 
 
 def _stamps_before(began: int, stamps: _Stamps) -> _Stamps:
-    """Return stamps, but None for what changed since a time in nanoseconds: whether the change was
-    read is not known.
+    """Return stamps, but None for what changed since a time in nanoseconds.
+
+    Whether the change was read is not known.
     """
     known = dict(stamps)
     for path, stamp in stamps.items():
@@ -132,21 +133,24 @@ def _stamps_before(began: int, stamps: _Stamps) -> _Stamps:
     return known
 
 
-def _stamps(paths: Iterable[Path], own: Collection[str] = ()) -> _Stamps:
-    """Return what identifies each file and its content; of a folder, each file and folder that a
-    grading looks at.
+def _stamps(paths: Iterable[Path], own_paths: Collection[str] = ()) -> _Stamps:
+    """Return what identifies each file and its content.
+
+    Of a folder, each file and folder that a grading looks at.
     """
-    found: _Stamps = {}
+    stamps: _Stamps = {}
     for path in paths:
         names: Iterable[str] = ()
         try:
             tree = read_folder(path) if path.is_dir() else None
             names = (*tree.files, *tree.folders) if tree is not None else ()
         except (InputError, MachineError) as error:
-            found[str(error)] = None
+            stamps[str(error)] = None
         files = (path, *(path / name for name in names))
-        found |= {str(file): _stamp(file) for file in files if os.path.realpath(file) not in own}
-    return found
+        stamps |= {
+            str(file): _stamp(file) for file in files if os.path.realpath(file) not in own_paths
+        }
+    return stamps
 
 
 def _stamp(path: Path) -> tuple[int, ...] | None:

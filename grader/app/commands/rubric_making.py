@@ -1,5 +1,6 @@
-"""Write a rubric from a reference solution, and test a rubric: its reference, equivalents, samples
-and mutants.
+"""Write a rubric from a reference solution, and test a rubric.
+
+A test has its reference, equivalents, samples and mutants.
 """
 
 import os
@@ -77,6 +78,7 @@ def write_rubric(
     file: Path, reference: str, warn: Warn, choice: DraftChoice, *, force: bool
 ) -> str:
     """Write a rubric of a reference's facts; return what it contains, omits, and the next step.
+
     Raises GraderError.
     """
     _check_target(file, force=force)
@@ -105,6 +107,7 @@ def _check_target(file: Path, *, force: bool) -> None:
 
 def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | None:
     """Return the robot of the reference, which ROS 2 must load; None of packages without one.
+
     Raises GraderError.
     """
     shown = printable_path(reference)
@@ -124,8 +127,10 @@ def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | 
                 reason = loading.mistake if loading.status == "pending" else loading.message
                 advice = f"see `grader inspect {shell_quoted(reference)}`"
                 raise InputError(f"{shown} is no reference solution: {reason} ({advice})")
-            for found in (it for it in submission.urdf.problems if it.kind.effect == "drops"):
-                warn(f"{found.location.file_and_line}: {found.code}: {found.message}")
+            for problem in (
+                problem for problem in submission.urdf.problems if problem.kind.effect == "drops"
+            ):
+                warn(f"{problem.location.file_and_line}: {problem.code}: {problem.message}")
     others = [file.path for file in submission.other_candidates if not file.path.endswith(MANIFEST)]
     if others:
         warn(
@@ -141,15 +146,16 @@ def _rubric_head(file: Path, reference: str, submission: Submission) -> Head:
     package, path = submission.package, submission.path or ""
     if package is not None and package.holds(path):
         path = path.removeprefix(package.path(""))
-    names = tuple(it.name for it in submission.lab_packages.values())
+    names = tuple(lab_package.name for lab_package in submission.lab_packages.values())
     schema = f"./{_SCHEMA}" if (file.parent / _SCHEMA).is_file() else ""
     title = words[0].upper() + words[1:]
     return Head(words.replace(" ", "-"), title, place, path, names, schema, submission.distro)
 
 
 def _relative(reference: Path, folder: Path) -> str:
-    """Return the path of the reference as a rubric in a folder names it; raise GraderError if it is
-    no text.
+    """Return the path of the reference as a rubric in a folder names it.
+
+    Raise GraderError if it is no text.
     """
     try:
         path = os.path.relpath(reference.resolve(), folder.resolve())
@@ -197,8 +203,9 @@ def test_rubric(
     are_all_graded: bool,
     seed: int,
 ) -> tuple[str, ExitCode]:
-    """Return the result of testing a rubric, and the exit code. All mutants are graded, or a sample
-    that the seed draws.
+    """Return the result of testing a rubric, and the exit code.
+
+    All mutants are graded, or a sample that the seed draws.
 
     Raises GraderError for a broken rubric or one without a reference.
     """
@@ -211,7 +218,9 @@ def test_rubric(
     ):
 
         def progress(done: int, total: int, scores: Sequence[KindScore]) -> None:
-            kinds = ", ".join(f"{it.kind} {100 * it.caught // it.graded} %" for it in scores)
+            kinds = ", ".join(
+                f"{score.kind} {100 * score.caught // score.graded} %" for score in scores
+            )
             show(Progress(total, done, note=kinds))
 
         grade_all = partial(_graded, executor, rubric)

@@ -26,8 +26,9 @@ def list_rubrics() -> str:
 
 
 def copy(name: str, folder: Path) -> str:
-    """Copy the files of a shipped rubric; return what was written, and the next step. Raises
-    GraderError.
+    """Copy the files of a shipped rubric; return what was written, and the next step.
+
+    Raises GraderError.
     """
     from shutil import copyfile, copytree, ignore_patterns
 
@@ -66,8 +67,9 @@ def copy(name: str, folder: Path) -> str:
 
 
 def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
-    """Check a rubric; return a summary and the exit code: 1 if criteria cannot be decided on the
-    reference solution.
+    """Check a rubric, and return a summary and the exit code.
+
+    The code is 1 if criteria cannot be decided on the reference solution.
 
     Raises RubricError, with all mistakes in the file, or if the reference loses points.
     """
@@ -83,22 +85,23 @@ def check(name: str, warn: Warn) -> tuple[str, ExitCode]:
         warn(missing_answers(rubric))
     for message in likely_mistakes(rubric):
         warn(printable(f"warning: {message}"))
-    found = f"{rubric.id}: {rubric_size(rubric)}, no mistakes found"
+    summary = f"{rubric.id}: {rubric_size(rubric)}, no mistakes found"
     if rubric.solution is None:
-        return f"{found}\n", ExitCode.PASSED
+        return f"{summary}\n", ExitCode.PASSED
     failures = reference_failures(rubric)
     if failures.is_failed:
         raise RubricError(tuple(map(printable, failures.lines)))
     if not failures.lines:
-        return f"{found}; its reference gets full marks\n", ExitCode.PASSED
+        return f"{summary}; its reference gets full marks\n", ExitCode.PASSED
     criteria = counted(failures.undecided, "criterion", "criteria")
-    found += f"; its reference does not get full marks: {criteria} cannot be decided on it"
-    return "".join(f"{printable(line)}\n" for line in (found, *failures.lines)), ExitCode.FAILED
+    summary += f"; its reference does not get full marks: {criteria} cannot be decided on it"
+    return "".join(f"{printable(line)}\n" for line in (summary, *failures.lines)), ExitCode.FAILED
 
 
 def _lines_on_the_rest(name: str, warn: Warn) -> list[str]:
-    """Return what the reference does not pass of the correct criteria of a rubric that has
-    mistakes, and warn of likely ones.
+    """Return what the reference does not pass of the correct criteria of a rubric.
+
+    The rubric has mistakes. Warn of likely ones.
     """
     from grader.files.reading import read_capped
     from grader.lab.authoring.rubric_check import likely_mistakes, reference_failures
@@ -120,8 +123,9 @@ def _lines_on_the_rest(name: str, warn: Warn) -> list[str]:
 
 
 def bundle(platform: str, output: Path, name: str) -> str:
-    """Write the autograder zip for a platform; return what to do next, in two lines. Raises
-    GraderError.
+    """Write the autograder zip for a platform; return what to do next, in two lines.
+
+    Raises GraderError.
     """
     from grader.app.bundle.gradescope import autograder_zip
     from grader.report.explanations import rubric_summary

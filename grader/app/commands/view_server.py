@@ -133,7 +133,10 @@ class RobotPages:
             viewing = Viewing(
                 self.number,
                 _address(path),
-                [RobotLink(_address(it), it, it == path) for it in self._paths],
+                [
+                    RobotLink(_address(path_of_robot), path_of_robot, path_of_robot == path)
+                    for path_of_robot in self._paths
+                ],
                 shown.arguments,
                 self._files.notes,
                 is_broken=not is_loaded,
@@ -181,15 +184,16 @@ def _address(path: str) -> str:
 
 
 def follow_files(
-    request: ViewRequest, pages: RobotPages, own: Collection[str] = ()
+    request: ViewRequest, pages: RobotPages, own_paths: Collection[str] = ()
 ) -> Iterator[None]:
-    """Show the robots at a path, and again after every change, until the pages are ended; yield
-    after each.
+    """Show the robots at a path, and again after every change, until the pages are ended.
+
+    Yield after each.
 
     Args:
         request: What is shown.
         pages: The pages of the robots.
-        own: The real paths of files that do not count as changes.
+        own_paths: The real paths of files that do not count as changes.
 
     Raises:
         GraderError: What cannot be read at first.
@@ -197,7 +201,7 @@ def follow_files(
     watched = [Path(request.path)]
     if request.rubric:
         watched = files_to_watch(request.path, request.rubric)
-    for besides in changes(watched, own, _POLL, pages.wait):
+    for besides in changes(watched, own_paths, _POLL, pages.wait):
         if pages.is_ended:
             return
         try:
@@ -215,8 +219,9 @@ def follow_files(
 def view_in_browser(
     request: ViewRequest, port: int, terminal: Terminal, *, opens: bool = True
 ) -> str:
-    """Serve the pages of the robots at a path until Ctrl-C, and return a summary; it `opens` the
-    page in the browser.
+    """Serve the pages of the robots at a path until Ctrl-C, and return a summary.
+
+    It `opens` the page in the browser.
 
     Raises GraderError for what cannot be read at first.
     """

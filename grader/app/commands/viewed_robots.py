@@ -1,5 +1,6 @@
-"""The robots that `grader view` shows: one that is graded against a rubric, or all that an
-inspection finds.
+"""The robots that `grader view` shows.
+
+One that is graded against a rubric, or all that an inspection finds.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -62,8 +63,9 @@ class ViewedFiles(NamedTuple):
 
 
 def read_robots(request: ViewRequest, tried: Mapping[str, str]) -> ViewedFiles:
-    """Return the robots at a path, with the arguments of xacro that are tried. Raises GraderError,
-    also if there is no robot.
+    """Return the robots at a path, with the arguments of xacro that are tried.
+
+    Raises GraderError, also if there is no robot.
     """
     if request.path in ("", "-"):
         raise GraderError("view takes a file or folder: standard input is read only once")
@@ -165,5 +167,7 @@ def _broken(
 def _arguments(reading: "Reading") -> list[ArgumentField]:
     """Return the arguments of xacro that a robot has, without those that `--arg` cannot name."""
     declared = getattr(reading.source, "declared_arguments", ())
-    fields = [ArgumentField(it.name, it.default, it.value) for it in declared]
+    fields = [
+        ArgumentField(argument.name, argument.default, argument.value) for argument in declared
+    ]
     return [field for field in fields if "=" not in field.name and not field.name.endswith(":")]

@@ -1,5 +1,6 @@
-"""grader grade --watch: grade again whenever a file changes, and show last what changed in the
-report.
+"""grader grade --watch: grade again whenever a file changes.
+
+Show last what changed in the report.
 """
 
 from collections.abc import Sequence
@@ -71,8 +72,9 @@ def watch(request: GradeRequest, terminal: Terminal) -> None:
 
 
 def _watched(request: GradeRequest) -> list[Path]:
-    """Return what is watched: the submission, and a rubric that is no shipped one. Raises
-    GraderError.
+    """Return what is watched: the submission, and a rubric that is no shipped one.
+
+    Raises GraderError.
     """
     refuse_watching(request.path, request.output_format)
     if request.fix is not None:
@@ -84,8 +86,9 @@ def _watched(request: GradeRequest) -> list[Path]:
 
 
 def files_to_watch(path: str, rubric: str) -> list[Path]:
-    """Return a submission, and a rubric that is no shipped one. Raises GraderError for an unknown
-    rubric.
+    """Return a submission, and a rubric that is no shipped one.
+
+    Raises GraderError for an unknown rubric.
     """
     file = find_rubric(rubric)
     if file in shipped_rubrics().values():

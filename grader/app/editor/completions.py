@@ -105,9 +105,9 @@ def completions(look: Look, place: TextPlace) -> list[lsp.CompletionItem]:
         types = _JOINT_TYPES.items()
         return [lsp.CompletionItem(name, kind=member, detail=text) for name, text in types]
     for context in _CONTEXTS:
-        found = context.before.search(before) if place.path.endswith(context.endings) else None
-        if found is not None:
-            owner = found.groupdict().get("owner") or ""
+        match = context.before.search(before) if place.path.endswith(context.endings) else None
+        if match is not None:
+            owner = match.groupdict().get("owner") or ""
             names: list[str] = []
             for kind in context.kinds:
                 names += look.names.offered(kind, owner)

@@ -17,23 +17,25 @@ _MAX_NAMED = 3  # places
 
 def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
     """Return what is known of the name at a place; None where there is none."""
-    found = look.names.at(*place.triple)
-    if found is None:
+    name = look.names.at(*place.triple)
+    if name is None:
         rows = _parameter_rows(look, place)
         return lsp.Hover(_markdown(rows)) if rows else None
-    same = look.names.same(found)
-    defined = [it.location.file_and_line for it in same if it.role == "definition"]
+    same = look.names.same(name)
+    defined = [
+        same_name.location.file_and_line for same_name in same if same_name.role == "definition"
+    ]
     where = "defined nowhere in this workspace"
     if defined:
         where = f"defined at {enumerated([*dict.fromkeys(defined)], _MAX_NAMED)}"
-    uses = {it.location for it in same if it.role == "use"}
+    uses = {same_name.location for same_name in same if same_name.role == "use"}
     used = counted(len(uses), "time")
-    rows = [f"**{found.kind}** `{found.name}`: {where}; used {used}"]
-    rows += _of_robots(look, found.kind, found.name)
-    rows += (f"value: `{value}`" for value in look.names.values(found)[:_MAX_NAMED])
-    if found.kind == "parameter":
+    rows = [f"**{name.kind}** `{name.name}`: {where}; used {used}"]
+    rows += _of_robots(look, name.kind, name.name)
+    rows += (f"value: `{value}`" for value in look.names.values(name)[:_MAX_NAMED])
+    if name.kind == "parameter":
         rows += _parameter_rows(look, place)
-    return lsp.Hover(_markdown(rows), place.ranges(look).range(found.location))
+    return lsp.Hover(_markdown(rows), place.ranges(look).range(name.location))
 
 
 def _parameter_rows(look: Look, place: TextPlace) -> list[str]:

@@ -48,8 +48,10 @@ class _Shown:
 def diagnostics_of(
     look: Look, root: Path, graded: Sequence[Mistake] = ()
 ) -> dict[str, list[lsp.Diagnostic]]:
-    """Return what is wrong with the files of a folder, by their paths: the problems, and the
-    mistakes that lose points of a rubric. What a problem costs is said with it.
+    """Return what is wrong with the files of a folder, by their paths.
+
+    The problems, and the mistakes that lose points of a rubric. What a problem costs is said
+    with it.
     """
     ranges = TextRanges(look, root)
     shown: dict[str, list[lsp.Diagnostic]] = {}
@@ -76,8 +78,8 @@ def _join_assumptions(findings: Iterable[Finding]) -> list[_Shown]:
     alone = []
     for one in assumed:
         at = one.finding.location
-        hosts = [it for it in shown if _may_be_cause(it.finding, at)]
-        host = min(hosts, key=lambda it: _distance(it.finding, at), default=None)
+        hosts = [candidate for candidate in shown if _may_be_cause(candidate.finding, at)]
+        host = min(hosts, key=lambda candidate: _distance(candidate.finding, at), default=None)
         if host is None:
             alone.append(one)
         else:
@@ -99,19 +101,20 @@ def _distance(finding: Finding, at: Location) -> tuple[bool, bool, int]:
 def _join_mistakes(
     shown: Sequence[_Shown], graded: Iterable[Mistake], source_of: SourceOf
 ) -> list[_Shown]:
-    """Add to each problem the mistakes that report it, and to each other mistake the warnings at
-    the same attribute of a robot; return both.
+    """Add to each problem the mistakes that report it, and to others the warnings.
+
+    The warnings are at the same attribute of a robot as the other mistake. Return both.
     """
     left, others = [*shown], []
     for mistake in graded:
         finding = mistake.finding
-        one = next((it for it in left if it.key in mistake.reported), None)
+        one = next((reported for reported in left if reported.key in mistake.reported), None)
         if one is None:
             one = _Shown(finding)
             others.append(one)
-            for it in [it for it in left if _is_same_word(it.finding, finding, source_of)]:
-                left.remove(it)
-                one.notes.append((finding.location, f"{it.finding.rule.id}: {it.message}"))
+            for same in [same for same in left if _is_same_word(same.finding, finding, source_of)]:
+                left.remove(same)
+                one.notes.append((finding.location, f"{same.finding.rule.id}: {same.message}"))
         elif mistake.advice:
             one.notes.append((finding.location, mistake.advice))
         if mistake.names == one.finding.rule.id:
@@ -124,8 +127,9 @@ def _join_mistakes(
 
 
 def _is_same_word(problem: Finding, criterion: Finding, source_of: SourceOf) -> bool:
-    """Return whether a warning is at the attribute that a criterion is about: at a tag, they may be
-    about different things.
+    """Return whether a warning is at the attribute that a criterion is about.
+
+    At a tag, they may be about different things.
     """
     at = problem.location
     if problem.severity == "error" or at != criterion.location:
@@ -153,18 +157,19 @@ def _diagnostic(look: Look, ranges: TextRanges, shown: _Shown, at: Location) -> 
 def _related(
     look: Look, ranges: TextRanges, shown: _Shown
 ) -> list[lsp.DiagnosticRelatedInformation]:
-    """Return the other places of a diagnostic: what was meant, the calls of macros, the criteria
-    that fail by it.
+    """Return the other places of a diagnostic.
+
+    What was meant, the calls of macros, the criteria that fail by it.
     """
-    found = []
+    related_places = []
     for name, call in shown.finding.location.calls:
         text = f"the macro {name} is called here"
-        found.append(lsp.DiagnosticRelatedInformation(ranges.place(call), text))
+        related_places.append(lsp.DiagnosticRelatedInformation(ranges.place(call), text))
     related = shown.finding.related
     if related is not None:
         text = "this is what it is compared with"
-        found.append(lsp.DiagnosticRelatedInformation(ranges.place(related), text))
+        related_places.append(lsp.DiagnosticRelatedInformation(ranges.place(related), text))
     for at, text in shown.notes:
         if at.path in look.tree.files:
-            found.append(lsp.DiagnosticRelatedInformation(ranges.place(at), text))
-    return found
+            related_places.append(lsp.DiagnosticRelatedInformation(ranges.place(at), text))
+    return related_places

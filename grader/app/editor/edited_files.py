@@ -42,10 +42,10 @@ class EditedFiles:
     def tree(self) -> Tree:
         """Return the files as they are now. Raises InputError."""
         if self._on_disk is None:
-            found = open_tree(self.root)
-            if found is None:
+            opened_tree = open_tree(self.root)
+            if opened_tree is None:
                 raise InputError(f"{self.root.name} is no folder")
-            self._on_disk = _kept(without_git_ignored(found, self.root))
+            self._on_disk = _kept(without_git_ignored(opened_tree, self.root))
         on_disk, typed = self._on_disk, dict[str, bytes | None]()
         for path, data in dict(self._typed).items():
             if path in on_disk.files or not ignored_part(path):

@@ -56,20 +56,21 @@ class Look:
 
     @cached_property
     def graded(self) -> Graded:
-        """The criteria that fail, and how to fix them; nothing without a rubric. Raises
-        GraderError.
+        """The criteria that fail, and how to fix them; nothing without a rubric.
+
+        Raises GraderError.
         """
         return self.grade(self.tree)
 
     @cached_property
     def robots(self) -> Mapping[str, Configuration]:
         """The robots that ROS 2 loads, with their joints at 0, by the paths of their files."""
-        found = {}
+        robots_by_path = {}
         for robot in self.opened.robots:
             model = robot.loaded.robot if isinstance(robot, Read) else None
             if model is not None:
-                found[robot.path] = Configuration(model)
-        return found
+                robots_by_path[robot.path] = Configuration(model)
+        return robots_by_path
 
 
 def look_at(
@@ -96,9 +97,9 @@ def look_at(
         if isinstance(robot, Read):
             reading = robot.loaded._replace(problems=opened.problems_of(robot))
             robots.append(InspectedRobot(robot.path, reading))
-    found = tuple(opened.package_problems())
+    package_problems = tuple(opened.package_problems())
     extent = opened.extent()
-    inspection = Inspection(opened.id, tuple(robots), found, extent, opened.source)
+    inspection = Inspection(opened.id, tuple(robots), package_problems, extent, opened.source)
     selection = Selection(settings=settings, folder=root)
     shown = without_ignored(inspection, opened.whole_tree, [*tree.files], selection)
     memory.forget_unused()

@@ -28,22 +28,22 @@ def parameter_key(above: Sequence[str], line: str) -> ParameterKey | None:
         above: The lines above it.
         line: The line.
     """
-    own = _KEY.match(line)
-    if own is None or not own["indent"]:
+    parent = _KEY.match(line)
+    if parent is None or not parent["indent"]:
         return None
-    indent = len(own["indent"])
+    indent = len(parent["indent"])
     tables: list[str] = []
     is_parameters = False
     for text in reversed(above):
-        found = _KEY.match(text)
-        if found is None or not found["colon"] or len(found["indent"]) >= indent:
+        match = _KEY.match(text)
+        if match is None or not match["colon"] or len(match["indent"]) >= indent:
             continue
-        indent = len(found["indent"])
+        indent = len(match["indent"])
         if is_parameters:
             prefix = "".join(f"{table}." for table in reversed(tables))
-            return ParameterKey(found["key"].rpartition("/")[2], prefix, own["key"])
-        if found["key"] == _PARAMETERS:
+            return ParameterKey(match["key"].rpartition("/")[2], prefix, parent["key"])
+        if match["key"] == _PARAMETERS:
             is_parameters = True
         else:
-            tables.append(found["key"])
+            tables.append(match["key"])
     return None

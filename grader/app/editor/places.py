@@ -10,8 +10,9 @@ from grader.app.editor.text_ranges import Lines, TextRanges
 
 
 class TextPlace(NamedTuple):
-    """A place in a file that an editor asks about; line and column count from 1, columns in
-    characters.
+    """A place in a file that an editor asks about.
+
+    Line and column count from 1, columns in characters.
     """
 
     root: Path  # of the files
@@ -41,10 +42,10 @@ def references(look: Look, place: TextPlace) -> list[lsp.Location]:
 
 
 def _located(look: Look, place: TextPlace, *, are_defined: bool) -> list[lsp.Location]:
-    found = look.names.at(*place.triple)
+    name = look.names.at(*place.triple)
     ranges = place.ranges(look)
     located: list[lsp.Location] = []
-    for other in look.names.same(found) if found is not None else ():
+    for other in look.names.same(name) if name is not None else ():
         at = ranges.place(other.location)
         if (other.role == "definition" or not are_defined) and at not in located:
             located.append(at)

@@ -24,24 +24,25 @@ class CannotRenameError(JsonRpcInvalidParams):
 
 def prepared(look: Look, place: TextPlace) -> lsp.Range | None:
     """Return the range of the name at a place, if it can be renamed. Raises CannotRenameError."""
-    found = look.names.at(*place.triple)
-    if found is None:
+    name = look.names.at(*place.triple)
+    if name is None:
         return None
-    if found.is_made:
-        raise CannotRenameError(_made(found.location, found.name))
-    return place.ranges(look).range(found.location)
+    if name.is_made:
+        raise CannotRenameError(_made(name.location, name.name))
+    return place.ranges(look).range(name.location)
 
 
 def renamed(look: Look, place: TextPlace, new: str) -> lsp.WorkspaceEdit | None:
-    """Return the edits that give the name at a place another text, everywhere. Raises
-    CannotRenameError where something would be wrong then that is not wrong now.
+    """Return the edits that give the name at a place another text, everywhere.
+
+    Raises CannotRenameError where something would be wrong then that is not wrong now.
     """
-    found = look.names.at(*place.triple)
-    if found is None:
+    name = look.names.at(*place.triple)
+    if name is None:
         return None
     if not _VALID.fullmatch(new):
         raise CannotRenameError(f"{new!r} is no name: use letters, digits and underscores")
-    same = look.names.same(found)
+    same = look.names.same(name)
     for other in look.names.named_like(same, new):
         where = other.location.file_and_line
         raise CannotRenameError(f"there is a {other.kind} {new!r} already, at {where}")
@@ -49,11 +50,11 @@ def renamed(look: Look, place: TextPlace, new: str) -> lsp.WorkspaceEdit | None:
     for other in same:
         at = other.location
         if other.is_made:
-            raise CannotRenameError(_made(at, found.name))
-        edits[at.path, at.line, at.column] = Edit(at.path, at.line, at.column, found.name, new)
+            raise CannotRenameError(_made(at, name.name))
+        edits[at.path, at.line, at.column] = Edit(at.path, at.line, at.column, name.name, new)
     after = look.again(_with(look, edits))
     _check_problems(look, after)
-    left = after.names.named_like(same, found.name)
+    left = after.names.named_like(same, name.name)
     if left:
         where = left[0].location.file_and_line
         message = f"{counted(len(left), 'place')} would keep the old name, the first at {where}"
@@ -73,7 +74,7 @@ def _with(look: Look, edits: Mapping[tuple[str, int, int], Edit]) -> Tree:
     for path in {path for path, _, _ in edits}:
         source = look.opened.source(path)
         assert source is not None  # a name was found in it
-        text = edited(source.text, path, (it for it in edits.values() if it.path == path))
+        text = edited(source.text, path, (edit for edit in edits.values() if edit.path == path))
         if text is None:
             raise CannotRenameError(f"the places in {path} overlap")
         files[path] = text.encode("utf-8", "surrogatepass")

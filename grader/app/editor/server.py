@@ -72,16 +72,17 @@ class _GraderServer(LanguageServer):
         return self.sessions[root]
 
     def session_of(self, uri: str) -> tuple[EditorSession, str] | None:
-        """Return the session that a file belongs to, with its path there; None for a file outside
-        of the folders. In an editor without a folder it is that of its package, or of a robot's
-        folder.
+        """Return the session that a file belongs to, with its path there.
+
+        None for a file outside of the folders. In an editor without a folder it is that of
+        its package, or of a robot's folder.
         """
         name = to_fs_path(uri)
         if name is None:
             return None
         file = Path(os.path.realpath(name))
         roots = [root for root in self.sessions if file.is_relative_to(root)]
-        around = max(roots, key=lambda it: len(it.parts), default=None)
+        around = max(roots, key=lambda root: len(root.parts), default=None)
         if around is None and not self.workspace.folders:
             around = _folder_of(file)
         if around is None:
@@ -95,9 +96,9 @@ class _GraderServer(LanguageServer):
 
     def change(self, uri: str, change: Callable[[EditedFiles, str], None]) -> None:
         """Change the files of a session, and look at them again soon."""
-        found = self.session_of(uri)
-        if found is not None:
-            session, path = found
+        session_and_path = self.session_of(uri)
+        if session_and_path is not None:
+            session, path = session_and_path
             session.change(lambda files: change(files, path))
             self.refresh(session.files.root)
 
@@ -114,13 +115,13 @@ class _GraderServer(LanguageServer):
         start = time.monotonic()
         try:
             look = await self.in_thread(session.look)
-            found = await self.in_thread(partial(diagnostics_of, look, root))
-            self._publish(root, found)
+            diagnostics = await self.in_thread(partial(diagnostics_of, look, root))
+            self._publish(root, diagnostics)
             self._complain(session.complaint)
             graded = await self.in_thread(lambda: look.graded.mistakes)
             if graded:
-                found = await self.in_thread(partial(diagnostics_of, look, root, graded))
-                self._publish(root, found)
+                diagnostics = await self.in_thread(partial(diagnostics_of, look, root, graded))
+                self._publish(root, diagnostics)
             seconds = time.monotonic() - start
             files = counted(len(look.tree.files), "file")
             text = f"{root.name}: looked at {files} in {seconds:.2f} s"
@@ -143,13 +144,13 @@ class _GraderServer(LanguageServer):
         """Return what some work returns that is done beside the messages of the editor."""
         return await asyncio.get_running_loop().run_in_executor(self._pool, work)
 
-    def _publish(self, root: Path, found: _Diagnostics) -> None:
+    def _publish(self, root: Path, diagnostics: _Diagnostics) -> None:
         """Show what is wrong in a folder; of files in which nothing is wrong any more, nothing."""
-        for path in sorted({*found, *self._published.get(root, ())}):
+        for path in sorted({*diagnostics, *self._published.get(root, ())}):
             uri = from_fs_path(str(root / path)) or ""
-            params = lsp.PublishDiagnosticsParams(uri, found.get(path, []))
+            params = lsp.PublishDiagnosticsParams(uri, diagnostics.get(path, []))
             self.text_document_publish_diagnostics(params)
-        self._published[root] = set(found)
+        self._published[root] = set(diagnostics)
 
     async def answer(
         self,
@@ -157,13 +158,14 @@ class _GraderServer(LanguageServer):
         position: lsp.Position,
         make: Callable[[Look, "places.TextPlace"], _T],
     ) -> _T | None:
-        """Return an answer about a place in a file, from a look at the files as they are now; None
-        where there is none.
+        """Return an answer about a place in a file, from a look at the files as they are now.
+
+        None where there is none.
         """
-        found = self.session_of(uri)
-        if found is None:
+        session_and_path = self.session_of(uri)
+        if session_and_path is None:
             return None
-        session, path = found
+        session, path = session_and_path
 
         def work() -> _T:
             look = session.look()
@@ -194,8 +196,9 @@ def _fault(error: Exception) -> lsp.Diagnostic:
 
 
 def _make_server(rubric: str) -> _GraderServer:
-    """Return the server of an editor, which grades with a rubric, an id or a file; empty for that
-    of the settings, or none.
+    """Return the server of an editor, which grades with a rubric, an id or a file.
+
+    Empty for that of the settings, or none.
     """
     server = _GraderServer(rubric)
     _follow_texts(server)
@@ -269,11 +272,11 @@ def _offer_changes(server: _GraderServer) -> None:
 
     @server.feature(lsp.WORKSPACE_SYMBOL)
     async def all_symbols(ls: _GraderServer, params: lsp.WorkspaceSymbolParams) -> Any:
-        found: list[lsp.SymbolInformation] = []
+        symbols_of_roots: list[lsp.SymbolInformation] = []
         for session in [*ls.sessions.values()]:
             find = partial(symbols.in_workspace, session, params.query)
-            found += await ls.in_thread(find)
-        return found
+            symbols_of_roots += await ls.in_thread(find)
+        return symbols_of_roots
 
     options = lsp.CodeActionOptions(code_action_kinds=[lsp.CodeActionKind.QuickFix])
 

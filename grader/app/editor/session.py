@@ -43,8 +43,9 @@ class EditorSession:
         self._version += 1
 
     def _read_settings(self) -> Settings:
-        """Return the settings of the workspace, none where they cannot be read: `complaint` says
-        why.
+        """Return the settings of the workspace.
+
+        None where they cannot be read: `complaint` says why.
         """
         self.complaint = ""
         try:

@@ -25,12 +25,14 @@ _MOST = 500
 def in_document(look: Look, place: TextPlace) -> list[lsp.DocumentSymbol]:
     """Return the names that a file defines, in the order of the file."""
     ranges = place.ranges(look)
-    found = []
+    symbols = []
     for each in look.names.defined_in(place.path):
         at = ranges.range(each.location)
         kind = _KINDS.get(each.kind, lsp.SymbolKind.Constant)
-        found.append(lsp.DocumentSymbol(each.name, kind, at, at, detail=each.kind))
-    return sorted(found, key=lambda it: (it.range.start.line, it.range.start.character))
+        symbols.append(lsp.DocumentSymbol(each.name, kind, at, at, detail=each.kind))
+    return sorted(
+        symbols, key=lambda symbol: (symbol.range.start.line, symbol.range.start.character)
+    )
 
 
 def in_workspace(session: EditorSession, query: str) -> list[lsp.SymbolInformation]:
@@ -40,9 +42,9 @@ def in_workspace(session: EditorSession, query: str) -> list[lsp.SymbolInformati
     except (GraderError, SupersededError):
         return []
     ranges = TextRanges(look, session.files.root)
-    found = []
+    symbols = []
     for each in look.names.holding(query, _MOST):
         kind = _KINDS.get(each.kind, lsp.SymbolKind.Constant)
         place = ranges.place(each.location)
-        found.append(lsp.SymbolInformation(place, each.name, kind, container_name=each.kind))
-    return found
+        symbols.append(lsp.SymbolInformation(place, each.name, kind, container_name=each.kind))
+    return symbols

@@ -1,5 +1,6 @@
-"""Export the current grades: as CSV, JSON or pages, into a file of an LMS, and the reports as
-feedback for an LMS.
+"""Export the current grades.
+
+As CSV, JSON or pages, into a file of an LMS, and the reports as feedback for an LMS.
 """
 
 from collections.abc import Mapping, Sequence
@@ -69,8 +70,9 @@ class ExportRequest:
 
 
 def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]:
-    """Export the grades to the output file; return what to print, and the exit code. Raises
-    GraderError.
+    """Export the grades to the output file; return what to print, and the exit code.
+
+    Raises GraderError.
     """
     _refuse_options(request)
     book = Gradebook(request.gradebook)
@@ -85,14 +87,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
             class_reports.ReportRun(book.folder, folder, (Format.HTML,)), terminal
         )
         return b"", ExitCode.PASSED
-    for path in (request.output, request.feedback):
-        if path is None:
-            continue
-        refuse_symlinks(path, roots)
-        if book.folder.resolve() in path.resolve().parents:
-            raise InputError(
-                f"cannot write {printable_path(path)}: the gradebook is written by its own commands"
-            )
+    _refuse_paths(request, book, roots)
     warn_of_ignored(book, terminal.warn)
     exported = _exported(request, book, terminal)
     doubts = [
@@ -118,6 +113,18 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
         return exported.data, ExitCode.PASSED
     save_bytes(request.output, exported.data, roots)
     return b"", ExitCode.PASSED
+
+
+def _refuse_paths(request: ExportRequest, book: Gradebook, roots: Sequence[Path]) -> None:
+    """Raise InputError for an output in the gradebook, or one that leads through a symlink."""
+    for path in (request.output, request.feedback):
+        if path is None:
+            continue
+        refuse_symlinks(path, roots)
+        if book.folder.resolve() in path.resolve().parents:
+            raise InputError(
+                f"cannot write {printable_path(path)}: the gradebook is written by its own commands"
+            )
 
 
 def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Filled:
@@ -154,8 +161,9 @@ def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Fi
 def _class_grade(
     book: Gradebook, grade: StudentGrade, request: ExportRequest, *, has_comment: bool
 ) -> PublishedGrade:
-    """Return a grade as it is published; points that need manual grading count as zero with
-    --pending-as-zero.
+    """Return a grade as it is published.
+
+    Points that need manual grading count as zero with --pending-as-zero.
     """
     is_zero = request.pending_as_zero and grade.obstacle is Reason.PENDING
     total = grade.total if is_zero else grade.published
@@ -176,8 +184,9 @@ def _comment(book: Gradebook, grade: StudentGrade, total: Decimal) -> str:
 def _feedback(
     request: ExportRequest, book: Gradebook, numbers: Mapping[str, str], terminal: Terminal
 ) -> bytes:
-    """Return the zip of the reports, named as the LMS gives them to its students; `numbers` are of
-    --into.
+    """Return the zip of the reports, named as the LMS gives them to its students.
+
+    `numbers` are of --into.
 
     The reports for which the LMS has no way are written into the gradebook.
     """
@@ -229,8 +238,9 @@ def _names_in_zip(
 
 
 def _refuse_options(request: ExportRequest) -> None:
-    """Raise GraderError for an option that the target does not take, and for a file that must not
-    be replaced.
+    """Raise GraderError for an option that the target does not take.
+
+    And for a file that must not be replaced.
     """
     into, output, feedback = request.into, request.output, request.feedback
     given = {"--into": into, "--feedback": feedback, "--excel": request.excel}

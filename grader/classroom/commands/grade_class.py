@@ -128,6 +128,15 @@ class _ClassInputs:
         )
 
 
+def _refuse_other_rubric(folder: Path, settings: ClassSettings, rubric: Rubric) -> None:
+    """Raise InputError if a gradebook is that of another rubric."""
+    if settings.rubric_id not in ("", rubric.id):
+        raise InputError(
+            f"{printable_path(folder)} is the gradebook of {settings.rubric_id}, not of "
+            f"{rubric.id}: name another folder"
+        )
+
+
 def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
     """Return the inputs of a run; raise InputError and RubricError. Nothing is written."""
     usual = load_rubric(options.usual_rubric)
@@ -136,19 +145,17 @@ def _read_inputs(options: ClassRequest, warn: Warn) -> _ClassInputs:
     is_new = not names.is_gradebook(folder)
     names.check_free(folder)
     settings = ClassSettings() if is_new else read_settings(folder)
-    rubric = named_rubric or usual
-    if named_rubric is None and not is_new:
+    rubric = usual
+    if named_rubric is not None:
+        rubric = named_rubric
+        _refuse_other_rubric(folder, settings, rubric)
+    elif not is_new:
         rubric = load_rubric(folder / settings.rubric)
         if options.usual_rubric != DEFAULT_RUBRIC and usual.id != rubric.id:
             warn(
                 f"{printable_path(folder)} keeps its rubric {rubric.id}, not {usual.id}: "
                 "name it with --rubric"
             )
-    elif named_rubric is not None and settings.rubric_id not in ("", rubric.id):
-        raise InputError(
-            f"{printable_path(folder)} is the gradebook of {settings.rubric_id}, not of "
-            f"{rubric.id}: name another folder"
-        )
     if not (options.paths or settings.submissions):
         raise InputError("name the PATH of the submissions, a folder or the zip of an LMS")
     last_due = settings.deadline(folder) if options.due is None else None
@@ -191,19 +198,7 @@ def _updated(
     paths = tuple(relative(path, folder) for path in options.paths or ())
     if {*paths} <= {*settings.submissions}:
         paths = ()  # a section alone: the others stay
-    due = read_time(options.due).isoformat() if options.due else None
-    given: dict[str, Any] = {  # None where the option is not given
-        "due": due,
-        "layout": options.layout,
-        "assignment": options.assignment,
-        "ignore": tuple(options.ignore or ()) or None,
-        "parts": tuple(options.part or ()) or None,
-        "arguments": read_arguments(options.arg or ()) or None,
-        "max_size": options.max_size,
-        "submissions": paths or None,
-    }
-    changed = {name: value for name, value in given.items() if value is not None}
-    settings = replace(settings, **changed)
+    settings = replace(settings, **_changes_by_options(options, paths))
     if options.ignore_file or not settings.handed_out:
         handed_out = [
             *_handed_out(options.ignore_file or (), rubric),
@@ -213,9 +208,25 @@ def _updated(
     return settings
 
 
+def _changes_by_options(options: ClassRequest, paths: tuple[str, ...]) -> dict[str, Any]:
+    """Return the settings that the options of the command give, by their names."""
+    given: dict[str, Any] = {  # None where the option is not given
+        "due": read_time(options.due).isoformat() if options.due else None,
+        "layout": options.layout,
+        "assignment": options.assignment,
+        "ignore": tuple(options.ignore or ()) or None,
+        "parts": tuple(options.part or ()) or None,
+        "arguments": read_arguments(options.arg or ()) or None,
+        "max_size": options.max_size,
+        "submissions": paths or None,
+    }
+    return {name: value for name, value in given.items() if value is not None}
+
+
 def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
-    """Yield the hashes of the work that the course handed out. Raises InputError for a file without
-    any.
+    """Yield the hashes of the work that the course handed out.
+
+    Raises InputError for a file without any.
     """
     for path in files:
         hashes = hashes_of(open_submission(str(path), rubric.lab))
@@ -225,8 +236,9 @@ def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
 
 
 def _keep_inputs(inputs: _ClassInputs, options: ClassRequest, warn: Warn) -> _ClassInputs:
-    """Write the settings and the copies of the roster and the rubric into the gradebook. Raises
-    InputError.
+    """Write the settings and the copies of the roster and the rubric into the gradebook.
+
+    Raises InputError.
     """
     folder, settings, rubric = inputs.folder, inputs.settings, inputs.rubric
     if options.roster is not None:
@@ -260,8 +272,9 @@ def _read_csv(file: Path) -> bytes:
 
 
 def _copy_rubric(folder: Path, rubric: Rubric) -> str:
-    """Copy a rubric and its reference into a gradebook, placed to each other as before; return
-    where it is.
+    """Copy a rubric and its reference into a gradebook, placed to each other as before.
+
+    Return where it is.
     """
     target, rubric_file = folder / names.RUBRIC, rubric.path.resolve()
     is_movable = not Path(rubric.reference).is_absolute()

@@ -1,5 +1,6 @@
-"""Give and withdraw marks by command: of one student, of all who submitted nothing, and of a CSV
-file.
+"""Give and withdraw marks by command.
+
+Of one student, of all who submitted nothing, and of a CSV file.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -42,8 +43,9 @@ _EMPTY = dict.fromkeys((*COLUMNS, SURPLUS), "")
 
 
 def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
-    """Append the mark in a row to the file of its grader, and return what counts for the student
-    now.
+    """Append the mark in a row to the file of its grader.
+
+    Return what counts for the student now.
 
     Raises InputError.
     """
@@ -62,6 +64,7 @@ def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
 
 def mark_missing(gradebook: Path, row: Cells, warn: Warn) -> str:
     """Give a final mark to all students who submitted nothing and have none; return how many.
+
     Raises InputError.
     """
     if row["criterion"] != TOTAL or row["points"] in ("", WITHDRAWN):
@@ -81,8 +84,9 @@ def mark_missing(gradebook: Path, row: Cells, warn: Warn) -> str:
 
 
 def _unassigned(grades: Sequence[StudentGrade]) -> Iterator[str]:
-    """Yield which submissions have no student for certain: one of them may be that of a student
-    who has none.
+    """Yield which submissions have no student for certain.
+
+    One of them may be that of a student who has none.
     """
     visitors = (
         one.stored for one in grades if Reason.NOT_ON_ROSTER in one.concerns and not one.is_gone
@@ -100,8 +104,9 @@ def _unassigned(grades: Sequence[StudentGrade]) -> Iterator[str]:
 
 
 def import_marks(gradebook: Path, file: Path, by: str) -> str:
-    """Append the marks in a CSV file; return how many. Raises InputError, and records none, if a
-    row is wrong.
+    """Append the marks in a CSV file; return how many.
+
+    Raises InputError, and records none, if a row is wrong.
     """
     book = Gradebook(gradebook)
     answers = {}
@@ -123,8 +128,9 @@ def _mark_import(book: Gradebook) -> MarkImport:
 
 
 def _append_marks(book: Gradebook, marks: Iterable[Mark], by: str) -> Gradebook:
-    """Append marks to the file of a grader, and return the class with them; its grades are
-    written.
+    """Append marks to the file of a grader, and return the class with them.
+
+    Its grades are written.
     """
     new = [
         one._replace(by=one.by or by, time=book.marks.next_time((one.student, one.criterion)))

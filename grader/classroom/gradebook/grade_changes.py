@@ -46,8 +46,9 @@ class Change(NamedTuple):
 
 
 class Snapshot(NamedTuple):
-    """A run of a gradebook: its grades and the newest results until then; the names of students
-    are those of now.
+    """A run of a gradebook: its grades and the newest results until then.
+
+    The names of students are those of now.
     """
 
     run: Run
@@ -58,8 +59,9 @@ class Snapshot(NamedTuple):
 
 
 def snapshot(folder: Path, number: int | None) -> Snapshot:
-    """Return a run of a gradebook, by default the newest one with the current grades. Raises
-    InputError.
+    """Return a run of a gradebook, by default the newest one with the current grades.
+
+    Raises InputError.
     """
     book = Gradebook(folder)
     student_names, grades, early = dict[str, str](), dict[str, RunGrade](), set[str]()
@@ -79,8 +81,10 @@ def snapshot(folder: Path, number: int | None) -> Snapshot:
 
 
 def newest_changes(folder: Path, number: int | None) -> tuple[Snapshot, Snapshot, list[Change]]:
-    """Return the newest run before another one, by default before now, with other grades, then
-    that other one, and what changed. Raises InputError.
+    """Return the newest run with other grades, the one to compare, and what changed.
+
+    The newest run is one before another one, by default before now, which comes second. Raises
+    InputError.
 
     If no run has other grades, the first one is returned.
     """
@@ -94,9 +98,9 @@ def newest_changes(folder: Path, number: int | None) -> tuple[Snapshot, Snapshot
         )
     for run in reversed(earlier):
         old = snapshot(folder, run)
-        found = list(changes(old, new))
-        if found:
-            return old, new, found
+        changed = list(changes(old, new))
+        if changed:
+            return old, new, changed
     return snapshot(folder, 1), new, []
 
 

@@ -1,5 +1,6 @@
-"""A gradebook: the grades of a class, computed from the results, the rubric, the roster and the
-marks of people.
+"""A gradebook: the grades of a class.
+
+They are computed from the results, the rubric, the roster and the marks of people.
 
 Last, the grades as a table, one row a student: `grades.csv`, and `export csv`, which people may
 change.
@@ -55,16 +56,18 @@ _LAST = (
 
 
 class Gradebook:
-    """A class in a gradebook: iterating yields the grade of every student, in the order of the
-    keys.
+    """A class in a gradebook.
+
+    Iterating yields the grade of every student, in the order of the keys.
 
     `batch` ends with one, and every other command on a class begins with one. It keeps nothing: the
     grades are computed again from the files of its folder.
     """
 
     def __init__(self, folder: Path, run: Run | None = None, answers: Path | None = None) -> None:
-        """`run` is one that is not in the file yet; `answers` is the file of the model answers, for
-        those who grade.
+        """`run` is one that is not in the file yet.
+
+        `answers` is the file of the model answers, for those who grade.
         """
         names.check_gradebook(folder)
         self.folder, self.settings = folder, read_settings(folder)
@@ -129,8 +132,8 @@ class Gradebook:
                     continue
                 others[key] = total
             named = zip(RunGrade._fields[1:], more, strict=True)
-            if found := {name: value for name, value in named if value}:
-                details[key] = found
+            if present := {name: value for name, value in named if value}:
+                details[key] = present
         return self.run._replace(
             totals=totals,
             others=others,
@@ -151,36 +154,40 @@ class Gradebook:
             marks[TOTAL] = grade.final.value
         if grade.obstacle is Reason.PENDING:
             pending = format_points(grade.pending)
-        own_deadline = self.marks.counting.get((student.key, DEADLINE))
-        deadline = student.due
-        if own_deadline is not None:
-            deadline = own_deadline.value
-        elif student.extension_days:
-            deadline = f"{deadline} extension {student.extension_days:g}".lstrip()
         return RunGrade(
             grade.total_text or None,
             grade.obstacle.name if grade.obstacle is not None else "",
             pending,
             late.days,
             format_points(late.points) if late.points else "",
-            deadline,
+            self._deadline_of(student),
             marks,
         )
+
+    def _deadline_of(self, student: Student) -> str:
+        """Return a student's own deadline as a run records it; empty without one."""
+        own_deadline = self.marks.counting.get((student.key, DEADLINE))
+        if own_deadline is not None:
+            return own_deadline.value
+        if student.extension_days:
+            return f"{student.due} extension {student.extension_days:g}".lstrip()
+        return student.due
 
     def grade(self, key: str) -> StudentGrade:
         """Return the grade of the student with a key."""
         return self._grade(key, self.results.of(key))
 
     def student(self, key: str, stored: StoredResult | None) -> Student:
-        """Return a student as the roster has it, completed by the LMS ids in the names of the
-        submission.
+        """Return a student as the roster has it.
+
+        It is completed by the LMS ids in the names of the submission.
         """
         person: dict[str, Any] = dict(stored.person) if stored is not None else {}
-        found = self._on_roster.get(key)
-        if found is None:
+        listed = self._on_roster.get(key)
+        if listed is None:
             return Student(key, **person, is_on_roster=self.roster is None)
-        return found._replace(
-            **{name: value for name, value in person.items() if not getattr(found, name)}
+        return listed._replace(
+            **{name: value for name, value in person.items() if not getattr(listed, name)}
         )
 
     def report(self, stored: StoredResult) -> Report:
@@ -199,8 +206,9 @@ class Gradebook:
         return Report(submission, self.rubric, stored.parts, without_gifts(results, submission))
 
     def reopened(self, stored: StoredResult) -> Submission | None:
-        """Return a submission as it was graded; None if it has moved or changed since, or cannot be
-        read.
+        """Return a submission as it was graded.
+
+        None if it has moved or changed since, or cannot be read.
         """
         settings = self.settings
         try:
@@ -269,7 +277,7 @@ class Gradebook:
 
     def _lateness(self, student: Student, stored: StoredResult, report: Report) -> Lateness:
         """Return the lateness; what the roster says counts before what the LMS says."""
-        own = self.marks.counting.get((stored.student, DEADLINE))
+        own_deadline = self.marks.counting.get((stored.student, DEADLINE))
         times = student._replace(
             is_late=stored.is_late if student.is_late is None else student.is_late,
             submitted=student.submitted or stored.submitted,
@@ -278,12 +286,17 @@ class Gradebook:
             else student.days_late,
         )
         return lateness(
-            self.rubric, times, report.score, self.due, own.value if own is not None else ""
+            self.rubric,
+            times,
+            report.score,
+            self.due,
+            own_deadline.value if own_deadline is not None else "",
         )
 
     def with_marks(self, report: Report, stored: StoredResult) -> tuple[Report, tuple[str, ...]]:
-        """Return a report with marks and comments, and the criteria that were marked before the
-        submission changed.
+        """Return a report with marks and comments, and the criteria that were marked early.
+
+        These were marked before the submission changed.
         """
         if stored.student not in self._marked:
             return report, ()
@@ -327,8 +340,9 @@ def grade_table(
 
 
 def points_of(book: Gradebook, grade: StudentGrade) -> dict[str, str]:
-    """Return the cells of a student that `mark --import` takes for marks, by criterion and for the
-    total.
+    """Return the cells of a student that `mark --import` takes for marks.
+
+    They are by criterion and for the total.
     """
     points = dict.fromkeys((row.id for row in book.rubric.criteria), "")
     if grade.stored is not None and not grade.is_excused:

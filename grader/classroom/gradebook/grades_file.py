@@ -13,8 +13,9 @@ _PRIVATE = 0o600
 
 
 def write_grades(book: Gradebook, grades: Iterable[StudentGrade] | None = None) -> None:
-    """Write the grades of a class, by default the current ones, into its gradebook. Raises
-    InputError.
+    """Write the grades of a class, by default the current ones, into its gradebook.
+
+    Raises InputError.
     """
     table = write_table(*grade_table(book, book if grades is None else grades))
     save(book.folder / names.GRADES, table, book.settings.roots(book.folder), _PRIVATE)

@@ -1,5 +1,6 @@
-"""What a person decides: the items of a class, each a criterion of the students whose answer is
-the same.
+"""What a person decides: the items of a class.
+
+Each is a criterion of the students whose answer is the same.
 """
 
 from collections import defaultdict
@@ -40,8 +41,9 @@ class ReviewStudent(NamedTuple):
 
     @property
     def order(self) -> tuple[int, str, str]:
-        """What students are sorted by: the number of an anonymous one, else the name and the
-        key.
+        """What students are sorted by.
+
+        This is the number of an anonymous one, else the name and the key.
         """
         return self.number, "" if self.number else self.label.casefold(), self.student.key
 
@@ -56,8 +58,9 @@ class ReviewStudent(NamedTuple):
 
 
 class ReviewItem(NamedTuple):
-    """A criterion of the students whose answers are equal: one mark serves all. The first student's
-    is shown.
+    """A criterion of the students whose answers are equal: one mark serves all.
+
+    The first student's is shown.
 
     `answer` is the key of the answer, empty without one. `also` are other criteria of these
     students that are open for the same reason: a page shows them together.
@@ -75,8 +78,9 @@ class ReviewItem(NamedTuple):
 
     @property
     def view(self) -> str:
-        """A text that tells whether the item is as a page shows it, without the names of its
-        students.
+        """A text that tells whether the item is as a page shows it.
+
+        Without the names of its students.
         """
         shown = []
         for member in self.members:
@@ -91,8 +95,9 @@ class ReviewItem(NamedTuple):
 
     @property
     def reason(self) -> tuple[object, ...]:
-        """What items have in common that are shown together: why no check could decide them, and
-        the students.
+        """What items have in common that are shown together.
+
+        This is why no check could decide them, and the students.
         """
         _, status, why, *_ = self.members[0].stored.results.get(
             self.criterion.id, (None, "pending", "", "")
@@ -109,8 +114,9 @@ class ReviewFilter(NamedTuple):
     state: str = UNMARKED
 
     def members(self, item: ReviewItem, kept: Collection[Key] = ()) -> tuple[ReviewStudent, ...]:
-        """Return the students of an item that are shown; those in `kept` whatever their state
-        is.
+        """Return the students of an item that are shown.
+
+        Those in `kept` whatever their state is.
         """
         if self.criterion not in ("", item.criterion.id):
             return ()
@@ -127,8 +133,9 @@ class ReviewFilter(NamedTuple):
 def review_items(
     book: Gradebook, *, is_anonymous: bool = False, with_final: bool = False
 ) -> dict[Place, ReviewItem]:
-    """Return what needs manual grading, and what else has a mark: in the rubric's order, each
-    criterion by student.
+    """Return what needs manual grading, and what else has a mark.
+
+    In the rubric's order, each criterion by student.
 
     Those without an answer are the last item of a criterion. Unreadable submissions are omitted:
     they need a fix, not points. So are criteria that the rubric adjusts, and students with a final

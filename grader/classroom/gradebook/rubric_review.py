@@ -1,5 +1,7 @@
-"""What a rubric did to a class, before grades go out: criteria that all students pass or fail, that
-need manual grading, and equal robots with different points.
+"""What a rubric did to a class, before grades go out.
+
+Criteria that all students pass or fail, that need manual grading, and equal robots with different
+points.
 """
 
 from collections.abc import Sequence
@@ -15,8 +17,9 @@ _SAME_ROBOT = ("the same file", "the same robot")
 
 
 class _UnlikeGrades(NamedTuple):
-    """Students with equal robots, their automatic points of the robot, and the criteria that
-    differ.
+    """Students with equal robots and unlike grades.
+
+    It has their automatic points of the robot, and the criteria that differ.
     """
 
     students: tuple[str, ...]
@@ -80,8 +83,9 @@ def review_rubric(book: Gradebook) -> RubricReview:
 def _unlike_grades(
     book: Gradebook, figures: ClassStatistics, grades: Sequence[StudentGrade]
 ) -> list[_UnlikeGrades]:
-    """Return the groups of students whose robots are equal, and whose criteria of the robot are
-    not.
+    """Return the groups of students whose robots are equal, but not their criteria.
+
+    The criteria are those of the robot.
     """
     of_robot = [row.id for row in book.criteria if row.check.subject in ("robot", "urdf")]
     by_key = {grade.student.key: grade for grade in grades}

@@ -1,5 +1,6 @@
-"""Statistics of a class: the grades as they are published, each criterion, the most common
-mistakes, the sections.
+"""Statistics of a class.
+
+The grades as they are published, each criterion, the most common mistakes, the sections.
 """
 
 from collections import Counter, defaultdict
@@ -35,8 +36,9 @@ class Summary(NamedTuple):
 
 
 class CriterionFigures(NamedTuple):
-    """The students by each of COUNTS, and the mean share of the points that they earned; None if
-    open or adjusted.
+    """The students by each of COUNTS, and the mean share of the points that they earned.
+
+    None if open or adjusted.
     """
 
     criterion: Criterion
@@ -45,8 +47,9 @@ class CriterionFigures(NamedTuple):
 
 
 class _CommonMistake(NamedTuple):
-    """A mistake that several students made in a criterion; of one that is measured, how far it is
-    off.
+    """A mistake that several students made in a criterion.
+
+    Of one that is measured, how far it is off.
     """
 
     criterion: str
@@ -55,8 +58,9 @@ class _CommonMistake(NamedTuple):
 
 
 class CriterionMistakes(NamedTuple):
-    """The mistakes in a criterion: of how many students, of how many kinds, and the most common
-    ones.
+    """The mistakes in a criterion.
+
+    Of how many students, of how many kinds, and the most common ones.
     """
 
     criterion: str
@@ -66,8 +70,9 @@ class CriterionMistakes(NamedTuple):
 
 
 class ClassStatistics(NamedTuple):
-    """The figures of a class. Students who are not on the roster, or whose submission is gone, are
-    in `attention` only.
+    """The figures of a class.
+
+    Students who are not on the roster, or whose submission is gone, are in `attention` only.
 
     A grade counts if it is a final mark, or that of a graded submission, after marks, adjustments
     and the late penalty; points that still need manual grading are not in it yet.
@@ -99,11 +104,7 @@ def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatisti
     """Return the statistics of the grades of a class."""
     everyone = list(grades)
     present = [grade.stored for grade in everyone if grade.stored is not None and not grade.is_gone]
-    enrolled = [
-        grade
-        for grade in everyone
-        if grade.student.is_on_roster and (grade.has_final or not grade.is_gone)
-    ]
+    enrolled = _find_enrolled(everyone)
     statuses = Counter(grade.status for grade in enrolled)
     counted = [grade for grade in enrolled if grade.is_counted]
     totals = [grade.total or Decimal(0) for grade in counted]
@@ -123,6 +124,15 @@ def statistics(book: Gradebook, grades: Iterable[StudentGrade]) -> ClassStatisti
         equal=equal_work(present, book.settings.handed_out),
         names={grade.student.key: grade.student.name for grade in everyone},
     )
+
+
+def _find_enrolled(grades: Iterable[StudentGrade]) -> list[StudentGrade]:
+    """Return the grades of students on the roster, without those whose submission is gone.
+
+    With a final mark, the submission may be gone.
+    """
+    on_roster = [grade for grade in grades if grade.student.is_on_roster]
+    return [grade for grade in on_roster if grade.has_final or not grade.is_gone]
 
 
 def _tenths(grades: Iterable[StudentGrade], maximum: Decimal) -> list[list[str]]:
@@ -145,8 +155,9 @@ def _sections(grades: Iterable[StudentGrade]) -> dict[str, Summary]:
 
 
 def _attention(grades: Iterable[StudentGrade]) -> dict[Reason, list[tuple[str, str]]]:
-    """Return the students who need attention, each with details, by reason in the order of
-    urgency.
+    """Return the students who need attention, each with details.
+
+    They are by reason, in the order of urgency.
     """
     concerned = defaultdict[Reason, list[tuple[str, str]]](list)
     for grade in grades:
@@ -195,9 +206,9 @@ def _criteria_figures(
         students = sorted(mistake.student for mistake in equal)
         causes[name].append(_CommonMistake(name, _words(equal), students))
     common = []
-    for name, own in causes.items():
-        count = sum(len(cause.students) for cause in own)
-        common.append(CriterionMistakes(name, count, len(own), own[:_MAX_CAUSES]))
+    for name, own_causes in causes.items():
+        count = sum(len(cause.students) for cause in own_causes)
+        common.append(CriterionMistakes(name, count, len(own_causes), own_causes[:_MAX_CAUSES]))
     common.sort(key=lambda one: (-one.students, one.criterion))
     return rows, common[:_MAX_MISTAKES]
 

@@ -17,8 +17,9 @@ _ON_TIME = Lateness()
 
 
 class Reason(StrEnum):
-    """Why a grade needs attention, the most urgent reason first; the last two only keep it from
-    being published.
+    """Why a grade needs attention, the most urgent reason first.
+
+    The last two only keep it from being published.
 
     UNCLEAR means that there are possible submissions, of which none was graded, GONE that the
     newest run did not find the submission, and OUTDATED that it was graded by another rubric or
@@ -61,8 +62,9 @@ def pending_words(points: Decimal) -> str:
 
 
 class SharedResult(Result):
-    """The result of a criterion in a class: most students share it, so what follows from it is
-    computed once.
+    """The result of a criterion in a class.
+
+    Most students share it, so what follows from it is computed once.
     """
 
     @cached_property
@@ -84,8 +86,9 @@ class SharedResult(Result):
 
     @cached_property
     def kinds(self) -> tuple[str, ...]:
-        """What it counts as in the figures of a class: a mark, a given point, or the status of the
-        check.
+        """What it counts as in the figures of a class.
+
+        This is a mark, a given point, or the status of the check.
         """
         if self.manual_mark is not None:
             return "marked", "decided"
@@ -165,8 +168,9 @@ class StudentGrade:
 
     @property
     def is_marked_early(self) -> bool:
-        """Whether the whole grade was decided when there was no submission: the mark has a time,
-        but no digest.
+        """Whether the whole grade was decided when there was no submission.
+
+        The mark has a time, but no digest.
         """
         mark = self.final if self.stored is not None and self.has_final else None
         return mark is not None and bool(mark.time) and not mark.submission
@@ -199,8 +203,9 @@ class StudentGrade:
 
     @cached_property
     def total(self) -> Decimal | None:
-        """The final mark, else the points after the late penalty; None for an excuse, and without a
-        submission.
+        """The final mark, else the points after the late penalty.
+
+        None for an excuse, and without a submission.
         """
         if self.has_final or self.stored is None:
             return self.final_points
@@ -215,8 +220,9 @@ class StudentGrade:
 
     @cached_property
     def is_undecided(self) -> bool:
-        """Whether nothing is decided yet: all criteria need manual grading, or nothing could be
-        graded.
+        """Whether nothing is decided yet.
+
+        All criteria need manual grading, or nothing could be graded.
         """
         if self.obstacle is None or self.has_final or self.total:
             return False
@@ -252,30 +258,36 @@ class StudentGrade:
     @cached_property
     def concerns(self) -> dict[Reason, str]:
         """Why a person should look at this grade, each reason with its details."""
-        reason, found = self.stored.reason if self.stored is not None else "", {*self.known}
-        if any(one.is_faulty for one in self.results):
-            found.add(Reason.FAILED)
-        if self.status == "unreadable" and self.pending:
-            found.add(Reason.UNREADABLE)
-        if self.status == "graded" and reason:
-            found.add(Reason.SEVERAL)
-        if self.stored is None and found.isdisjoint((Reason.UNCLEAR, Reason.DAMAGED)):
-            found.add(Reason.MISSING)
-        if self.has_final:
-            found -= _OBSTACLES - {Reason.GONE}
-        if self.older:
-            found.add(Reason.OLDER_MARKS)
-        if self.is_marked_early:
-            found.add(Reason.EARLY_MARK)
-        if self.late.is_guess and self.late.points:
-            found.add(Reason.UNKNOWN_TIME)
+        reason = self.stored.reason if self.stored is not None else ""
+        reasons = self._reasons(reason)
         details = dict.fromkeys((Reason.FAILED, Reason.UNREADABLE, Reason.SEVERAL), reason)
         details[Reason.OLDER_MARKS] = ", ".join(self.older)
         if self.final is not None:
             details[Reason.EARLY_MARK] = (
                 f"{self.final.value} instead of {format_points(self.score)}"
             )
-        return {one: details.get(one, "") for one in Reason if one in found}
+        return {one: details.get(one, "") for one in Reason if one in reasons}
+
+    def _reasons(self, reason: str) -> set[Reason]:
+        """Return why a person should look at this grade; `reason` is that of the result."""
+        reasons = {*self.known}
+        if any(one.is_faulty for one in self.results):
+            reasons.add(Reason.FAILED)
+        if self.status == "unreadable" and self.pending:
+            reasons.add(Reason.UNREADABLE)
+        if self.status == "graded" and reason:
+            reasons.add(Reason.SEVERAL)
+        if self.stored is None and reasons.isdisjoint((Reason.UNCLEAR, Reason.DAMAGED)):
+            reasons.add(Reason.MISSING)
+        if self.has_final:
+            reasons -= _OBSTACLES - {Reason.GONE}
+        if self.older:
+            reasons.add(Reason.OLDER_MARKS)
+        if self.is_marked_early:
+            reasons.add(Reason.EARLY_MARK)
+        if self.late.is_guess and self.late.points:
+            reasons.add(Reason.UNKNOWN_TIME)
+        return reasons
 
     @cached_property
     def obstacle(self) -> Reason | None:
@@ -304,8 +316,9 @@ class StudentGrade:
 
     @property
     def is_counted(self) -> bool:
-        """Whether the grade is in the figures of the class: also one that is open, if something
-        of it is decided.
+        """Whether the grade is in the figures of the class.
+
+        Also one that is open, if something of it is decided.
         """
         is_graded = self.status == "graded" and not self.is_gone and not self.is_undecided
         return self.student.is_on_roster and (is_graded or self.published is not None)

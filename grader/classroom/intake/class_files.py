@@ -1,5 +1,6 @@
-"""The folder or zip of a class, and each submission in it: the one that `grader grade` would see,
-and its digest.
+"""The folder or zip of a class, and each submission in it.
+
+It is the one that `grader grade` would see, and has its digest.
 
 Nothing is extracted.
 """
@@ -115,8 +116,9 @@ def open_class_submission(
 
 
 def digest_of_unread(root: str, paths: tuple[str, ...]) -> str:
-    """Return the hash of the bytes of files that are no submission; empty if they cannot be
-    read.
+    """Return the hash of the bytes of files that are no submission.
+
+    Empty if they cannot be read.
     """
     digest = sha256()
     try:
@@ -161,8 +163,9 @@ def _open_single(source: ClassListing, path: str, max_size: int) -> OpenedSubmis
 
 
 def _is_document(source: ClassListing, path: str) -> bool:
-    """Return whether a single file may hold answers or evidence, and is no URDF with the ending
-    .txt.
+    """Return whether a single file may hold answers or evidence.
+
+    It is no URDF with the ending .txt.
     """
     is_named = path.lower().endswith(_DOCUMENTS) and not source.is_folder(path)
     return is_named and not (path.lower().endswith(".txt") and _is_robot(source, path))
@@ -178,15 +181,17 @@ def _is_robot(source: ClassListing, path: str) -> bool:
 
 
 def _digest(name: str, max_size: int) -> "hashlib._Hash":
-    """Return a hash of the name, which is in the report, and of the limit for a URDF if it is not
-    the default.
+    """Return a hash of the name, which is in the report.
+
+    And of the limit for a URDF if it is not the default.
     """
     return sha256(repr(name if max_size == URDF_LIMIT else (name, max_size)).encode())
 
 
 def _opened_tree(name: str, shown: str, tree: Tree, max_size: int) -> OpenedSubmission:
-    """Return a submission of files, with the hash of all that it is read from: the files, the
-    ignored files, its name.
+    """Return a submission of files, with the hash of all that it is read from.
+
+    This is the files, the ignored files, and its name.
 
     Build folders are unseen on disk; in a zip they are ordinary folders if they have an entry of
     their own.

@@ -1,5 +1,6 @@
-"""The layouts of a class: what the names in a folder or zip say about each submission. No
-submission is opened.
+"""The layouts of a class: what the names in a folder or zip say about each submission.
+
+No submission is opened.
 
 - folders: a folder, archive or URDF for each student, with or without a prefix (GitHub's
   `lab6-{login}/`).
@@ -88,8 +89,9 @@ class NamedPath(NamedTuple):
         return self.upload, self.ending == "/", self.path
 
     def is_written_by(self, lms: str) -> bool:
-        """Return whether an LMS may have written the name: Canvas writes those of students in
-        lower case.
+        """Return whether an LMS may have written the name.
+
+        Canvas writes those of students in lower case.
         """
         return lms == "moodle" or self.student.name == self.student.name.lower()
 
@@ -123,8 +125,9 @@ class ClassFolder:
         return replace(self, children=self.listing.children(start), start=f"{start}/")
 
     def ignore(self, names: Iterable[str], reason: str = "is not named like a submission") -> None:
-        """Say why some names are no submissions; the reason continues a sentence that begins
-        with the name.
+        """Say why some names are no submissions.
+
+        The reason continues a sentence that begins with the name.
         """
         self.ignored.extend(f"{printable_path(self.start + name)} {reason}" for name in names)
 
@@ -140,16 +143,17 @@ def is_submission(name: str) -> bool:
 
 
 def readings_of(name: str, layout: str) -> list[NamedPath]:
-    """Return how a name can be read: in Canvas as team and 7, or team_7 and 101, of
-    team_7_101_555_lab6.zip.
+    """Return how a name can be read.
+
+    In Canvas as team and 7, or team_7 and 101, of team_7_101_555_lab6.zip.
     """
-    found = [_read_path(one) for one in _PATTERNS[layout].finditer(name)]
+    matches = [_read_path(one) for one in _PATTERNS[layout].finditer(name)]
     is_known = layout == "moodle" or bool(
-        found and not found[0].student.name
+        matches and not matches[0].student.name
     )  # an anonymous student's
     if is_known:
-        return found[:1]
-    return [one for one in found if _NAME_IN_CANVAS.fullmatch(one.student.name)]
+        return matches[:1]
+    return [one for one in matches if _NAME_IN_CANVAS.fullmatch(one.student.name)]
 
 
 def _read_path(match: re.Match[str]) -> NamedPath:
@@ -171,8 +175,9 @@ def _read_path(match: re.Match[str]) -> NamedPath:
 
 
 def entries_of(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
-    """Yield the submissions by their names; `aliases` are the numbers of which one is the
-    user's.
+    """Yield the submissions by their names.
+
+    `aliases` are the numbers of which one is the user's.
     """
     folder.list_refused()
     if layout == "folders":
@@ -197,8 +202,9 @@ def entries_of(folder: ClassFolder, layout: str) -> Iterator[NamedPath]:
 
 
 def names_in(children: Children) -> dict[str, re.Match[str]]:
-    """Return the names of the layout `folders` in a folder, each with what it tells; a folder
-    ends in a slash.
+    """Return the names of the layout `folders` in a folder, each with what it tells.
+
+    A folder ends in a slash.
     """
     folders = [f"{name}/" for name in children.folders if name not in BUILD_FOLDERS]
     matches = {}
@@ -233,45 +239,60 @@ def _without(prefix: str, name: str) -> str:
 
 
 def _prefix(names: Collection[str], folder: ClassFolder) -> str:
-    """Return the prefix of the assignment: the rubric's id, or what precedes the ids of most
-    students.
+    """Return the prefix of the assignment.
+
+    This is the rubric's id, or what precedes the ids of most students.
     """
-    knows, own = folder.people.knows, f"{folder.lab.lower()}-"
+    knows, own_prefix = folder.people.knows, f"{folder.lab.lower()}-"
     known = sum(map(knows, names))
-    if known < len(names) and len(own) > 1 and any(_without(own, name) != name for name in names):
-        return own
+    if (
+        known < len(names)
+        and len(own_prefix) > 1
+        and any(_without(own_prefix, name) != name for name in names)
+    ):
+        return own_prefix
     dashes = ((name, dash.end()) for name in names for dash in re.finditer("-", name))
     before = Counter(name[:end].lower() for name, end in dashes if knows(name[end:]))
     prefix, count = max(before.items(), key=lambda item: (item[1], item[0]), default=("", 0))
     return prefix if count > max(1, known) else ""
 
 
-def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
-    """Yield the submissions for one assignment with their times; raises InputError if there is
-    none of its name.
-    """
-    folder = course.inside("submitted") if "submitted" in course.children.folders else course
-    found: dict[str, list[str]] = defaultdict(list)
+def _students_by_assignment(folder: ClassFolder) -> dict[str, list[str]]:
+    """Return the students with a folder for each assignment, by its name."""
+    students_by_name: dict[str, list[str]] = defaultdict(list)
     for student in sorted(folder.children.folders):
         for name in folder.listing.children(folder.start + student).folders:
-            found[name].append(student)
-    if folder.lab in found:
+            students_by_name[name].append(student)
+    return students_by_name
+
+
+def nbgrader(course: ClassFolder) -> Iterator[NamedPath]:
+    """Yield the submissions for one assignment with their times.
+
+    Raises InputError if there is none of its name.
+    """
+    folder = course.inside("submitted") if "submitted" in course.children.folders else course
+    students_by_name = _students_by_assignment(folder)
+    if folder.lab in students_by_name:
         wanted = [folder.lab]
     else:
-        wanted = [name for name in found if folded(name) == folded(folder.lab)]
+        wanted = [name for name in students_by_name if folded(name) == folded(folder.lab)]
     if len(wanted) != 1:
         named = (
-            enumerated([printable_path(name) for name in sorted(found)], _MAX_ASSIGNMENTS) or "none"
+            enumerated(
+                [printable_path(name) for name in sorted(students_by_name)], _MAX_ASSIGNMENTS
+            )
+            or "none"
         )
         raise InputError(f"name the assignment to grade with --assignment; there are: {named}")
     lab = wanted[0]
     folder.ignore(
-        {*folder.children.folders}.difference(found[lab]),
+        {*folder.children.folders}.difference(students_by_name[lab]),
         f"has no submission for {printable_path(lab)}",
     )
     folder.ignore(folder.children.files)
     folder.list_refused()
-    for student in found[lab]:
+    for student in students_by_name[lab]:
         path = f"{folder.start}{student}/{lab}"
         time = _time_of(folder, path)
         yield NamedPath(
@@ -295,8 +316,9 @@ def _time_of(folder: ClassFolder, path: str) -> str:
 
 
 def teams(folder: ClassFolder) -> Iterator[NamedPath]:
-    """Yield the submissions of the students in lab folders, and all other submissions as a
-    whole.
+    """Yield the submissions of the students in lab folders.
+
+    And all other submissions as a whole.
     """
     whole = []
     for team in sorted(folder.children.folders):

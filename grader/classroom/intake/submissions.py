@@ -1,5 +1,6 @@
-"""The submissions of a class, one a student, in one or several folders or zips, and whose each of
-them is.
+"""The submissions of a class, one a student, and whose each of them is.
+
+They are in one or several folders or zips.
 
 The names prove a layout. All files of a student are one submission, of several versions the last.
 Submissions are matched with students by the roster's column `submission`, ids, names and groups.
@@ -79,8 +80,9 @@ def read_class(
     ignore: Sequence[str] = (),
     gradebook: Path | None = None,
 ) -> Intake:
-    """Return the submissions in class folders or zips, the sections of one class; raises InputError
-    if there are none.
+    """Return the submissions in class folders or zips, the sections of one class.
+
+    Raises InputError if there are none.
 
     `assignment` is the one to grade in nbgrader; `rubric_id` is the name of the lab in names of
     folders, and `folders` are the names of its own (default: its id). `ignore` names entries that
@@ -95,7 +97,7 @@ def read_class(
     if not folders and rubric_id:
         folders = (rubric_id,)
     labs = LabFolders(folders)
-    found: list[ClassSubmission] = []
+    submissions: list[ClassSubmission] = []
     layouts: dict[str, None] = {}
     for root, (path, (listing, _)) in enumerate(zip(paths, roots, strict=True)):
         lab, is_explicit = assignment or rubric_id, layout != "auto"
@@ -103,15 +105,7 @@ def read_class(
             listing, listing.children(""), "", owners.people, labs, lab, is_explicit, owners.ignored
         )
         folder = _inner_class(_without_gradebook(top, path, gradebook))
-        chosen = layout
-        if not is_explicit:
-            chosen = "nbgrader" if assignment else _layout_of(folder)
-        if chosen == "teams" and not is_explicit and "package.xml" in folder.children.files:
-            what = (
-                f"{printable_path(path)} is one submission and not a class: it contains a "
-                "package.xml"
-            )
-            raise InputError(f"{what} (grade it with `grader grade {shell_quoted(path)}`)")
+        chosen = layout if is_explicit else _choose_layout(folder, path, assignment)
         some = list(
             _submissions_in(
                 folder, _without_ignored(folder, _paths_in(folder, chosen), ignore), root
@@ -122,14 +116,28 @@ def read_class(
             raise InputError(f"there is no submission in {printable_path(path)}{example}")
         has_teams = is_explicit or chosen != "teams" or any(one.student.group for one in some)
         layouts[chosen if has_teams else "folders"] = None
-        found += some
-    owners.find(found)
+        submissions += some
+    owners.find(submissions)
     return owners.intake(" and ".join(layouts))
 
 
+def _choose_layout(folder: ClassFolder, path: Path, assignment: str) -> str:
+    """Return the layout of a class folder; raise InputError for a single submission."""
+    if assignment:
+        return "nbgrader"
+    layout = _layout_of(folder)
+    if layout == "teams" and "package.xml" in folder.children.files:
+        what = (
+            f"{printable_path(path)} is one submission and not a class: it contains a package.xml"
+        )
+        raise InputError(f"{what} (grade it with `grader grade {shell_quoted(path)}`)")
+    return layout
+
+
 def _names_of_roots(paths: Sequence[Path]) -> list[str]:
-    """Return a name for each class folder, if necessary with the folder around it. Raises
-    InputError.
+    """Return a name for each class folder, if necessary with the folder around it.
+
+    Raises InputError.
     """
     for count in (1, 2):
         names = ["/".join(path.resolve().parts[-count:]) for path in paths]
@@ -170,9 +178,9 @@ def _without_gradebook(folder: ClassFolder, path: Path, gradebook: Path | None) 
     """
     if gradebook is None or gradebook.resolve().parent != path.resolve():
         return folder
-    own = [name for name in folder.children.folders if name == gradebook.resolve().name]
-    folder.ignore(own, "is the gradebook")
-    others = [name for name in folder.children.folders if name not in own]
+    own_folders = [name for name in folder.children.folders if name == gradebook.resolve().name]
+    folder.ignore(own_folders, "is the gradebook")
+    others = [name for name in folder.children.folders if name not in own_folders]
     return replace(folder, children=folder.children._replace(folders=others))
 
 
@@ -214,8 +222,9 @@ def _inner_class(folder: ClassFolder) -> ClassFolder:
 
 
 def _only_folder(folder: ClassFolder) -> str:
-    """Return the only folder in a folder without other submissions; empty if there is none, or
-    it is a student's.
+    """Return the only folder in a folder without other submissions.
+
+    Empty if there is none, or it is a student's.
     """
     name, *others = folder.entries or [""]
     is_student = (
@@ -234,8 +243,8 @@ def _submissions_in(
     folders = frozenset(folder.children.folders)
     older = list[tuple[str, str]]()  # each with the path that counts
     while of_student:  # of a large class not all is kept twice
-        (student, _), own = of_student.popitem()
-        kept = _last_versions(folder, own, older)
+        (student, _), own_entries = of_student.popitem()
+        kept = _last_versions(folder, own_entries, older)
         is_late, submitted = any(one.is_late for one in kept), kept[0].submitted
         yield ClassSubmission(
             student, root, *_paths_and_names(folder, kept, folders), is_late, submitted
@@ -262,12 +271,12 @@ def _last_versions(
 
     `robot-1.urdf` is a later `robot.urdf` only if there is a `robot.urdf`.
     """
-    own = {entry.file for entry in entries}
+    own_files = {entry.file for entry in entries}
     versions: dict[tuple[str, str], list[NamedPath]] = defaultdict(list)
     for entry in entries:
         numbered = _NUMBERED.fullmatch(entry.file) if entry.upload else None
         first = numbered[1] + numbered[2] if numbered else ""
-        versions[entry.plugin, first if first in own else entry.file].append(entry)
+        versions[entry.plugin, first if first in own_files else entry.file].append(entry)
     kept = []
     for _, copies in sorted(versions.items()):
         *others, last = sorted(copies, key=lambda entry: entry.order)
@@ -316,17 +325,18 @@ def _only_file(listing: ClassListing, top: str) -> str:
 
 def _files_below(listing: ClassListing, top: str) -> list[str]:
     """Return the paths of the files below a folder, in order."""
-    found, folders = list[str](), [top]
+    files, folders = list[str](), [top]
     for here in folders:
         children = listing.children(here)
-        found += [f"{here}/{name}" for name in children.files]
+        files += [f"{here}/{name}" for name in children.files]
         folders += [f"{here}/{name}" for name in children.folders]
-    return sorted(found)
+    return sorted(files)
 
 
 class _Owners:
-    """The submission of each student, by the index on the roster; those that match none; those
-    that are ambiguous.
+    """The submission of each student, by the index on the roster.
+
+    Those that match none; those that are ambiguous.
     """
 
     def __init__(self, roster: Roster | None, roots: Sequence[tuple[ClassListing, str]]) -> None:
@@ -339,21 +349,22 @@ class _Owners:
         self._visitors: list[ClassSubmission] = []
         self._unmatched: list[str] = []
 
-    def find(self, found: Sequence[ClassSubmission]) -> None:
-        """Assign all submissions: what a person has assigned decides, then ids and names, then
-        groups.
+    def find(self, submissions: Sequence[ClassSubmission]) -> None:
+        """Assign all submissions.
+
+        What a person has assigned decides, then ids and names, then groups.
         """
-        if all(one.student.key.startswith("anon_") for one in found):
+        if all(one.student.key.startswith("anon_") for one in submissions):
             self.notes.append(_ANONYMOUS)
             self._unclear.update(range(len(self.people.students)))
         if not self._has_roster:
-            self._visitors = [*found]
+            self._visitors = [*submissions]
             return
-        self._assign(found)
+        self._assign(submissions)
         claims: dict[int, dict[ClassSubmission, int]] = defaultdict(dict)
         possible: dict[ClassSubmission, tuple[int, ...]] = {}
         for one in sorted(
-            set(found).difference(self._owned.values()),
+            set(submissions).difference(self._owned.values()),
             key=lambda one: (one.student.key, one.root, one.paths),
         ):
             match = self.people.match(one.student)
@@ -371,8 +382,9 @@ class _Owners:
     def _decide(
         self, claims: Mapping[int, Mapping[ClassSubmission, int]]
     ) -> tuple[set[ClassSubmission], set[ClassSubmission]]:
-        """Give each student the submission with the only best claim; return those given, and
-        those equally good.
+        """Give each student the submission with the only best claim.
+
+        Return those given, and those equally good.
         """
         given, contested = set[ClassSubmission](), set[ClassSubmission]()
         for index, claimed in claims.items():
@@ -391,17 +403,18 @@ class _Owners:
         return given, contested - given
 
     def _holds_students(self, one: ClassSubmission) -> bool:
-        """Return whether two students or more have submissions in a folder: it is a section, not
-        a team's work.
+        """Return whether two students or more have submissions in a folder.
+
+        It then is a section, not a team's work.
         """
         inner = self.roots[one.root][0].children(one.paths[0], 1000)
-        return sum(self.people.knows(found["login"]) for found in names_in(inner).values()) > 1
+        return sum(self.people.knows(match["login"]) for match in names_in(inner).values()) > 1
 
-    def _assign(self, found: Iterable[ClassSubmission]) -> None:
+    def _assign(self, submissions: Iterable[ClassSubmission]) -> None:
         """Give students what the roster's column `submission` names."""
         wanted = {index: one for index, one in enumerate(self.people.students) if one.submission}
         places: dict[str, set[ClassSubmission]] = defaultdict(set)
-        for one in found if wanted else ():
+        for one in submissions if wanted else ():
             for path in one.paths:
                 places[self._shown(one, path)].add(one)
         for index, student in wanted.items():
@@ -428,8 +441,9 @@ class _Owners:
                 yield ClassSubmission(Student(""), root, (path,))
 
     def _shown(self, one: ClassSubmission, path: str = "") -> str:
-        """Return a path as a person can write it on the roster, of several class folders with
-        the name of its own.
+        """Return a path as a person can write it on the roster.
+
+        Of several class folders with the name of its own.
         """
         return _plain_path(self._path(one, path or one.paths[0]))
 
@@ -440,8 +454,9 @@ class _Owners:
         return f"{self.roots[submission.root][1]}/{path}"
 
     def _list(self, one: ClassSubmission, students: Sequence[int], *, is_contested: bool) -> None:
-        """List a submission without an owner, and what assigns it; a contested one is not
-        graded.
+        """List a submission without an owner, and what assigns it.
+
+        A contested one is not graded.
         """
         if not is_contested:
             self._visitors.append(one)
@@ -457,9 +472,24 @@ class _Owners:
         advice = f"write {place} in the column `submission` of its student{row}"
         self._unmatched.append(f"{self._shown(one)} {reason}; to assign it, {advice}")
 
+    def _submissions_of_visitors(self) -> Iterator[ClassSubmission]:
+        """Yield the submissions that nobody on the roster owns, each with a key of its own."""
+        counts = Counter(visitor.student.key for visitor in self._visitors)
+        taken = {plain(student.key) for student in self.people.students}
+        for submission in self._visitors:
+            key = submission.student.key
+            if counts[key] > 1 or not key.isprintable() or plain(key) in taken:
+                key = _path_key(self._path(submission, submission.paths[0]))
+            visitor = self._visitor(submission.student, key)
+            if visitor == submission.student:
+                yield submission
+            else:
+                yield submission._replace(student=visitor)
+
     def intake(self, layout: str) -> Intake:
-        """Return what was found, of a student on the roster only the LMS's name and ids: other
-        names are anyone's.
+        """Return what was found.
+
+        Of a student on the roster only the LMS's name and ids: other names are anyone's.
         """
         students = self.people.students
         unclear = frozenset(students[index].key for index in self._unclear - self._owned.keys())
@@ -470,17 +500,7 @@ class _Owners:
             name = "" if claim.canvas else claim.name
             owner = claim._replace(key=students[index].key, name=name, login="")
             submissions.append(submission._replace(student=owner))
-        counts = Counter(visitor.student.key for visitor in self._visitors)
-        taken = {plain(student.key) for student in students}
-        for submission in self._visitors:
-            key = submission.student.key
-            if counts[key] > 1 or not key.isprintable() or plain(key) in taken:
-                key = _path_key(self._path(submission, submission.paths[0]))
-            visitor = self._visitor(submission.student, key)
-            if visitor == submission.student:
-                submissions.append(submission)
-            else:
-                submissions.append(submission._replace(student=visitor))
+        submissions += self._submissions_of_visitors()
         submissions.sort(key=lambda submission: submission.student.key)
         unmatched, ignored = sorted(self._unmatched), first_lines(sorted(self.ignored), _MAX_LINES)
         return Intake(
@@ -488,8 +508,9 @@ class _Owners:
         )
 
     def _visitor(self, claim: Student, key: str) -> Student:
-        """Return the student of a submission that nobody on the roster owns; the student may have
-        chosen the name where Canvas has an id.
+        """Return the student of a submission that nobody on the roster owns.
+
+        The student may have chosen the name where Canvas has an id.
         """
         has_lms_id = bool(claim.canvas or claim.aliases)
         name = "" if has_lms_id else claim.name
@@ -515,8 +536,9 @@ def _csv_cell(text: str) -> str:
 
 
 def _path_key(path: str) -> str:
-    """Return the key of a submission whose name cannot be one: `./` begins no name that a student
-    can give a folder.
+    """Return the key of a submission whose name cannot be one.
+
+    `./` begins no name that a student can give a folder.
     """
     if path.isprintable():
         return f"./{path}"

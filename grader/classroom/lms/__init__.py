@@ -1,3 +1,4 @@
-"""Files of learning management systems: a gradebook filled with the grades, and feedback for the
-students.
+"""Files of learning management systems.
+
+These are a gradebook filled with the grades, and feedback for the students.
 """

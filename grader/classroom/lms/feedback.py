@@ -1,5 +1,6 @@
-"""What students get back through an LMS: a comment in HTML on their grade, or their report in a zip
-of all.
+"""What students get back through an LMS.
+
+This is a comment in HTML on their grade, or their report in a zip of all.
 
 Moodle stores the comment unchanged and has it in the next worksheet
 (mod/assign/feedback/comments/locallib.php). An HTML comment at its end holds a hash of the words:
@@ -41,8 +42,9 @@ _ARCHIVES = (".zip", ".tar.gz", ".tgz")
 
 
 def lost_points(results: Iterable[Result]) -> Iterator[str]:
-    """Yield a line for each criterion below its maximum, with a comment, or with points that no
-    check decides.
+    """Yield a line for each criterion below its maximum.
+
+    Also for one with a comment, or with points that no check decides.
     """
     for result in results:
         mark, criterion = result.manual_mark, result.criterion
@@ -65,8 +67,9 @@ def lost_points(results: Iterable[Result]) -> Iterator[str]:
 
 
 def comment_html(opening: str, lines: Sequence[str]) -> str:
-    """Return a comment in one line: `opening`, which begins with Grade, then a list of lines, of
-    many the first.
+    """Return a comment in one line.
+
+    First `opening`, which begins with Grade, then a list of lines, of many the first.
     """
     items = "".join(f"<li>{_escape(line)}</li>" for line in first_lines(lines, MAX_LINES))
     text = f"<p>{_escape(opening)}</p>"
@@ -77,8 +80,9 @@ def comment_html(opening: str, lines: Sequence[str]) -> str:
 
 
 def is_own_comment(text: str) -> bool:
-    """Return whether a comment is from `comment_html`, its words unchanged; tags and spaces may
-    have changed.
+    """Return whether a comment is from `comment_html`, its words unchanged.
+
+    Tags and spaces may have changed.
     """
     mark = _MARK.search(text)
     rest = _MARK.sub("", text, count=1)
@@ -120,8 +124,9 @@ def moodle_names(students: Collection[Student], report: str) -> _Names:
 
 
 def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], report: str) -> _Names:
-    """Return the names for students and the paths of their files; a group that has the same files
-    shares one.
+    """Return the names for students and the paths of their files.
+
+    A group that has the same files shares one.
     """
     ending = PurePosixPath(report).suffix
     users = defaultdict[tuple[str, ...], set[str]](set)
@@ -153,8 +158,9 @@ def canvas_names(submissions: Collection[tuple[Student, tuple[str, ...]]], repor
 def write_feedback(
     reports: Mapping[str, bytes], names: Mapping[str, str], report: str
 ) -> tuple[bytes, dict[str, str]]:
-    """Return the zip of the reports by key, whose bytes depend on them only, and why a student's is
-    not in it.
+    """Return the zip of the reports by key, and why a student's is not in it.
+
+    Its bytes depend on the reports only.
     """
     contents = defaultdict[str, set[bytes]](set)
     for key, data in reports.items():

@@ -74,8 +74,9 @@ class Filled(NamedTuple):
 
 
 class _GradeFile(NamedTuple):
-    """A grade file: the columns by role (`grade` is that of the lab), and its maximum as it is
-    written.
+    """A grade file.
+
+    It has the columns by role (`grade` is that of the lab), and its maximum as it is written.
     """
 
     table: Table
@@ -141,8 +142,9 @@ class _GradeFile(NamedTuple):
 
 
 def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: FillOptions) -> Filled:
-    """Return a grade file with the grades in the column of the lab; raises InputError if it is not
-    such a file.
+    """Return a grade file with the grades in the column of the lab.
+
+    Raises InputError if it is not such a file.
     """
     file = _read_grade_file(data, form, options)
     header = file.table.titles[file.roles["grade"]]
@@ -162,11 +164,7 @@ def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: Fil
             removed.add(row)
         elif new_row is not row:
             changed[row] = new_row
-    matched = set(grade_of_row.values())
-    for index, grade in enumerate(grades):
-        if index not in matched and _grade_text(grade, file):
-            who = named(grade.student.key, grade.student.name)
-            notes.append(_Note(_MISSING, who, "has a grade or an excuse, but matches no row"))
+    notes += _notes_on_missing(grades, set(grade_of_row.values()), file)
     rows = [changed.get(row, row) for row in file.table.rows if row not in removed]
     if options.only and "maximum" not in file.roles:
         rows = file.only_column(rows)
@@ -177,6 +175,16 @@ def fill(data: bytes, grades: Sequence[PublishedGrade], form: Form, options: Fil
     is_complete = all(note.kind in ("", _OPEN, _KEPT) for note in notes)
     numbers = {grades[at].student.key: people[row].moodle for row, at in grade_of_row.items()}
     return Filled(filled_table.encoded(), [*map(printable, lines)], is_complete, numbers)
+
+
+def _notes_on_missing(
+    grades: Sequence[PublishedGrade], matched: set[int], file: _GradeFile
+) -> Iterator[_Note]:
+    """Yield a note for each student with a grade or an excuse whom no row matches."""
+    for index, grade in enumerate(grades):
+        if index not in matched and _grade_text(grade, file):
+            who = named(grade.student.key, grade.student.name)
+            yield _Note(_MISSING, who, "has a grade or an excuse, but matches no row")
 
 
 def _note_lines(notes: Sequence[_Note]) -> list[str]:
@@ -211,8 +219,9 @@ def _is_same_grade(old: str, new: str) -> bool:
 
 
 def _grade_text(grade: PublishedGrade, file: _GradeFile) -> str:
-    """Return the points, rounded down, for 99.996 of 100 is not the maximum, with the file's comma;
-    or an excuse.
+    """Return the points with the file's comma, rounded down, or an excuse.
+
+    99.996 of 100 is not the maximum.
     """
     if grade.total is None:
         return file.form.excuse if grade.is_excused else ""
@@ -223,8 +232,9 @@ def _grade_text(grade: PublishedGrade, file: _GradeFile) -> str:
 
 
 def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
-    """Return a warning about an unknown maximum; raises InputError for another one: 9.33 of 100 is
-    not 9.33 of 10.
+    """Return a warning about an unknown maximum.
+
+    Raises InputError for another one: 9.33 of 100 is not 9.33 of 10.
     """
     maximum = number_in(text)
     if maximum is not None and maximum != options.out_of and not options.any_maximum:
@@ -242,8 +252,9 @@ def _check_maximum(text: str, what: str, options: FillOptions) -> list[str]:
 
 
 def _read_grade_file(data: bytes, form: Form, options: FillOptions) -> _GradeFile:
-    """Return a grade file; raises InputError if it is another file, or if the column of the lab is
-    ambiguous.
+    """Return a grade file.
+
+    Raises InputError if it is another file, or if the column of the lab is ambiguous.
     """
     table = read_table(data, options.shown)
     roles = form.roles(table.titles)
@@ -286,8 +297,9 @@ def _student_in(row: TableRow, roles: Mapping[str, int]) -> Student:
 
 
 def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptions) -> int:
-    """Return the column that is named, else the one whose title is most like the title or the id of
-    the lab.
+    """Return the column that is named.
+
+    Else the one whose title is most like the title or the id of the lab.
     """
     wanted = options.column.strip()
     ranks = dict[int, int]()
@@ -311,8 +323,9 @@ def _choose(columns: Mapping[int, re.Match[str]], form: Form, options: FillOptio
 
 
 def _likeness(header: re.Match[str], options: FillOptions) -> int | None:
-    """Return how much a column is like the lab, 0 is best: it has the header, title or number that
-    is wanted.
+    """Return how much a column is like the lab, 0 is best.
+
+    It has the header, title or number that is wanted.
 
     Else its title is, or contains, each of the lab's names, in this order; last, it is part of one.
     """
@@ -355,8 +368,9 @@ def _match_rows(rows: Sequence[Student], students: Sequence[Student], lms: str) 
 
 
 def _clues(student: Student, lms: str) -> list[set[str]]:
-    """Return what identifies a student, the most reliable first: the id in the LMS, other ids, the
-    name.
+    """Return what identifies a student, the most reliable first.
+
+    These are the id in the LMS, other ids, and the name.
 
     Of a student who is not on the roster it is the id in the LMS alone, for who submits chooses the
     names.
@@ -368,15 +382,24 @@ def _clues(student: Student, lms: str) -> list[set[str]]:
     return [{*map(plain, kind)} - {""} for kind in ([lms_id], ids, [name])]
 
 
-def _fitting(some: Sequence[list[set[str]]], others: Sequence[list[set[str]]]) -> list[list[int]]:
-    """Return for each of some the others with its most reliable clue that is known, and no other id
-    in the LMS.
-    """
+def _index_by_clue(
+    people: Sequence[list[set[str]]],
+) -> defaultdict[tuple[int, str], set[int]]:
+    """Return which people have a clue, by its kind and text."""
     having = defaultdict[tuple[int, str], set[int]](set)
-    for at, clues in enumerate(others):
+    for at, clues in enumerate(people):
         for kind, words in enumerate(clues):
             for word in words:
                 having[kind, word].add(at)
+    return having
+
+
+def _fitting(some: Sequence[list[set[str]]], others: Sequence[list[set[str]]]) -> list[list[int]]:
+    """Return the others that fit each of some.
+
+    They have its most reliable clue that is known, and no other id in the LMS.
+    """
+    having = _index_by_clue(others)
     fitting = []
     for clues in some:
         candidates = set[int]()

@@ -1,5 +1,6 @@
-"""The grade files of learning management systems as a table: what is where in each, and what its
-import does.
+"""The grade files of learning management systems as a table.
+
+It says what is where in each, and what its import does.
 
 Canvas (lib/gradebook_importer.rb, gradebook_exporter.rb) does not translate headers, and imports
 empty cells as well. Moodle (mod/assign/feedback/offline, mod/assign/gradingtable.php) has the

@@ -1,5 +1,6 @@
-"""The folder of a gradebook: the files in it, how it is recognised, who may write it, and its
-settings in `class.toml`.
+"""The folder of a gradebook.
+
+The files in it, how it is recognised, who may write it, and its settings in `class.toml`.
 
 The settings are what a later run needs to grade the class again.
 """
@@ -65,8 +66,9 @@ def check_free(folder: Path) -> None:
 
 
 def check_roster(folder: Path, settings: "ClassSettings") -> None:
-    """Raise InputError if the copy of the roster is no longer there: without it nobody would be
-    missing.
+    """Raise InputError if the copy of the roster is no longer there.
+
+    Without it nobody would be missing.
     """
     file = folder / ROSTER
     if settings.roster_hash and not file.exists():
@@ -77,8 +79,9 @@ def check_roster(folder: Path, settings: "ClassSettings") -> None:
 
 
 def make_gradebook(folder: Path) -> None:
-    """Make the folders of a gradebook, unless they exist; only its owner can read them. Raises
-    InputError.
+    """Make the folders of a gradebook, unless they exist; only its owner can read them.
+
+    Raises InputError.
     """
     check_free(folder)
     try:
@@ -92,8 +95,9 @@ def make_gradebook(folder: Path) -> None:
 
 
 def lock(handle: int, *, wait: bool = True) -> None:
-    """Lock an open file until it is closed; raises OSError if another process has locked it,
-    without `wait`.
+    """Lock an open file until it is closed.
+
+    Raises OSError if another process has locked it, without `wait`.
     """
     if sys.platform == "win32":
         import msvcrt
@@ -108,8 +112,9 @@ def lock(handle: int, *, wait: bool = True) -> None:
 
 @contextmanager
 def batch_lock(folder: Path) -> Iterator[None]:
-    """Hold the lock of a run over a class; raise InputError while another run holds it. It ends
-    with the process.
+    """Hold the lock of a run over a class; raise InputError while another run holds it.
+
+    It ends with the process.
     """
     try:
         file = os.fdopen(os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o600), "r+b")
@@ -215,7 +220,8 @@ def settings_text(settings: ClassSettings) -> str:
 
 
 def _toml_value(value: object) -> str:
-    """Return a value in TOML, whose texts and lists of texts are those of JSON but for the
-    character DEL.
+    """Return a value in TOML.
+
+    Its texts and lists of texts are those of JSON but for the character DEL.
     """
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,5 +1,6 @@
-"""Marks of many students in one CSV file: rows of a file of marks, a review sheet, or the grades as
-they were exported.
+"""Marks of many students in one CSV file.
+
+They are rows of a file of marks, a review sheet, or the grades as they were exported.
 
 A row of a sheet names an answer: it is a mark of the students with that answer, of those among them
 whom the column `students` names. An export becomes marks where a person changed a cell: the column
@@ -54,8 +55,9 @@ class MarkImport(NamedTuple):
     ] = {}  # the cells of each student in an export, the total last
 
     def read(self, data: bytes, shown: str) -> tuple[list[Mark], int]:
-        """Return the new marks in a CSV file, without times, and how many count already; raises
-        as `read_marks`.
+        """Return the new marks in a CSV file, without times, and how many count already.
+
+        Raises as `read_marks`.
         """
         _, titles, rows = read_rows(data, shown)
         has_marks = (
@@ -68,9 +70,9 @@ class MarkImport(NamedTuple):
                 f"the first line of {shown} must name the columns {enumerated(COLUMNS[2:6])}"
             )
         mistakes: list[str] = []
-        found = collect(rows, self.marks_in, mistakes, mistakes).newest
-        new = [mark for key, mark in found.items() if not self._is_same(key, mark)]
-        return new, len(found) - len(new)
+        new_marks = collect(rows, self.marks_in, mistakes, mistakes).newest
+        new = [mark for key, mark in new_marks.items() if not self._is_same(key, mark)]
+        return new, len(new_marks) - len(new)
 
     def _is_same(self, key: Key, mark: Mark) -> bool:
         before = (
@@ -124,8 +126,9 @@ class MarkImport(NamedTuple):
         return [find_typed(self.students, cell, "; `grades.csv` lists all students").key]
 
     def _changed(self, row: Cells) -> Iterator[Cells]:
-        """Yield the cells of an export that a person changed, as a row for each; a comment
-        stays.
+        """Yield the cells of an export that a person changed, as a row for each.
+
+        A comment stays.
         """
         exported = _EXPORTED.fullmatch(row["exported"])
         if exported is None:
@@ -164,8 +167,9 @@ class MarkImport(NamedTuple):
 
 
 def exported_text(points: Mapping[str, str]) -> str:
-    """Return the hashes of the points in a row of an export: that of all criteria, and that of the
-    total.
+    """Return the hashes of the points in a row of an export.
+
+    That of all criteria, and that of the total.
     """
     *criteria, total = points
     return _hash_of(points, criteria) + _hash_of(points, [total])

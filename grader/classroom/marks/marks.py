@@ -1,5 +1,6 @@
-"""The marks of people: the rows of the CSV files in a folder, and which of them counts for a
-student and criterion.
+"""The marks of people: the rows of the CSV files in a folder.
+
+And which of them counts for a student and criterion.
 
 The latest time counts, of equal times in one file the later row. A row without a time is newer than
 all with one. Different rows that have no order are refused; equal rows are one. A comment without
@@ -91,8 +92,9 @@ class Marks(NamedTuple):
     ignored: list[str]  # which rows do not count, and why
 
     def add(self, key: Key, rows: Sequence[Mark]) -> None:
-        """Add all rows of a student's criterion, in the order of files; raises InputError if they
-        have no order.
+        """Add all rows of a student's criterion, in the order of files.
+
+        Raises InputError if they have no order.
         """
         newest, counting = _newest(rows), _newest([mark for mark in rows if mark.value] or rows)
         self.newest[key] = newest
@@ -102,8 +104,9 @@ class Marks(NamedTuple):
             self.comments[key] = newest
 
     def next_time(self, key: Key) -> str:
-        """Return the time for a new mark: now, or later, so that it counts. Raises InputError if
-        none would.
+        """Return the time for a new mark: now, or later, so that it counts.
+
+        Raises InputError if none would.
         """
         before, now = self.newest.get(key), datetime.now(UTC)
         if before is None:
@@ -130,8 +133,9 @@ def append_marks(path: Path, marks: Iterable[Mark]) -> None:
 
 
 def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
-    """Return the marks in the files of a folder; raises InputError with a line for each row that
-    cannot be read.
+    """Return the marks in the files of a folder.
+
+    Raises InputError with a line for each row that cannot be read.
     """
     most, keys = maxima(rubric), dict.fromkeys(students)
 
@@ -147,18 +151,18 @@ def collect(
     rows: Iterable[tuple[str, Cells]], read: _Reader, mistakes: list[str], ignored: list[str]
 ) -> Marks:
     """Return the marks in rows, each with its place; raises InputError if there are mistakes."""
-    found: dict[Key, list[Mark]] = defaultdict(list)
+    marks_by_key: dict[Key, list[Mark]] = defaultdict(list)
     marks = Marks({}, {}, {}, ignored)
     for place, cells in rows:
         try:
             for mark in read(cells, place):
                 if mark.value or mark.comment:
-                    found[mark.student, mark.criterion].append(mark)
+                    marks_by_key[mark.student, mark.criterion].append(mark)
         except NotCountedError as error:
             ignored.append(printable(f"{place}: {error}"))
         except InputError as error:
             mistakes.append(f"{place}: {error}")
-    for key, those in found.items():
+    for key, those in marks_by_key.items():
         try:
             marks.add(key, those)
         except InputError as error:
@@ -169,8 +173,9 @@ def collect(
 
 
 def _rows_in_folder(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, Cells]]:
-    """Yield the place and the cells of each row of the files in a folder; files that cannot be read
-    are mistakes.
+    """Yield the place and the cells of each row of the files in a folder.
+
+    Files that cannot be read are mistakes.
     """
     for path in sorted(folder.absolute().glob("[!.]*.[cC][sS][vV]")):
         shown = printable_path(Path(folder.name, path.name))
@@ -182,8 +187,9 @@ def _rows_in_folder(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, Ce
 
 
 def maxima(rubric: Rubric) -> dict[str, Decimal]:
-    """Return the most points for each criterion and TOTAL; marks of an adjusted criterion never
-    count: any is valid.
+    """Return the most points for each criterion and TOTAL.
+
+    Marks of an adjusted criterion never count: any is valid.
     """
     most = {
         row.id: row.points if row.adjustment is None else Decimal(MAX_POINTS)
@@ -241,8 +247,9 @@ def _newest(rows: Sequence[Mark]) -> Mark:
 
 
 def read_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]:
-    """Return a CSV file, the titles of its columns, and its rows; raises InputError if two columns
-    have one title.
+    """Return a CSV file, the titles of its columns, and its rows.
+
+    Raises InputError if two columns have one title.
     """
     table = read_table(data, shown, is_from_person=True)
     header, *lines = table.filled or [TableRow(1, 1, (), "")]
@@ -299,8 +306,9 @@ def _whole_rows(data: bytes, shown: str) -> tuple[Table, tuple[str, ...], _Rows]
 
 
 def _append_rows(path: Path, rows: Sequence[Mapping[str, str]]) -> None:
-    """Append rows to a file of marks, all or none, and wait until they are on the disk; make the
-    file if necessary.
+    """Append rows to a file of marks, all or none, and wait until they are on the disk.
+
+    Make the file if necessary.
 
     Raises InputError if the file cannot be written, lacks a column, or may be cut at its end.
     """
@@ -337,8 +345,9 @@ def _sync_folder(folder: Path) -> None:
 
 
 def _encoded(data: bytes, rows: Sequence[Mapping[str, str]], shown: str) -> bytes:
-    """Return what appends rows to a file in its own style, with the header or line break that it
-    lacks.
+    """Return what appends rows to a file in its own style.
+
+    It has the header or line break that the file lacks.
     """
     table, titles, old = _whole_rows(data, shown)
     missing = [name for name in COLUMNS if titles and name not in titles]
@@ -354,15 +363,21 @@ def _encoded(data: bytes, rows: Sequence[Mapping[str, str]], shown: str) -> byte
     for row in rows:
         cells = []
         for title in titles or COLUMNS:
-            text = row.get(title, "")
-            if text != WITHDRAWN:
-                text = protected(_with_newlines(text))
-            if title == "points" and has_comma:
-                text = text.replace(".", ",")
-            cells.append(table.cell(text))
+            cell = _new_cell(row, title, has_comma=has_comma)
+            cells.append(table.cell(cell))
         lines.append(table.delimiter.join(cells))
     text = "".join(line + end for line in lines)
     return text.encode(table.encoding, "xmlcharrefreplace")
+
+
+def _new_cell(row: Mapping[str, str], title: str, *, has_comma: bool) -> str:
+    """Return what a cell of a new row says, as no spreadsheet misreads it."""
+    text = row.get(title, "")
+    if text != WITHDRAWN:
+        text = protected(_with_newlines(text))
+    if title == "points" and has_comma:
+        text = text.replace(".", ",")
+    return text
 
 
 def _has_decimal_comma(table: Table, rows: _Rows) -> bool:
@@ -374,8 +389,9 @@ def _has_decimal_comma(table: Table, rows: _Rows) -> bool:
 
 
 def mark_file(folder: Path, by: str) -> Path:
-    """Return the file of a grader: valid on every system, and of nobody else, though systems may
-    ignore case.
+    """Return the file of a grader.
+
+    Its name is valid on every system, and of nobody else, though systems may ignore case.
     """
     name = unicodedata.normalize("NFC", by.strip().lower())
     if not _SAFE.fullmatch(name):

@@ -25,8 +25,9 @@ def warn_of_ignored(book: Gradebook, warn: Warn) -> None:
 
 
 def record_run(folder: Path, warn: Warn) -> None:
-    """Record the current grades as a run, unless the newest one has them, so that `diff` compares
-    with them.
+    """Record the current grades as a run, so that `diff` compares with them.
+
+    Unless the newest one has them.
     """
     try:
         with batch_lock(folder):
@@ -36,8 +37,9 @@ def record_run(folder: Path, warn: Warn) -> None:
 
 
 def append_run(book: Gradebook) -> Results | None:
-    """Append a run with the current grades, and return the results with it; None if there is no
-    need, or no way.
+    """Append a run with the current grades, and return the results with it.
+
+    None if there is no need, or no way.
     """
     now = book.run_with({one.student.key: book.run_grade(one) for one in book})
     if book.results.unfinished or book.is_outdated or now.has_grades_of(book.run):
@@ -86,14 +88,14 @@ def compare(
     if len(books) > 2:
         raise InputError("name one gradebook, or two")
     if len(books) == 1 and before is None:
-        old, new, found = newest_changes(books[0], after)
+        old, new, changed = newest_changes(books[0], after)
     else:
         old, new = snapshot(books[0], before), snapshot(books[-1], after)
-        found = list(changes(old, new))
+        changed = list(changes(old, new))
     if kind is OutputFormat.JSON:
         from grader.classroom.reports.class_json import render_changes_json
 
-        return render_changes_json(found, (old.run, new.run))
+        return render_changes_json(changed, (old.run, new.run))
     from grader.classroom.reports.class_terminal import render_changes
 
-    return draw(partial(render_changes, found, old, new), screen)
+    return draw(partial(render_changes, changed, old, new), screen)

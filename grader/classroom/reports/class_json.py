@@ -1,5 +1,6 @@
-"""A class as JSON, schema grader/class/v1, and the changes between two runs, schema
-grader/diff/v1.
+"""A class as JSON, schema grader/class/v1.
+
+And the changes between two runs, schema grader/diff/v1.
 """
 
 from collections.abc import Sequence
@@ -90,15 +91,15 @@ _STATISTICS = JsonObject(
         "counts": (object_schema(dict.fromkeys(_STATUSES, COUNT), optional=_STATUSES), "statuses"),
         "grades": (
             _SUMMARY.schema,
-            lambda found: _SUMMARY.data(found.all) if found.all else _NO_GRADES,
+            lambda figures: _SUMMARY.data(figures.all) if figures.all else _NO_GRADES,
         ),
         **each(TOTAL, "open late"),
-        "tenths": (array(TOTAL), lambda found: [len(keys) for keys in found.tenths]),
+        "tenths": (array(TOTAL), lambda figures: [len(keys) for keys in figures.tenths]),
         "criteria": Many(_CRITERION),
         "mistakes": (Many(_MISTAKE), "common_mistakes"),
         "sections": (
             mapping(_SUMMARY.schema),
-            lambda found: {name: _SUMMARY.data(one) for name, one in found.sections.items()},
+            lambda figures: {name: _SUMMARY.data(one) for name, one in figures.sections.items()},
         ),
     }
 )

@@ -1,5 +1,6 @@
-"""The class's page: statistics, and a table of students with links, which shows those behind each
-figure.
+"""The class's page: statistics, and a table of students with links.
+
+The table shows those behind each figure.
 """
 
 from collections import defaultdict
@@ -24,8 +25,9 @@ _MAX_HEIGHT, _CUT_AT = 3, 1.5  # of a bar of the second highest: a higher one is
 
 
 class _StudentRow(NamedTuple):
-    """A student in the table: the cells as text, which may be empty; `link` is the address of the
-    student's page.
+    """A student in the table: the cells as text, which may be empty.
+
+    `link` is the address of the student's page.
     """
 
     key: str
@@ -40,8 +42,9 @@ class _StudentRow(NamedTuple):
 
 
 class _Group(NamedTuple):
-    """A group of students that the table can show: its label, their keys, and the word by which a
-    search finds them.
+    """A group of students that the table can show.
+
+    It has its label, their keys, and the word by which a search finds them.
     """
 
     label: str
@@ -56,8 +59,10 @@ def render_class_page(
     links: Mapping[str, str],
     stills: Mapping[str, Still],
 ) -> str:
-    """Return the class's page; `links` are the addresses of students' pages by key, relative to
-    this page, and `stills` small pictures of their robots.
+    """Return the class's page.
+
+    `links` are the addresses of students' pages by key, relative to this page, and `stills`
+    small pictures of their robots.
     """
     rows = [_row(grade, links) for grade in grades]
     rows.sort(key=lambda row: words.family_name_order(row.name, row.key))
@@ -117,8 +122,9 @@ def _figures(figures: ClassStatistics) -> dict[str, Any]:
 
 
 def _bars(figures: ClassStatistics) -> tuple[list[tuple[str, str, int, int, bool]], str]:
-    """Return the bars of the grades: the group, the grades, the students, the height in percent,
-    and whether it is cut.
+    """Return the bars of the grades.
+
+    Each has the group, the grades, the students, the height in percent, and whether it is cut.
 
     The highest one is cut, as the text that is returned with them says, where all others would be
     flat.
@@ -157,8 +163,9 @@ def _row(grade: StudentGrade, links: Mapping[str, str]) -> _StudentRow:
 
 
 def _columns(rows: Sequence[_StudentRow], figures: ClassStatistics) -> list[tuple[str, str, str]]:
-    """Return the columns that are not empty: the field of a row, the heading, the class of its
-    cells.
+    """Return the columns that are not empty.
+
+    Each is the field of a row, the heading, and the class of its cells.
     """
     columns = [
         ("section", "section", ""),
@@ -192,8 +199,9 @@ def _filters_of(grade: StudentGrade, *, has_sections: bool) -> Iterator[tuple[in
 def _groups(
     grades: Sequence[StudentGrade], figures: ClassStatistics
 ) -> Iterator[tuple[str, _Group]]:
-    """Yield the groups of students on the page with the id that its buttons use; the first ones
-    are the filters at the top.
+    """Yield the groups of students on the page with the id that its buttons use.
+
+    The first ones are the filters at the top.
     """
     filtered = defaultdict[tuple[int, str], list[str]](list)
     lost = defaultdict[str, list[str]](list)

@@ -80,8 +80,9 @@ class _Done(NamedTuple):
 
 
 class _ReportTask(NamedTuple):
-    """A report to write: the student and the name of the file; without hints if their search was
-    lost.
+    """A report to write: the student and the name of the file.
+
+    Without hints if their search was lost.
     """
 
     key: str
@@ -120,8 +121,9 @@ def report_of(
 
 
 def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
-    """Yield the sentences about the mark, the excuse or the comment of the whole submission,
-    graders, and lateness.
+    """Yield the sentences about a whole submission.
+
+    They are on the mark, the excuse or the comment of the whole, graders, and lateness.
     """
     mark, late = grade.final, grade.late
     if mark is not None:
@@ -149,8 +151,9 @@ def notes_of(grade: StudentGrade, report: Report) -> Iterator[str]:
 def _graded_again(
     book: Gradebook, grade: StudentGrade, stored: StoredResult, kept: KeptReports | None
 ) -> Report:
-    """Return the report on a submission as it was graded, with its details if it is still there,
-    and with hints if what is kept of them is given.
+    """Return the report on a submission as it was graded.
+
+    With its details if it is still there, and with hints if what is kept of them is given.
     """
     submission = book.reopened(stored) if stored.verdict != "errored" else None
     if submission is None:
@@ -167,8 +170,9 @@ def _graded_again(
 
 
 def refuse_report_folder(folder: Path, submissions: Sequence[Path]) -> None:
-    """Raise InputError if reports cannot be written to a folder, or the next run would read it as a
-    submission.
+    """Raise InputError if reports cannot be written to a folder.
+
+    Or if the next run would read it as a submission.
     """
     refuse_symlinks(folder, submissions)
     cannot = f"cannot write files to {printable_path(folder)}"
@@ -188,8 +192,9 @@ def _keep(
     paths: Mapping[str, Sequence[Path]],
     shown: Mapping[str, str],
 ) -> dict[str, Mapping[str, Any]]:
-    """Keep what is known of the reports that were written, by their paths; return the hints that
-    were searched for them.
+    """Keep what is known of the reports that were written, by their paths.
+
+    Return the hints that were searched for them.
     """
     new_hints = dict[str, Mapping[str, Any]]()
     for key, one in done.items():
@@ -205,8 +210,9 @@ def _keep(
 def write_reports(
     run: ReportRun, terminal: Terminal, jobs: int | None = None, timeout: float = _SECONDS
 ) -> None:
-    """Write a report for each student who has a result, a final mark or an excuse; in HTML also the
-    class's page.
+    """Write a report for each student who has a result, a final mark or an excuse.
+
+    In HTML also the class's page.
 
     Raises InputError and RubricError, which concern all reports.
     """
@@ -214,35 +220,77 @@ def write_reports(
     book, kept = Gradebook(run.gradebook), KeptReports(run.gradebook)
     grades = [grade for grade in book if grade.stored is not None or grade.has_final]
     files = file_names([grade.student.key for grade in grades])
-    # Beside the reports, but in the gradebook above those in its own folder.
-    is_in_gradebook = run.folder == run.gradebook / names.REPORTS
     run = run._replace(time=book.run.time)
     if Format.HTML in run.formats:
-        class_page = f"../{_CLASS_PAGE}" if is_in_gradebook else _CLASS_PAGE
-        run = run._replace(class_page=class_page)
+        run = run._replace(class_page=_path_of_class_page(run))
     paths = {key: _paths_of(run, name) for key, name in files.items()}
     context = _context(book, run)
-    shown, changed = dict[str, str](), dict[str, str]()
-    for grade in grades:
-        key = grade.student.key
-        shown[key] = _shown_in(book, grade, context)
-        if not all(kept.is_current(path, shown[key]) for path in paths[key]):
-            changed[key] = files[key]
+    shown = {grade.student.key: _shown_in(book, grade, context) for grade in grades}
+    changed = dict[str, str]()
+    for key in _find_outdated(kept, shown, paths):
+        changed[key] = files[key]
     done = _render_reports(run, changed, terminal, jobs, timeout) if changed else {}
     if done:
         new_hints = _keep(kept, done, paths, shown)
         kept.save(new_hints, book.settings.roots(book.folder))
     lost = {key: one.why_lost for key, one in done.items() if one.why_lost}
     if Format.HTML in run.formats:
-        below = f"{names.REPORTS}/" if is_in_gradebook else ""
-        pages = {key: below + name for key, name in files.items() if key not in lost}
-        stills = {
-            key: done[key].still if key in done else kept.written[str(paths[key][0])].still
-            for key in pages
-        }
-        write_class_page(book, run.gradebook if is_in_gradebook else run.folder, pages, stills)
-    written = counted(len(files) - len(lost), "report")
-    terminal.warn(f"{written} written to {printable_path(run.folder)}")
+        pages, first_paths = dict[str, str](), dict[str, str]()
+        for key, name in files.items():
+            if key not in lost:
+                pages[key] = name
+                first_paths[key] = str(paths[key][0])
+        stills = _stills_of(done, kept, first_paths)
+        _write_class_page_of(book, run, pages, stills)
+    _tell_written(book, run, len(files) - len(lost), lost, terminal)
+
+
+def _path_of_class_page(run: ReportRun) -> str:
+    """Return the path of the class's page from the reports.
+
+    It is beside them, but in the gradebook above those in its own folder.
+    """
+    is_in_gradebook = run.folder == run.gradebook / names.REPORTS
+    return f"../{_CLASS_PAGE}" if is_in_gradebook else _CLASS_PAGE
+
+
+def _find_outdated(
+    kept: KeptReports, shown: Mapping[str, str], paths: Mapping[str, Sequence[Path]]
+) -> list[str]:
+    """Return the students whose reports do not show what they should."""
+    outdated = []
+    for key, what_is_shown in shown.items():
+        if not all(kept.is_current(path, what_is_shown) for path in paths[key]):
+            outdated.append(key)
+    return outdated
+
+
+def _stills_of(
+    done: Mapping[str, _Done], kept: KeptReports, paths: Mapping[str, str]
+) -> "dict[str, Still]":
+    """Return the small pictures of students' robots, of new and of older reports."""
+    stills = {}
+    for key, path in paths.items():
+        stills[key] = done[key].still if key in done else kept.written[path].still
+    return stills
+
+
+def _write_class_page_of(
+    book: Gradebook, run: ReportRun, files: Mapping[str, str], stills: Mapping[str, "Still"]
+) -> None:
+    """Write the class's page beside the reports, or in the gradebook above its own folder."""
+    if run.folder == run.gradebook / names.REPORTS:
+        pages = {key: f"{names.REPORTS}/{name}" for key, name in files.items()}
+        write_class_page(book, run.gradebook, pages, stills)
+    else:
+        write_class_page(book, run.folder, files, stills)
+
+
+def _tell_written(
+    book: Gradebook, run: ReportRun, count: int, lost: Mapping[str, str], terminal: Terminal
+) -> None:
+    """Print how many reports were written, and why others were not."""
+    terminal.warn(f"{counted(count, 'report')} written to {printable_path(run.folder)}")
     for key, why in lost.items():
         who = named(key, book.grade(key).student.name)
         terminal.warn(printable(f"no report for {who}: {why}"))
@@ -276,8 +324,9 @@ def _shown_in(book: Gradebook, grade: StudentGrade, context: str) -> str:
 
 
 def render_reports(run: ReportRun, files: Mapping[str, str], terminal: Terminal) -> dict[str, str]:
-    """Write the reports of students, by their file names; return who has none, and why. Raises as
-    `write_reports`.
+    """Write the reports of students, by their file names; return who has none, and why.
+
+    Raises as `write_reports`.
     """
     done = _render_reports(run, files, terminal)
     return {key: one.why_lost for key, one in done.items() if one.why_lost}
@@ -357,8 +406,9 @@ def _opened_gradebook(run: ReportRun) -> tuple[Gradebook, KeptReports]:
 
 
 def file_names(keys: Sequence[str]) -> dict[str, str]:
-    """Return a file name without ending for each key: valid on every system, and unique without
-    regard to case.
+    """Return a file name without ending for each key.
+
+    It is valid on every system, and unique without regard to case.
 
     A key that is not a valid name, or that differs from another one only in case, gets its digest
     appended.
@@ -379,8 +429,10 @@ def _with_digest(key: str) -> str:
 def write_class_page(
     book: Gradebook, folder: Path, pages: Mapping[str, str], stills: Mapping[str, "Still"] = {}
 ) -> None:
-    """Write the class's page into a folder, with links to the pages of students, by their names
-    from there, and small pictures of their robots.
+    """Write the class's page into a folder.
+
+    It has links to the pages of students, by their names from there, and small pictures of
+    their robots.
     """
     from grader.classroom.gradebook.statistics import statistics
     from grader.classroom.reports.class_page import render_class_page

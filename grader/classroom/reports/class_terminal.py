@@ -1,5 +1,6 @@
-"""A class on a terminal: the table that `batch` prints, the statistics, what changed between two
-runs.
+"""A class on a terminal.
+
+The table that `batch` prints, the statistics, what changed between two runs.
 
 Text of submissions is never interpreted as markup or control codes.
 """
@@ -70,8 +71,9 @@ class _Row(NamedTuple):
 
 
 class ClassTable:
-    """One row a student, first of those who need attention, then by family name; the mean, and what
-    needs attention.
+    """One row a student, first of those who need attention, then by family name.
+
+    Then the mean, and what needs attention.
 
     `add` takes the grades one by one, so that a large class is never held whole.
     """
@@ -122,8 +124,9 @@ class ClassTable:
         return table
 
     def _columns(self, width: int) -> dict[str, list[str]]:
-        """Return the cells of the columns that are not empty; lost points get the rest of the
-        width.
+        """Return the cells of the columns that are not empty.
+
+        Lost points get the rest of the width.
         """
         names, grades, late, open_points = [], [], [], []
         for row in self.rows:
@@ -164,8 +167,9 @@ class ClassTable:
 
 
 def _costs(losses: Sequence[tuple[Decimal, str]], width: int) -> str:
-    """Return the criteria that cost most, with their points: as many whole ones as fit, but one at
-    least.
+    """Return the criteria that cost most, with their points.
+
+    As many whole ones as fit, but one at least.
     """
     text = ""
     for most in range(1, _MAX_COSTS + 1):

@@ -20,8 +20,9 @@ SHARE_NOTE = "Share: the mean share of the points that students earned."
 
 
 def family_name_order(name: str, key: str) -> tuple[str, str, str]:
-    """Return the family name, which is before a comma or the last word, then the name and the
-    key.
+    """Return the family name, then the name and the key.
+
+    The family name is before a comma or the last word.
     """
     family = name.partition(",")[0] if "," in name else (name.split() or [""])[-1]
     return _letters(family), _letters(name), key
@@ -41,9 +42,11 @@ def late_text(grade: StudentGrade) -> str:
     return ""
 
 
-def head_lines(found: ClassStatistics) -> Iterator[str]:
-    """Yield how many students were graded and how many not, the grades in one line, what is open,
-    and the sections.
+def head_lines(statistics: ClassStatistics) -> Iterator[str]:
+    """Yield the lines above the figures of a class.
+
+    How many students were graded and how many not, the grades in one line, what is open, and
+    the sections.
     """
     words = {
         "graded": "graded",
@@ -53,21 +56,19 @@ def head_lines(found: ClassStatistics) -> Iterator[str]:
     }
     words["missing"] = "without a submission"
     counts = [
-        f"{found.statuses[status]} {text}"
+        f"{statistics.statuses[status]} {text}"
         for status, text in words.items()
-        if status in found.statuses
+        if status in statistics.statuses
     ]
-    if found.late:
-        counts.append(f"{found.late} late")
+    if statistics.late:
+        counts.append(f"{statistics.late} late")
     yield ", ".join(counts) or "no students"
-    if found.all is not None:
-        yield grades_text(found.maximum, found.all, is_open=bool(found.open))
-    if found.open:
-        yield (
-            f"{counted(found.open, 'grade')} still {'needs' if found.open == 1 else 'need'} "
-            "manual grading"
-        )
-    for name, one in found.sections.items():
+    if statistics.all is not None:
+        yield grades_text(statistics.maximum, statistics.all, is_open=bool(statistics.open))
+    if statistics.open:
+        verb = "needs" if statistics.open == 1 else "need"
+        yield f"{counted(statistics.open, 'grade')} still {verb} manual grading"
+    for name, one in statistics.sections.items():
         yield (
             f"Section {name or '(none)'}: {_means(one.mean, one.median)} "
             f"({counted(one.students, 'student')})"
@@ -75,8 +76,9 @@ def head_lines(found: ClassStatistics) -> Iterator[str]:
 
 
 def grades_text(maximum: Decimal, figures: Summary, *, is_open: bool) -> str:
-    """Return the mean and the median of the grades; those that are open count with the points so
-    far.
+    """Return the mean and the median of the grades.
+
+    Those that are open count with the points so far.
     """
     so_far = " so far" if is_open else ""
     return f"Grades of {format_points(maximum)}{so_far}: {_means(figures.mean, figures.median)}"
@@ -87,9 +89,9 @@ def _means(mean: Decimal | float, median: Decimal | float) -> str:
     return f"mean {mean:.1f}, median {median:.1f}"
 
 
-def span(found: ClassStatistics, tenth: int) -> str:
+def span(statistics: ClassStatistics, tenth: int) -> str:
     """Return the grades of a tenth of the maximum: "10 to 20"."""
-    step = found.maximum / len(found.tenths)
+    step = statistics.maximum / len(statistics.tenths)
     return f"{format_points(step * tenth)} to {format_points(step * (tenth + 1))}"
 
 

@@ -1,5 +1,6 @@
-"""What the reports of a class keep for the next time, in `reports.jsonl`: the hints that were found
-in a submission, and the files that were written.
+"""What the reports of a class keep for the next time, in `reports.jsonl`.
+
+The hints that were found in a submission, and the files that were written.
 
 Robots that are equal share their hints. The file may be deleted: then hints are searched again, and
 all reports written again.
@@ -31,8 +32,10 @@ _OWN = "\0"  # in place of the path of the URDF, which may have the name of a st
 
 
 class WrittenReport(NamedTuple):
-    """A file that was written: what it shows, the hash of its bytes, the key of its hints, and the
-    small picture of the robot for the class's page.
+    """A file that was written.
+
+    What it shows, the hash of its bytes, the key of its hints, and the small picture of the
+    robot for the class's page.
     """
 
     shows: str
@@ -77,15 +80,15 @@ class KeptReports:
         if values is not None:
             return _restored(report, values)
         try:
-            found = hinted(report, submission, report.rubric.hints)
+            hinted_report = hinted(report, submission, report.rubric.hints)
         except (Exception, OutOfTime):  # noqa: BLE001  a fault of the search must not cost the report
             self.is_lost = True
             return report
-        if found.faults:
+        if hinted_report.faults:
             self.is_lost = True
         else:
-            self.new[key] = _values_of(found.report, key)
-        return found.report
+            self.new[key] = _values_of(hinted_report.report, key)
+        return hinted_report.report
 
     def is_current(self, path: Path, shows: str) -> bool:
         """Return whether a file is still there as it was written, and shows this."""
@@ -119,42 +122,42 @@ def _digest_of_content(submission: Submission) -> str:
 
 def _values_of(report: Report, key: str) -> Mapping[str, Any]:
     """Return the hints of a report as plain values."""
-    own = report.submission.path
-    found = dict[str, Any]()
+    own_path = report.submission.path
+    hints = dict[str, Any]()
     for result in report.results:
         if result.hint is None:
             continue
         values = result.hint._asdict()
-        values["at"] = _without_path(result.hint.at, own)
-        values["edits"] = [_without_path(edit, own) for edit in result.hint.edits]
+        values["at"] = _without_path(result.hint.at, own_path)
+        values["edits"] = [_without_path(edit, own_path) for edit in result.hint.edits]
         values["gains"] = {name: str(points) for name, points in result.hint.gains.items()}
-        found[result.criterion.id] = values
-    return {"hints_of": key, "is_complete": report.hints_complete, "found": found}
+        hints[result.criterion.id] = values
+    return {"hints_of": key, "is_complete": report.hints_complete, "found": hints}
 
 
-def _without_path(place: Location | Edit, own: str | None) -> list[Any]:
+def _without_path(place: Location | Edit, own_path: str | None) -> list[Any]:
     path, *rest = place
-    return [_OWN if path == own else path, *rest]
+    return [_OWN if path == own_path else path, *rest]
 
 
 def _restored(report: Report, values: Mapping[str, Any]) -> Report:
     """Return a report with hints that were kept."""
-    own = report.submission.path or ""
-    hints = {name: _hint_of(kept, own) for name, kept in values["found"].items()}
+    own_path = report.submission.path or ""
+    hints = {name: _hint_of(kept, own_path) for name, kept in values["found"].items()}
     results = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     return report._replace(results=tuple(results), hints_complete=values["is_complete"])
 
 
-def _hint_of(values: Mapping[str, Any], own: str) -> Hint:
+def _hint_of(values: Mapping[str, Any], own_path: str) -> Hint:
     """Return a hint of plain values, for a submission whose URDF has this path."""
-    path, line, column, calls, *_ = _with_path(values["at"], own)
+    path, line, column, calls, *_ = _with_path(values["at"], own_path)
     at = Location(path, line, column, tuple(calls))
-    edits = tuple(Edit(*_with_path(edit, own)) for edit in values["edits"])
+    edits = tuple(Edit(*_with_path(edit, own_path)) for edit in values["edits"])
     gains = {name: Decimal(points) for name, points in values["gains"].items()}
     after = tuple(values["after"])
     return Hint(**{**values, "at": at, "edits": edits, "gains": gains, "after": after})
 
 
-def _with_path(place: list[Any], own: str) -> list[Any]:
+def _with_path(place: list[Any], own_path: str) -> list[Any]:
     path, *rest = place
-    return [own if path == _OWN else path, *rest]
+    return [own_path if path == _OWN else path, *rest]

@@ -33,12 +33,12 @@ def forms_of(submission: Submission, *, is_handed_out: bool = False) -> dict[str
     `urdf` is that of the file, `robot` that of its normal form, `written` that of its links, joints
     and materials as written.
     """
-    urdf, found = submission.urdf, dict[str, str]()
+    urdf, forms = submission.urdf, dict[str, str]()
     if isinstance(urdf, Read):
         if urdf.data.strip():
-            found |= {"urdf": sha256_of(urdf.data), "robot": robot_hash(urdf.reading)}
-        found["written"] = written_form(urdf.reading.elements, is_handed_out=is_handed_out)
-    return {name: form[:_DIGITS] for name, form in found.items() if form}
+            forms |= {"urdf": sha256_of(urdf.data), "robot": robot_hash(urdf.reading)}
+        forms["written"] = written_form(urdf.reading.elements, is_handed_out=is_handed_out)
+    return {name: form[:_DIGITS] for name, form in forms.items() if form}
 
 
 def hashes_of(submission: Submission) -> tuple[str, ...]:
@@ -53,14 +53,14 @@ def equal_work(results: Iterable[StoredResult], handed_out: Iterable[str]) -> li
     """
     known, works = {*handed_out}, [stored for stored in results if stored.work]
     most = max(_MAX_SHARING, len(works) // 10)
-    own = [
+    own_works = [
         stored
         for stored in works
         if known.isdisjoint((stored.work.get("urdf"), stored.work.get("robot")))
     ]
     label_of: dict[tuple[str, ...], str] = {}
     for kind, label in _LABELS.items():
-        for group in _groups(own, kind, known):
+        for group in _groups(own_works, kind, known):
             robots = {stored.work.get("robot") for stored in group}
             is_rare = len(group) <= most and len(robots) > 1
             if kind != "written" or is_rare:
@@ -71,8 +71,9 @@ def equal_work(results: Iterable[StoredResult], handed_out: Iterable[str]) -> li
 def _groups(
     results: Iterable[StoredResult], kind: str, known: Collection[str]
 ) -> list[list[StoredResult]]:
-    """Return the groups whose hash of one kind is the same and not known, and that come from more
-    than one submission, the largest first.
+    """Return the groups whose hash of one kind is the same, the largest first.
+
+    It is not known, and the works come from more than one submission.
     """
     groups = defaultdict[str, list[StoredResult]](list)
     for stored in results:

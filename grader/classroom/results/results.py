@@ -150,8 +150,9 @@ def values_in(line: bytes) -> dict[str, Any]:
 
 
 def digest_of(*parts: object) -> str:
-    """Return the hash of some values: it begins with a letter, so that no spreadsheet takes it for
-    a number.
+    """Return the hash of some values.
+
+    It begins with a letter, so that no spreadsheet takes it for a number.
     """
     return f"d{sha256_of(repr(parts).encode())[:_DIGITS]}"
 
@@ -202,8 +203,10 @@ class Results:
                     self.unfinished.add(key)
 
     def _end_run(self, run: Run) -> None:
-        """Keep a run; a student whose line of it is lost has no result: an older one is that of
-        other work.
+        """Keep a run.
+
+        A student whose line of it is lost has no result: an older one is that of other
+        work.
         """
         for key in {*run.written} - self.unfinished:
             self._places.pop(key, None)
@@ -276,8 +279,8 @@ class Results:
         """Yield the newest result of each of some students, None for one without."""
         for values in self._read_values(self._places, keys):
             with self._refuse_damage():
-                found = StoredResult(**values) if values else None
-            yield found
+                result = StoredResult(**values) if values else None
+            yield result
 
     def of(self, key: str) -> StoredResult | None:
         """Return the newest result of a student."""
@@ -292,9 +295,9 @@ class Results:
         return self._texts_of(stored, "answers")
 
     def _texts_of(self, stored: StoredResult, kind: str) -> dict[str, str]:
-        [found] = self._read_values(self._texts, [stored.student])
-        if found and found["digest"] == stored.digest:
-            return dict(found[kind])
+        [values] = self._read_values(self._texts, [stored.student])
+        if values and values["digest"] == stored.digest:
+            return dict(values[kind])
         return {}
 
     def _read_values(
@@ -315,8 +318,9 @@ class Results:
 
 
 class ResultsWriter:
-    """Appends lines to a file of results, behind its last whole line. Raises InputError if it
-    cannot be written.
+    """Appends lines to a file of results, behind its last whole line.
+
+    Raises InputError if it cannot be written.
     """
 
     def __init__(self, file: Path, end: int) -> None:

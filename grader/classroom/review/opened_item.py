@@ -56,8 +56,9 @@ def _graded_again(book: Gradebook, key: str) -> tuple[Submission, Report]:
 
 
 def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
-    """Return what a person looks at for an item. Raises InputError if its submission has moved or
-    changed.
+    """Return what a person looks at for an item.
+
+    Raises InputError if its submission has moved or changed.
 
     Of an anonymous student it has no names of files and no lines of them, because students choose
     them.
@@ -89,8 +90,9 @@ def open_item(book: Gradebook, item: ReviewItem) -> OpenedItem:
 
 
 def _paths(book: Gradebook, item: ReviewItem, result: Result) -> Iterator[str]:
-    """Yield the places in a submission and its path below the class folder, which is named if there
-    are several.
+    """Yield the places in a submission and its path below the class folder.
+
+    The class folder is named if there are several.
     """
     stored, location = item.members[0].stored, result.outcome.location
     root = book.settings.roots(book.folder)[stored.root]
@@ -115,17 +117,18 @@ def _anonymous(opened: OpenedItem, item: ReviewItem, result: Result) -> OpenedIt
     return opened._replace(message=message, pictures=pictures, paths=(), legend=(), places=())
 
 
-def _without_name(number: int, found: EmbeddedPicture | NotShown) -> EmbeddedPicture | NotShown:
-    if isinstance(found, EmbeddedPicture):
-        return found._replace(where=f"picture {number}")
-    return NotShown(f"file {number}", found.reason.replace(found.where, f"file {number}"))
+def _without_name(number: int, picture: EmbeddedPicture | NotShown) -> EmbeddedPicture | NotShown:
+    if isinstance(picture, EmbeddedPicture):
+        return picture._replace(where=f"picture {number}")
+    return NotShown(f"file {number}", picture.reason.replace(picture.where, f"file {number}"))
 
 
 def _with_robot(
     opened: OpenedItem, report: Report, results: Sequence[Result], *, is_anonymous: bool
 ) -> OpenedItem:
-    """Return an item with the views of the robot, and the files around the places that decide its
-    criteria.
+    """Return an item with the views of the robot.
+
+    And the files around the places that decide its criteria.
     """
     picture, views, legend = picture_of(report), "", list[str]()
     space = None
@@ -135,19 +138,21 @@ def _with_robot(
         if is_anonymous and space is not None:
             space = without_names(space)
         views = drawing_element(_without_names(picture) if is_anonymous else picture, legend=False)
-    found = dict.fromkeys(
+    problem_places = dict.fromkeys(
         place for result in results if (place := _deciding_place(report, result)) is not None
     )
     shown = (
-        (location_text(one), source_lines(one, report.submission.source, _AROUND)) for one in found
+        (location_text(one), source_lines(one, report.submission.source, _AROUND))
+        for one in problem_places
     )
     places = [*islice(((words, lines) for words, lines in shown if lines), _MAX_PLACES)]
     return opened._replace(views=views, space=space, legend=legend, places=places)
 
 
 def _without_names(picture: Picture) -> Picture:
-    """Return a picture without the names of links, and so without the numbers and sentences about
-    them.
+    """Return a picture without the names of links.
+
+    And so without the numbers and sentences about them.
     """
     bodies = tuple(body._replace(link="") for body in picture.scene.bodies)
     scene = replace(picture.scene, bodies=bodies, missing=(), boxed=())
@@ -178,13 +183,14 @@ def _deciding_place(report: Report, result: Result) -> Location | None:
 
 
 def _unknown_place(report: Report, criterion: Criterion) -> Location | None:
-    """Return the place of what keeps a criterion from being determined: first in a file that its
-    check looks at.
+    """Return the place of what keeps a criterion from being determined.
+
+    First in a file that its check looks at.
     """
     if criterion.check.subject in _OF_ROBOT:
-        found = [one for one in report.problems if one.kind.effect == "undetermined"]
+        problems = [one for one in report.problems if one.kind.effect == "undetermined"]
     else:
-        own = [_UNKNOWN[name] for name in criterion.check.about.looks_at if name in _UNKNOWN]
-        found = [one for one in report.problems if one.code in _UNKNOWN.values()]
-        found.sort(key=lambda one: one.code not in own)
-    return found[0].location if found else None
+        own_codes = [_UNKNOWN[name] for name in criterion.check.about.looks_at if name in _UNKNOWN]
+        problems = [one for one in report.problems if one.code in _UNKNOWN.values()]
+        problems.sort(key=lambda one: one.code not in own_codes)
+    return problems[0].location if problems else None

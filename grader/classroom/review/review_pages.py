@@ -1,5 +1,6 @@
-"""The pages of a review in the browser: one item in words and pictures, the end of the review, a
-message.
+"""The pages of a review in the browser.
+
+One item in words and pictures, the end of the review, a message.
 """
 
 from collections.abc import Mapping, Sequence
@@ -74,8 +75,9 @@ class OpenedItem(NamedTuple):
 def filters(
     shown: ReviewFilter, questions: Sequence[str], sections: Sequence[str]
 ) -> list[tuple[object, ...]]:
-    """Return the lists to filter by: the name of each, its label, its values with their words,
-    the chosen value.
+    """Return the lists to filter by.
+
+    The name of each, its label, its values with their words, and the chosen value.
     """
     question_words = {"": "all questions"} | {question: question for question in questions}
     section_words = {"": "all sections"} | {section: section for section in sections}
@@ -92,8 +94,9 @@ def item_page(
     place: Mapping[str, Any],
     similar: Mapping[str, SimilarItem],
 ) -> str:
-    """Return the page of an item; `place` has its `number` and address among a `total`, and the
-    filters.
+    """Return the page of an item.
+
+    `place` has its `number` and address among a `total`, and the filters.
 
     The addresses of the pictures are ADDRESS/picture/1 and so on. `similar` are items by address.
     """
@@ -170,8 +173,9 @@ def _total(marks: Sequence[Mark | None]) -> str:
 
 
 def _marked_text(marks: Sequence[Mark | None], *, is_older: bool) -> str:
-    """Return what is marked of an item: the first mark, with the points of all; empty without
-    one.
+    """Return what is marked of an item: the first mark, with the points of all.
+
+    Empty without one.
     """
     given = [mark for mark in marks if mark is not None]
     if not given:
@@ -183,8 +187,9 @@ def _marked_text(marks: Sequence[Mark | None], *, is_older: bool) -> str:
 
 
 def end_page(marked: int, left: int, place: Mapping[str, Any], gradebook: str, lms: str) -> str:
-    """Return the page after the last item: how many marks were given, how many are left, and the
-    next command.
+    """Return the page after the last item.
+
+    How many marks were given, how many are left, and the next command.
 
     It exports the grades to the LMS that the class came from, if that is known.
     """
@@ -206,8 +211,9 @@ def end_page(marked: int, left: int, place: Mapping[str, Any], gradebook: str, l
 
 
 def error_page(message: str, following: str) -> str:
-    """Return the page of an item that cannot be shown; `following` is the address of the next
-    one.
+    """Return the page of an item that cannot be shown.
+
+    `following` is the address of the next one.
     """
     title = "This item cannot be shown"
     return _page("review-error.html", {"title": title, "message": message, "following": following})

@@ -1,5 +1,6 @@
-"""Grade what needs manual grading on a page in the browser, item by item, which a server on this
-machine serves.
+"""Grade what needs manual grading on a page in the browser, item by item.
+
+A server on this machine serves the page.
 
 It answers one request at a time, so that nothing is written concurrently.
 """
@@ -40,8 +41,9 @@ _CHANGED = "Not saved: this item has changed since it was shown. Look at it agai
 
 
 class ReviewPage:
-    """The application of the server: shows items of a session by number, and executes actions from
-    the page.
+    """The application of the server.
+
+    It shows items of a session by number, and executes actions from the page.
     """
 
     def __init__(self, session: ReviewSession) -> None:
@@ -78,8 +80,8 @@ class ReviewPage:
             case (_,) if is_item:
                 item = session.item_at(at)
                 place = self._place(at) | {"so_far": session.so_far(item)}
-                found = session.similar(at)[:_MAX_SIMILAR]
-                similar = {self.address(one.position): one for one in found}
+                similar_items = session.similar(at)[:_MAX_SIMILAR]
+                similar = {self.address(one.position): one for one in similar_items}
                 return html_response(
                     pages.item_page(item, open_item(session.book, item), place, similar)
                 )
@@ -196,8 +198,9 @@ class ReviewPage:
 def review_in_browser(
     session: ReviewSession, port: int, terminal: Terminal, *, opens: bool = True
 ) -> str:
-    """Serve the review page until Ctrl-C, write the grades, and return a summary; it `opens` the
-    page in the browser.
+    """Serve the review page until Ctrl-C, write the grades, and return a summary.
+
+    It `opens` the page in the browser.
 
     Raises InputError.
     """

@@ -81,9 +81,9 @@ class ReviewSession:
 
     def refresh(self) -> None:
         """Read the gradebook again if it has changed. Raises InputError."""
-        found = ((path, path.stat()) for pattern in _READ for path in self.folder.glob(pattern))
+        statuses = ((path, path.stat()) for pattern in _READ for path in self.folder.glob(pattern))
         stamps = [
-            (path, status.st_ino, status.st_size, status.st_mtime_ns) for path, status in found
+            (path, status.st_ino, status.st_size, status.st_mtime_ns) for path, status in statuses
         ]
         if stamps != self._stamps:
             self.book = Gradebook(self.folder)
@@ -95,8 +95,9 @@ class ReviewSession:
             self._arrange()
 
     def _arrange(self) -> None:
-        """Find the items that are shown, and join those of the same students that are open for
-        the same reason.
+        """Find the items that are shown.
+
+        Join those of the same students that are open for the same reason.
         """
         self.shown = {}
         for at, place in enumerate(self.places):
@@ -120,15 +121,17 @@ class ReviewSession:
 
     @property
     def left(self) -> int:
-        """The number of results that need manual grading, of the question and section that are
-        shown.
+        """The number of results that need manual grading.
+
+        Of the question and section that are shown.
         """
         unmarked = ReviewFilter(*self.filter[:2])
         return sum(len(unmarked.members(item)) for item in self.items.values())
 
     def item_at(self, at: int) -> ReviewItem:
-        """Return an item with the students that are shown, with others if none is. Raises
-        InputError if it is gone.
+        """Return an item with the students that are shown, with others if none is.
+
+        Raises InputError if it is gone.
         """
         if at in self._joined:
             return self._joined[at]
@@ -144,14 +147,16 @@ class ReviewSession:
         return next((at for at in self.listed if at > position), len(self.places))
 
     def previous(self, position: int) -> int:
-        """Return the position of the previous item that is shown, the same position if there is
-        none.
+        """Return the position of the previous item that is shown.
+
+        The same position if there is none.
         """
         return max((at for at in self.listed if at < position), default=position)
 
     def next_question(self, position: int) -> int:
-        """Return the position of the student's next item, after the last one that of the next
-        student's first.
+        """Return the position of the student's next item.
+
+        After the last one that of the next student's first.
 
         An item of several students is that of the first one.
         """
@@ -165,8 +170,9 @@ class ReviewSession:
         return len(self.places)
 
     def people(self, position: int) -> list[tuple[str, int, int]]:
-        """Return the students with items of the question and section that are shown, whatever their
-        state is.
+        """Return the students with items of the question and section that are shown.
+
+        Whatever their state is.
 
         Each has a label, the number of unmarked criteria, and the position of an item: of the same
         question as that at a position, else the first unmarked one.
@@ -187,8 +193,9 @@ class ReviewSession:
         return people
 
     def so_far(self, item: ReviewItem) -> str:
-        """Return the points of a student so far, and how many need manual grading; empty for
-        several students.
+        """Return the points of a student so far, and how many need manual grading.
+
+        Empty for several students.
         """
         grade = self.book.grade(item.members[0].student.key)
         if item.members[1:] or grade.total is None:
@@ -200,8 +207,9 @@ class ReviewSession:
 
     @property
     def lms(self) -> str:
-        """The LMS that the class came from, as its submissions or roster say; empty if they do
-        not.
+        """The LMS that the class came from, as its submissions or roster say.
+
+        Empty if they do not.
         """
         students = (self.book.student(one.student, one) for one in self.book.results.all())
         return next(
@@ -223,20 +231,21 @@ class ReviewSession:
         self._arrange()
 
     def similar(self, at: int) -> list[SimilarItem]:
-        """Return the unmarked items of the same question with similar answers, the most similar
-        first.
+        """Return the unmarked items of the same question with similar answers.
+
+        The most similar come first.
         """
-        item, found = self.item_at(at), list[SimilarItem]()
-        own = words_of(self._written(item))
+        item, similar_items = self.item_at(at), list[SimilarItem]()
+        own_words = words_of(self._written(item))
         for position, other in self.shown.items():
             is_same = other.criterion.id == item.criterion.id and position != at
             is_alone = not (item.also or self._joined[position].also)
             if is_same and is_alone and other.members[0].state == UNMARKED:
                 text = self._written(other)
-                share = share_of_words(own, words_of(text))
+                share = share_of_words(own_words, words_of(text))
                 if share:
-                    found.append(SimilarItem(position, other, text, share))
-        return sorted(found, key=lambda one: -one.share)
+                    similar_items.append(SimilarItem(position, other, text, share))
+        return sorted(similar_items, key=lambda one: -one.share)
 
     def _written(self, item: ReviewItem) -> str:
         """Return the written answer of an item; empty if it is not, or not only, words."""
@@ -262,23 +271,18 @@ class ReviewSession:
         """
         item = self.item_at(at)
         self._check_rows()
-        items = [item]
-        for position, view in similar:
-            items.append(self.item_at(position))
-            is_other = items[-1].criterion.id != item.criterion.id or bool(item.also)
-            if is_other or items[-1].view != view:
-                return None
-        if shown.removesuffix(CONFIRMED) != item.view:
+        items = self._similar_items(item, similar)
+        if items is None or shown.removesuffix(CONFIRMED) != item.view:
             return None
         values = points.split() if item.also else [points.strip()]
         if len(values) != len(item.all) or not all(values):
             raise InputError("points are missing")
         new, replaced = dict[Key, Mark](), list[Mark]()
-        for one, value in zip([*item.all, *items[1:]], values + values * len(similar), strict=True):
+        for one, value in zip([*item.all, *items], values + values * len(similar), strict=True):
             new |= self._marks_of(one, value, comment)
-            replaced += [
-                it.mark for it in one.members if it.mark is not None and it.mark.points is not None
-            ]
+            for member in one.members:
+                if member.mark is not None and member.mark.points is not None:
+                    replaced.append(member.mark)
         others = [mark for mark in replaced if mark.by != self.by]
         if others and not shown.endswith(CONFIRMED):
             return others
@@ -289,17 +293,32 @@ class ReviewSession:
         write_grades_with(len(new), self.book)
         return []
 
+    def _similar_items(
+        self, item: ReviewItem, similar: Sequence[tuple[int, str]]
+    ) -> list[ReviewItem] | None:
+        """Return the items at these positions; None if one is not as the person saw it.
+
+        They are of the same criterion as the item, which is alone.
+        """
+        items = []
+        for position, view in similar:
+            items.append(self.item_at(position))
+            is_other = items[-1].criterion.id != item.criterion.id or bool(item.also)
+            if is_other or items[-1].view != view:
+                return None
+        return items
+
     def _marks_of(self, item: ReviewItem, points: str, comment: str) -> dict[Key, Mark]:
         """Return the new mark of each student of an item. Raises InputError."""
         cells = {"time": "", "by": self.by, "points": points, "comment": comment, "": ""}
-        found = dict[Key, Mark]()
+        marks = dict[Key, Mark]()
         for one in item.members:
             key = one.student.key, item.criterion.id
             mark = mark_in(
                 {**cells, "submission": one.stored.digest}, key, item.criterion.points, ""
             )
-            found[key] = mark._replace(time=self.book.marks.next_time(key))
-        return found
+            marks[key] = mark._replace(time=self.book.marks.next_time(key))
+        return marks
 
     def _check_rows(self) -> None:
         """Raise InputError, once, if rows that this review wrote are no longer in the file."""
@@ -309,11 +328,13 @@ class ReviewSession:
             for key, mark in self.own.items()
             if key not in newest or "" < newest[key].time < mark.time
         ]
-        found = [self.own.pop(key) for key in lost]
-        if found:
-            rows = [f"{one.criterion} {one.value}" for one in found]
+        lost_marks = [self.own.pop(key) for key in lost]
+        if lost_marks:
+            rows = [f"{one.criterion} {one.value}" for one in lost_marks]
             if not self.is_anonymous:
-                rows = [f"{row} of {one.student}" for row, one in zip(rows, found, strict=True)]
+                rows = [
+                    f"{row} of {one.student}" for row, one in zip(rows, lost_marks, strict=True)
+                ]
             shown = printable_path(Path(names.MARKS, self.file.name))
             why = (
                 f"rows of this review are no longer in {shown}, which another program has replaced"
@@ -325,8 +346,9 @@ class ReviewSession:
 
 
 def write_sheet(session: ReviewSession, file: Path) -> str:
-    """Write the items that are shown into a new file, and return what to do with it. Raises
-    InputError.
+    """Write the items that are shown into a new file, and return what to do with it.
+
+    Raises InputError.
     """
     if os.path.lexists(file):
         raise InputError(

@@ -1,5 +1,6 @@
-"""The late penalty of a submission under a rubric's policy: a separate line, never part of a
-criterion.
+"""The late penalty of a submission under a rubric's policy.
+
+It is a separate line, never part of a criterion.
 
 As in Canvas (app/models/late_policy.rb): a percentage of the maximum for each day begun, and never
 below the floor.
@@ -24,8 +25,9 @@ _IN_MINUTES = re.compile(r"\S+[T ]\d\d(:?\d\d)?(Z|[+-].*)?")  # a time without s
 
 
 class Lateness(NamedTuple):
-    """The lateness of a submission: days begun, the penalty in points (0 or less), and the reason
-    in words.
+    """The lateness of a submission.
+
+    Days begun, the penalty in points (0 or less), and the reason in words.
 
     If the LMS does not tell when it was submitted, the days are a guess.
     """
@@ -37,18 +39,22 @@ class Lateness(NamedTuple):
 
 
 def lateness(
-    rubric: Rubric, times: Student, score: Decimal, deadline: datetime | None = None, own: str = ""
+    rubric: Rubric,
+    times: Student,
+    score: Decimal,
+    deadline: datetime | None = None,
+    own_deadline: str = "",
 ) -> Lateness:
     """Return the lateness of a student's submission with this score.
 
-    The deadline `own` of `grader mark STUDENT deadline` comes first, then the student's, `deadline`
-    and the rubric's.
+    The deadline of `grader mark STUDENT deadline`, `own_deadline`, comes first, then the student's,
+    `deadline` and the rubric's.
     """
     policy = rubric.late
-    if own:
+    if own_deadline:
         is_timed = times.submitted and times.days_late  # without a time no days can be counted
         days_late = None if is_timed else times.days_late
-        times = times._replace(due=own, extension_days=0.0, days_late=days_late)
+        times = times._replace(due=own_deadline, extension_days=0.0, days_late=days_late)
     days, reason, is_guess = _days_late(times, policy, deadline)
     if policy is None or not days:
         return Lateness(days, Decimal(0), reason)
@@ -77,8 +83,9 @@ def read_time(text: str, where: str = "") -> datetime:
 
 
 def time_text(when: datetime | str, zone: tzinfo | None = None) -> str:
-    """Return a time in a time zone, by default that of this machine, with its offset: 2026-11-20
-    23:59 (UTC+01:00).
+    """Return a time in a time zone with its offset: 2026-11-20 23:59 (UTC+01:00).
+
+    By default the time zone is that of this machine.
 
     A time without an offset is returned without one.
     """

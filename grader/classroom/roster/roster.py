@@ -88,8 +88,9 @@ _MAX_WORDS = 8
 
 
 class Student(NamedTuple):
-    """A student of a class, whose `key` is unique in it; what is not known of the others is
-    empty or None.
+    """A student of a class, whose `key` is unique in it.
+
+    What is not known of the others is empty or None.
     """
 
     key: str
@@ -120,8 +121,9 @@ class Roster(NamedTuple):
 
 
 def plain(word: str) -> str:
-    """Return an id, name or group without differences of case, spaces, `_` and `-`: `Doe, Jane`
-    is Jane Doe.
+    """Return an id, name or group without differences of case and spaces.
+
+    Nor of `_` and `-`. `Doe, Jane` is Jane Doe.
     """
     if not word.isascii():
         word = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", word).casefold())
@@ -130,8 +132,9 @@ def plain(word: str) -> str:
 
 
 def read_roster(data: bytes, shown: str) -> Roster:
-    """Return the roster in a CSV file, called `shown` in messages; raises InputError with a line
-    for each mistake.
+    """Return the roster in a CSV file, called `shown` in messages.
+
+    Raises InputError with a line for each mistake.
 
     A student's key is the id, else the university's id, login, address, name, or LMS id.
     """
@@ -147,15 +150,13 @@ def read_roster(data: bytes, shown: str) -> Roster:
             mistakes.append((line, why))
             continue
         row = _row(fields, cells)
-        if is_canvas:
-            if _is_no_student_in_canvas(row):
-                continue
-            if not row["canvas"] and row["id"].isdecimal():
-                row["canvas"] = row["id"]
+        if is_canvas and _is_no_student_in_canvas(row):
+            continue
+        if is_canvas and not row["canvas"] and row["id"].isdecimal():
+            row["canvas"] = row["id"]
         mistakes += ((line, why) for why in _normalise(row))
-        student = students[line] = _student(row)
-        has_no_status = not row["late"] and _days_of(row["status"]) is None
-        if student.is_late and student.days_late is None and has_no_status:
+        students[line] = _student(row)
+        if _is_lateness_unclear(students[line], row):
             notes.append(
                 f"line {line} of {shown}: {row['status']!r} does not say clearly how late the "
                 "submission is, and counts as late: add a column `late` with `no` or a number of "
@@ -170,9 +171,16 @@ def read_roster(data: bytes, shown: str) -> Roster:
     return Roster(tuple(students.values()), tuple(first_lines(notes, _MAX_MISTAKES)))
 
 
+def _is_lateness_unclear(student: Student, row: Mapping[str, str]) -> bool:
+    """Return whether a student is late, and neither column of the row says by how many days."""
+    has_days = bool(row["late"]) or _days_of(row["status"]) is not None
+    return bool(student.is_late) and student.days_late is None and not has_days
+
+
 def _fields(header: Sequence[str], shown: str) -> list[str]:
-    """Return the field of each column, empty for one of another title; raises InputError if none
-    of them identifies a student.
+    """Return the field of each column, empty for one of another title.
+
+    Raises InputError if none of them identifies a student.
     """
     fields = [_FIELD_OF.get(folded(title), "") for title in header]
     if header and _WHO.isdisjoint(fields):
@@ -190,8 +198,9 @@ def _is_from_canvas(header: Iterable[str]) -> bool:
 
 
 def _row(fields: Sequence[str], cells: Sequence[str]) -> dict[str, str]:
-    """Return the cells of a row by field; of several columns for one field the first counts that
-    is not empty.
+    """Return the cells of a row by field.
+
+    Of several columns for one field the first counts that is not empty.
     """
     row = dict.fromkeys(_TITLES, "")
     for field, cell in zip(fields, cells, strict=False):
@@ -206,12 +215,13 @@ def _is_no_student_in_canvas(row: Mapping[str, str]) -> bool:
 
 
 def _normalise(row: dict[str, str]) -> Iterator[str]:
-    """Move Moodle's numbers to their field, write times as ISO 8601, empty the cells that are
-    wrong, and yield why.
+    """Move Moodle's numbers to their field, and write times as ISO 8601.
+
+    Empty the cells that are wrong, and yield why.
     """
     for field in ("id", "moodle"):
-        if found := _PARTICIPANT.fullmatch(row[field]):
-            row[field], row["moodle"] = "", found[1]
+        if match := _PARTICIPANT.fullmatch(row[field]):
+            row[field], row["moodle"] = "", match[1]
     if not any(map(row.__getitem__, _WHO)):
         yield "has no id, login, name or email address: add one of them"
     if row["due"] and iso_time(row["extension"]):
@@ -228,8 +238,9 @@ def _normalise(row: dict[str, str]) -> Iterator[str]:
 
 
 def _student(row: dict[str, str]) -> Student:
-    """Return the student in a row with values as they should be; without a key if it identifies
-    none.
+    """Return the student in a row with values as they should be.
+
+    Without a key if it identifies none.
     """
     name = row["name"] or f"{row['first']} {row['last']}".strip()
     login, sis = row["login"] or row["github"], row["sis"]
@@ -285,8 +296,9 @@ def _days(text: str) -> float | None:
 
 
 def _days_of(status: str) -> float | None:
-    """Return by how many days Moodle's Status says that a submission was late; None if that is
-    not clear.
+    """Return by how many days Moodle's Status says that a submission was late.
+
+    None if that is not clear.
     """
     for part in map(str.strip, status.casefold().split(" - ")):
         if re.fullmatch(rf"{_UNIT}(?: {_UNIT})? late", part):
@@ -297,8 +309,9 @@ def _days_of(status: str) -> float | None:
 
 
 def _duplicates(students: Mapping[int, Student]) -> Iterator[tuple[int, str]]:
-    """Yield a line and a message for each student with an id or address that another student
-    has.
+    """Yield a line and a message for each duplicate.
+
+    It is a student with an id or address that another student has.
     """
     wrong: set[int] = set()
     for field, title in _UNIQUE.items():
@@ -339,8 +352,9 @@ class _Match(NamedTuple):
 
     @property
     def owners(self) -> tuple[int, ...]:
-        """The student whom it belongs to, or each member of its group; empty if that is not
-        certain.
+        """The student whom it belongs to, or each member of its group.
+
+        Empty if that is not certain.
         """
         if self.by == GROUP or (len(self.students) == 1 and self.by < GROUP):
             return self.students
@@ -356,14 +370,14 @@ class People:
         self._groups: dict[str, list[int]] = defaultdict(list)
         lms_ids, exact, words, names = self._known
         for index, student in enumerate(students):
-            own = (index,)  # kept once for all words that only this student has
+            own_index = (index,)  # kept once for all words that only this student has
             ids = [student.key, student.login, student.sis, student.email, *student.aliases]
             user = student.email.partition("@")[0]
             spellings = (plain(student.name), plain(user), _surname(student.name))
-            _add(own, _lms_ids(student), lms_ids)
-            _add(own, ids, exact)
-            _add(own, map(plain, ids), words)
-            _add(own, (*spellings, *_in_canvas(student.name)), names)
+            _add(own_index, _lms_ids(student), lms_ids)
+            _add(own_index, ids, exact)
+            _add(own_index, map(plain, ids), words)
+            _add(own_index, (*spellings, *_in_canvas(student.name)), names)
             for word in {plain(student.group), letters(student.group)} - {""}:
                 self._groups[word].append(index)
 
@@ -372,14 +386,16 @@ class People:
         return self._groups.get(plain(group), ())
 
     def knows(self, name: str, team: str = "") -> bool:
-        """Return whether a name is that of one student, in a team also the surname, or else of a
-        group.
+        """Return whether a name is that of one student, or else of a group.
+
+        In a team it may also be the surname.
         """
         return bool(self.match(Student(name, login=name, group=team)).owners)
 
     def match(self, claim: Student) -> _Match:
-        """Return whose a submission is by what its name claims; with a `group`, only of a member of
-        that team.
+        """Return whose a submission is by what its name claims.
+
+        With a `group`, only of a member of that team.
 
         What has the name of a group is the group's, unless an id in it is that of another student:
         Canvas writes the id of a member, Moodle a number of the group's own. Of `aliases` it is not
@@ -389,21 +405,25 @@ class People:
             users = [f"canvas {user}" for user in claim.aliases]
             return _Match(self._having(users, self._known[_LMS_ID]))
         name = letters(claim.name) if claim.canvas else plain(claim.name or claim.login)
-        found, group = self._person(claim, name), [] if claim.group else self._groups.get(name, [])
-        is_own_name = found.by == _LMS_ID and found.students[0] in self._known[-1].get(name, ())
-        if is_own_name or not {*group}.difference(found.students):
-            return found
-        if found.by == _LMS_ID and claim.canvas:
-            if found.students[0] in group:
+        matched = self._person(claim, name)
+        group = [] if claim.group else self._groups.get(name, [])
+        is_own_name = matched.by == _LMS_ID and matched.students[0] in self._known[-1].get(name, ())
+        if is_own_name or not {*group}.difference(matched.students):
+            return matched
+        if matched.by == _LMS_ID and claim.canvas:
+            if matched.students[0] in group:
                 return _Match(tuple(group), GROUP)
-            return found
-        if found.students or (claim.canvas and any(self.students[index].canvas for index in group)):
-            return _Match(tuple(sorted({*found.students, *group})))
+            return matched
+        if matched.students or (
+            claim.canvas and any(self.students[index].canvas for index in group)
+        ):
+            return _Match(tuple(sorted({*matched.students, *group})))
         return _Match(tuple(group), GROUP)
 
     def _person(self, claim: Student, name: str) -> _Match:
-        """Return the students with the best words of a claim, without those whom the LMS knows by
-        another id.
+        """Return the students with the best words of a claim.
+
+        Without those whom the LMS knows by another id.
         """
         login = plain(claim.login)
         names = [name, login, _surname(login) if claim.group else ""]
@@ -424,20 +444,20 @@ class People:
         return tuple(sorted({index for word in words for index in table.get(word, ())}))
 
 
-def _add(own: tuple[int], words: Iterable[str], table: dict[str, tuple[int, ...]]) -> None:
+def _add(own_index: tuple[int], words: Iterable[str], table: dict[str, tuple[int, ...]]) -> None:
     """Add the index of a student to a table of those who have a word."""
     for word in filter(None, words):
         composed = unicodedata.normalize("NFC", word)
         if composed not in table:
-            table[composed] = own
-        elif table[composed][-1:] != own:
-            table[composed] += own
+            table[composed] = own_index
+        elif table[composed][-1:] != own_index:
+            table[composed] += own_index
 
 
 def _has_other_lms_id(student: Student, claim: Student) -> bool:
     """Return whether the LMS knows a student by another id than that in a claim."""
     ids = ((student.canvas, claim.canvas), (student.moodle, claim.moodle))
-    return any(own and given and own != given for own, given in ids)
+    return any(own_id and given and own_id != given for own_id, given in ids)
 
 
 def _lms_ids(student: Student) -> list[str]:
@@ -463,8 +483,9 @@ def letters(name: str) -> str:
 
 
 def _in_canvas(name: str) -> Iterable[str]:
-    """Return what Canvas may call a student in names of files: sorted by any word of the name, or
-    as the user set.
+    """Return what Canvas may call a student in names of files.
+
+    It is sorted by any word of the name, or as the user set.
     """
     words = name.split()[:_MAX_WORDS]
     if "," in name:

@@ -27,8 +27,9 @@ class NotCountedError(InputError):
 
 
 def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
-    """Return the only student whom a typed name may mean: an id, login, address or number, or some
-    words of the name.
+    """Return the only student whom a typed name may mean.
+
+    It is an id, login, address or number, or some words of the name.
 
     Raises InputError: if several students match, it lists them; else similar names; else it ends
     with `advice`.
@@ -43,7 +44,9 @@ def find_typed(students: Sequence[Student], name: str, advice: str) -> Student:
         return fitting[0]
     if fitting:
         names = [f" ({printable(student.name)})" if student.name else "" for student in fitting]
-        labels = [f"{student.key!r}{own}" for student, own in zip(fitting, names, strict=True)]
+        labels = [
+            f"{student.key!r}{own_name}" for student, own_name in zip(fitting, names, strict=True)
+        ]
         raise InputError(
             f"{name!r} is ambiguous: it may be {enumerated(labels, _MAX_LISTED, 'or')}; use "
             "one of these ids"
@@ -82,8 +85,9 @@ def _clues(students: tuple[Student, ...]) -> list[tuple[Student, set[str], set[s
 
 
 def known(noun: str, cell: str, names: Collection[str]) -> str:
-    """Return the student or criterion in a cell; raises NotCountedError, or InputError for a
-    changed cell.
+    """Return the student or criterion in a cell.
+
+    Raises NotCountedError, or InputError for a changed cell.
     """
     if cell in names:
         return cell
@@ -96,8 +100,9 @@ def known(noun: str, cell: str, names: Collection[str]) -> str:
 
 
 def as_number(cell: str, names: tuple[str, ...]) -> list[str]:
-    """Return the names that a spreadsheet may have changed into a number: 0012 into 12, 123456 into
-    1.2E+05.
+    """Return the names that a spreadsheet may have changed into a number.
+
+    For example 0012 into 12, 123456 into 1.2E+05.
     """
     if (number := number_in(cell)) is None:
         return []
@@ -120,8 +125,9 @@ def number_in(text: str) -> Decimal | None:
 
 
 def read_points(text: str, name: str, most: Decimal) -> Decimal:
-    """Return the points in a text, from 0 to `most`; raises InputError, which names what they are
-    for and the range.
+    """Return the points in a text, from 0 to `most`.
+
+    Raises InputError, which names what they are for and the range.
     """
     points, text = number_in(text), text.strip()
     if points is not None and not 0 <= points <= most:

@@ -1,5 +1,6 @@
-"""Grade a class: send new and changed submissions to the workers, write each result into the
-gradebook at once.
+"""Grade a class.
+
+Send new and changed submissions to the workers, write each result into the gradebook at once.
 """
 
 from collections.abc import Callable
@@ -22,8 +23,9 @@ _OF_PERSON = ("name", "email", "login", "sis", "canvas", "moodle")
 
 
 class Batch:
-    """One run over a class. `context` is the hash of all that results depend on besides the
-    submissions.
+    """One run over a class.
+
+    `context` is the hash of all that results depend on besides the submissions.
     """
 
     def __init__(
@@ -52,8 +54,9 @@ class Batch:
         *,
         force: bool = False,
     ) -> Progress:
-        """Grade all submissions that have no current result, and empty the list: a large class
-        takes memory.
+        """Grade all submissions that have no current result, and empty the list.
+
+        A large class takes memory.
 
         One whose grading is lost is graded without its documents, if it has any; if that is lost as
         well, it is `errored`. One that used up its processor time is kept like a grade.
@@ -116,11 +119,11 @@ class Batch:
         self, result: StoredResult, submission: ClassSubmission, current: StoredResult | None
     ) -> bytes:
         """Return the line of a result, empty if the file has it."""
-        found = current if result.verdict == "unchanged" and current is not None else result
+        shown = current if result.verdict == "unchanged" and current is not None else result
         person = {
             name: value for name in _OF_PERSON if (value := getattr(submission.student, name))
         }
-        new = found._replace(
+        new = shown._replace(
             context=self._context,
             root=submission.root,
             paths=submission.paths,

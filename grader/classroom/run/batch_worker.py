@@ -1,5 +1,6 @@
-"""The work of a worker process: grade submissions one by one. All data is plain and can be sent to
-any process.
+"""The work of a worker process: grade submissions one by one.
+
+All data is plain and can be sent to any process.
 """
 
 from collections.abc import Mapping, Sequence
@@ -56,8 +57,9 @@ class Task(NamedTuple):
 
 
 def grade_all(context: ClassContext, tasks: Sequence[Task]) -> list[StoredResult]:
-    """Grade submissions one after the other, in isolation: an error affects only its own
-    submission.
+    """Grade submissions one after the other, in isolation.
+
+    An error affects only its own submission.
     """
     return [_grade_within_limits(context, task) for task in tasks]
 
@@ -148,12 +150,13 @@ def _stored_criterion(result: Result) -> StoredCriterion:
 
 
 def _answers_of(report: Report, digest: str) -> tuple[dict[str, str], dict[str, str]]:
-    """Return the key of the answer for each criterion that needs manual grading, empty if there is
-    nothing to read, and the answers that are words.
+    """Return the key of the answer for each criterion that needs manual grading.
+
+    It is empty if there is nothing to read. The answers that are words come with the keys.
 
     It is that of the words, or of the whole submission where more than words is to be looked at.
     """
-    found, written = dict[str, str](), dict[str, str]()
+    automatic, written = dict[str, str](), dict[str, str]()
     for one in report.results:
         if one.outcome.status != "pending":
             continue
@@ -162,8 +165,8 @@ def _answers_of(report: Report, digest: str) -> tuple[dict[str, str], dict[str, 
             written[one.criterion.id] = content[:_MAX_ANSWER]
         if not content and not is_empty(one, report):
             content = digest
-        found[one.criterion.id] = digest_of(content) if content else ""
-    return found, written
+        automatic[one.criterion.id] = digest_of(content) if content else ""
+    return automatic, written
 
 
 def given_up(context: ClassContext, task: Task, error: WorkerError, digest: str) -> StoredResult:
@@ -193,8 +196,9 @@ def _undecided(context: ClassContext, result: StoredResult) -> StoredResult:
 
 
 def reference_hashes(data: bytes, path: str) -> tuple[str, ...]:
-    """Return the hashes of the work in a rubric's reference; raises InputError if nothing can be
-    graded without it.
+    """Return the hashes of the work in a rubric's reference.
+
+    Raises InputError if nothing can be graded without it.
     """
     rubric = _rubric_from(data, path)
     if rubric.solution is not None and rubric.compares_with_reference:
@@ -206,8 +210,9 @@ def reference_hashes(data: bytes, path: str) -> tuple[str, ...]:
 
 
 def _why_unreadable(submission: Submission) -> str:
-    """Return why nothing in a submission could be read, although its folder could; empty if
-    something was read.
+    """Return why nothing in a submission could be read, although its folder could.
+
+    Empty if something was read.
 
     A damaged or empty archive makes a submission unreadable if there is nothing else to grade.
     """

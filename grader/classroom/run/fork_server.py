@@ -1,5 +1,6 @@
-"""Loaded only by the fork server: workers start with all checks, and silently if the command
-ends.
+"""Loaded only by the fork server.
+
+Workers start with all checks, and silently if the command ends.
 """
 
 import sys

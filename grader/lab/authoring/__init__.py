@@ -1,5 +1,6 @@
-"""A rubric from a reference solution, whose facts are written as criteria, and its test by mutants
-and equivalents.
+"""Rubrics from reference solutions, and their tests.
+
+The facts of a reference are written as criteria. A rubric is tested by mutants and equivalents.
 
 It imports `hints`, `grading` and below. Begin with `draft.py`; a rubric is tested in
 `rubric_test.py`.

@@ -1,5 +1,6 @@
-"""Write a rubric: try the facts of a reference on it, and write those that it passes in TOML, as a
-person would.
+"""Write a rubric from the facts of a reference.
+
+The facts are tried on the reference. Those that it passes are written in TOML, as a person would.
 
 Each criterion has the usual tolerances of its check; those about one link follow each other under
 its heading.
@@ -113,9 +114,7 @@ class Head(NamedTuple):
 
 
 class _DraftCriterion(NamedTuple):
-    """A criterion of a new rubric: a fact that the reference passes, and what the check says of
-    it.
-    """
+    """A criterion of a new rubric: a fact that the reference passes, and what the check says."""
 
     fact: Fact
     title: str
@@ -146,13 +145,13 @@ def draft(
     Other values of parameters are in it as comments. Without a robot it has no `solution`. Raises
     InputError.
     """
-    found = _chosen_facts(submission, solution, choice)
+    chosen = _chosen_facts(submission, solution, choice)
     subjects: dict[str, Any] = {"submission": submission}
     if solution is not None:
         subjects |= {"urdf": solution.reading, "robot": solution.robot, "reference": solution.robot}
     rows_by_fact: dict[tuple[str, str | None, str], _DraftCriterion] = {}
     omissions: list[Omission] = []
-    for fact in found:
+    for fact in chosen:
         row = fact if isinstance(fact, Omission) else _tried(subjects, fact)
         if isinstance(row, Omission):
             omissions.append(row)
@@ -170,8 +169,9 @@ def draft(
 def _chosen_facts(
     submission: Submission, solution: Solution | None, choice: DraftChoice
 ) -> list[Fact | Omission]:
-    """Return the facts of a reference that are chosen, without the names that are free. Raises
-    InputError for too many.
+    """Return the facts of a reference that are chosen, without the names that are free.
+
+    Raises InputError for too many.
     """
     started = [*words_of_launches(submission)]
     of_robot: Iterable[Fact | Omission] = ()
@@ -198,20 +198,23 @@ def _chosen_facts(
 def _values(
     subjects: _Subjects, submission: Submission, known: Collection[str]
 ) -> Mapping[str, list[_DraftCriterion]]:
-    """Return the values of parameters that the reference certainly gets, by the names of the
-    nodes.
-    """
-    found: dict[str, list[_DraftCriterion]] = {}
-    facts = (it for it in value_facts(submission) if it.words not in known)
-    for row in (_tried(subjects, it) for it in islice(facts, _MAX_FACTS)):
+    """Return the values of parameters that the reference certainly gets, by the names of nodes."""
+    rows_by_subject: dict[str, list[_DraftCriterion]] = {}
+    facts = (
+        candidate_fact
+        for candidate_fact in value_facts(submission)
+        if candidate_fact.words not in known
+    )
+    for row in (_tried(subjects, fact) for fact in islice(facts, _MAX_FACTS)):
         if isinstance(row, _DraftCriterion):
-            found.setdefault(row.fact.about, []).append(row)
-    return found
+            rows_by_subject.setdefault(row.fact.about, []).append(row)
+    return rows_by_subject
 
 
 def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
-    """Return the first of the facts that the reference passes; or what it does not pass, and
-    why.
+    """Return the first of the facts that the reference passes.
+
+    Or what it does not pass, and why.
     """
     reasons = []
     for one in (fact, *fact.otherwise):
@@ -224,7 +227,9 @@ def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
             reasons.append(f"an argument must be {error}")
             continue
         if outcome.status == "passed":
-            carried = tuple(it for it in one.carried if _holds(subjects, one, it))
+            carried = tuple(
+                carried_fact for carried_fact in one.carried if _holds(subjects, one, carried_fact)
+            )
             title = cut(one.title or outcome.message, _MAX_TITLE)
             return _DraftCriterion(one._replace(carried=carried), capitalised(title))
         reasons.append(outcome.mistake if outcome.status == "pending" else outcome.message)
@@ -241,8 +246,9 @@ def _holds(subjects: _Subjects, fact: Fact, carried: CarriedFact) -> bool:
 
 
 def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
-    """Return what a check says of the reference; raise WrongValue for an argument that it does
-    not take.
+    """Return what a check says of the reference.
+
+    Raise WrongValue for an argument that it does not take.
     """
     check = find_check(fact.check)
     assert check is not None
@@ -286,7 +292,7 @@ def _rubric_text(
     if of_package:
         title = "The package" if len(head.packages) == 1 else "The packages"
         lines += _part_lines(_PACKAGE, title, "package")
-    shown = {node: found[:_MAX_VALUES] for node, found in values.items()}
+    shown = {node: criteria_of_node[:_MAX_VALUES] for node, criteria_of_node in values.items()}
     named = _with_ids([*of_robot, *of_package, *chain.from_iterable(shown.values())])
     ids = {row.fact.words: name for name, row in named.items()}
     # A criterion refers to no value, which is only a comment.
@@ -326,13 +332,18 @@ def _points(
         shares = {_ROBOT: of_rest, _PACKAGE: rest - of_rest, _NAMES: _OF_NAMES}
         groups = [_ROBOT] * len(of_robot)
         groups += [_NAMES if row in families else _PACKAGE for row in of_package]
-    if not of_robot:
-        shares[_PACKAGE] += shares.pop(_ROBOT)
-    if _NAMES in shares and not families:
-        shares[_PACKAGE] += shares.pop(_NAMES)
-    elif _NAMES in shares and len(families) == len(of_package):
-        shares[_NAMES] += shares.pop(_PACKAGE)
+    _join_empty_shares(shares, groups)
     return _shared(shares, groups, weights)
+
+
+def _join_empty_shares(shares: dict[str, int], groups: Sequence[str]) -> None:
+    """Give the share of a group without criteria to another one."""
+    if _ROBOT not in groups:
+        shares[_PACKAGE] += shares.pop(_ROBOT)
+    if _NAMES in shares and _NAMES not in groups:
+        shares[_PACKAGE] += shares.pop(_NAMES)
+    elif _NAMES in shares and _PACKAGE not in groups:
+        shares[_NAMES] += shares.pop(_PACKAGE)
 
 
 def _weight(row: _DraftCriterion, choice: DraftChoice) -> int:
@@ -345,8 +356,10 @@ def _weight(row: _DraftCriterion, choice: DraftChoice) -> int:
 
 
 def _shared(shares: Mapping[str, int], groups: Sequence[str], weights: Sequence[int]) -> list[int]:
-    """Return the points of criteria by their weights: those of each group have its share of 100
-    points, or of the least multiple that leaves each criterion one.
+    """Return the points of criteria by their weights.
+
+    Those of each group have its share of 100 points, or of the least multiple that leaves each
+    criterion one.
     """
     counts = Counter(groups)
     multiple = max(-(-counts[group] // share) for group, share in shares.items())
@@ -360,8 +373,9 @@ def _shared(shares: Mapping[str, int], groups: Sequence[str], weights: Sequence[
 
 
 def _apportioned(points: int, weights: Sequence[int]) -> list[int]:
-    """Return whole points by weights, at least one for each; the rest goes to the largest
-    remainders, of equal ones to the first.
+    """Return whole points by weights, at least one for each.
+
+    The rest goes to the largest remainders, of equal ones to the first.
     """
     total = sum(weights)
     exact = [points * weight / total for weight in weights]
@@ -400,17 +414,17 @@ def _value_lines(
 
 def _with_ids(rows: Sequence[_DraftCriterion]) -> dict[str, _DraftCriterion]:
     """Return the rows by ids of what they are about and their checks, such as upper-arm-mass-is."""
-    found: dict[str, _DraftCriterion] = {}
+    rows_by_name: dict[str, _DraftCriterion] = {}
     numbers: dict[str, int] = {}  # the last that each name got
     for row in rows:
         name = words = (
             re.sub(r"[\W_]+", "-", row.fact.words.lower()).strip("-")[:_MAX_ID].strip("-")
         )
-        while name in found:
+        while name in rows_by_name:
             numbers[words] = numbers.get(words, 1) + 1
             name = f"{words}-{numbers[words]}"
-        found[name] = row
-    return found
+        rows_by_name[name] = row
+    return rows_by_name
 
 
 def _head_lines(head: Head) -> Iterator[str]:
@@ -491,13 +505,16 @@ class _Layout(NamedTuple):
             )
 
     def _carried(self, fact: Fact) -> Iterator[Mapping[str, Any]]:
-        """Yield what counts instead of a fact, and after which mistakes, if criteria are about
-        these.
+        """Yield what counts instead of a fact, and after which mistakes.
+
+        Nothing if no criteria are about these.
         """
-        for it in fact.carried:
-            causes = [self.ids[words] for words in dict.fromkeys(it.causes) if words in self.ids]
+        for carried_fact in fact.carried:
+            causes = [
+                self.ids[words] for words in dict.fromkeys(carried_fact.causes) if words in self.ids
+            ]
             if causes:
-                yield {"from": causes, "check": it.check, "with": it.arguments}
+                yield {"from": causes, "check": carried_fact.check, "with": carried_fact.arguments}
 
 
 def _with_lines(table: str, arguments: Mapping[str, Any], width: int = _WIDTH) -> Iterator[str]:

@@ -1,5 +1,6 @@
-"""What of a reference becomes a criterion of a draft, and what the handout leaves open: the options
-of `grader rubric new`.
+"""What of a reference becomes a criterion of a draft, and what the handout leaves open.
+
+These are the options of `grader rubric new`.
 """
 
 from collections.abc import Mapping
@@ -63,8 +64,10 @@ class DraftChoice(NamedTuple):
         return not any(fact.check in _KINDS.get(word, ()) for word in self.without)
 
     def freed(self, fact: Fact, robot: Configuration | None) -> Fact | Omission | None:
-        """Return a fact that asks for none of the free names; None if nothing is left of it, and
-        what is omitted where no place in the tree names a link.
+        """Return a fact that asks for none of the free names.
+
+        None if nothing is left of it, and what is omitted where no place in the tree names
+        a link.
         """
         if not self.free:
             return fact
@@ -126,8 +129,9 @@ class DraftChoice(NamedTuple):
         return [item for item in given if not self._is_free(item)]
 
     def _is_free(self, value: Any) -> bool:
-        """Return whether a value is a free name, ends in one as the path of a file or the name of a
-        topic does, or is a list with one.
+        """Return whether a value is a free name, or a list with one.
+
+        It also is if it ends in one, as the path of a file or the name of a topic does.
         """
         if isinstance(value, list):
             return any(self._is_free(item) for item in value)

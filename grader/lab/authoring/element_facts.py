@@ -44,8 +44,9 @@ _Values = dict[str, Any]
 
 
 def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
-    """Yield the values in each element for simulators and controllers; `causes` change the
-    arguments of xacro.
+    """Yield the values in each element for simulators and controllers.
+
+    `causes` change the arguments of xacro.
 
     What a controller needs of a joint is left to the names of controllers.
     """
@@ -58,34 +59,36 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
         if joint.name not in links and "'" not in joint.child:
             selectors[joint.name] = f"{JOINT_OF}{joint.child}"
     joints.update(selectors.values())
-    found = read_agreement(solution.submission.workspace)
+    agreement = read_agreement(solution.submission.workspace)
 
-    def asked(it: Fact | Omission) -> Fact | Omission:
-        if isinstance(it, Omission):
-            return it
-        if found.holds("topics"):
-            it = _without_topics(it)
-        if found.holds("files"):
-            it = _without_files(it)
-        it = _by_links(it, selectors)
-        return it._replace(title=_title(it))
+    def asked(entry: Fact | Omission) -> Fact | Omission:
+        if isinstance(entry, Omission):
+            return entry
+        if agreement.holds("topics"):
+            entry = _without_topics(entry)
+        if agreement.holds("files"):
+            entry = _without_files(entry)
+        entry = _by_links(entry, selectors)
+        return entry._replace(title=_title(entry))
 
     without_launch = _root_without_launch_files(solution)
     without = None if without_launch is None else [*map(asked, _entries(without_launch, covered))]
     met: Counter[str] = Counter()
-    for it in map(asked, _entries(solution.root, covered)):
-        if isinstance(it, Omission):
-            yield it
+    for entry in map(asked, _entries(solution.root, covered)):
+        if isinstance(entry, Omission):
+            yield entry
             continue
-        met[it.words] += 1
-        carried = [*_carried_from_names(it, joints, links)]
+        met[entry.words] += 1
+        carried = [*_carried_from_names(entry, joints, links)]
         if without is not None:
             others = [
-                one.arguments for one in without if isinstance(one, Fact) and one.words == it.words
+                one.arguments
+                for one in without
+                if isinstance(one, Fact) and one.words == entry.words
             ]
-            other = others[met[it.words] - 1] if len(others) >= met[it.words] else None
-            carried += _carried_from_launch(it, other, (*_OF_ARGUMENTS, *causes))
-        yield it._replace(carried=tuple(carried))
+            other = others[met[entry.words] - 1] if len(others) >= met[entry.words] else None
+            carried += _carried_from_launch(entry, other, (*_OF_ARGUMENTS, *causes))
+        yield entry._replace(carried=tuple(carried))
 
 
 def _without_topics(fact: Fact) -> Fact:
@@ -99,8 +102,9 @@ def _without_topics(fact: Fact) -> Fact:
 
 
 def _without_files(fact: Fact) -> Fact:
-    """Return a fact without the paths of files, whose names are free: a build has to install
-    them.
+    """Return a fact without the paths of files, whose names are free.
+
+    A build has to install them.
     """
     values = {
         path: value
@@ -111,18 +115,21 @@ def _without_files(fact: Fact) -> Fact:
 
 
 def _by_links(fact: Fact, selectors: Mapping[str, str]) -> Fact:
-    """Return a fact with joints named by the links that they hold; `selectors` has these by the
-    names of joints.
+    """Return a fact with joints named by the links that they hold.
+
+    `selectors` has these by the names of joints.
     """
     at, values = fact.arguments["at"], fact.arguments.get("values", {})
     is_joint, is_of_system = at.endswith("/joint"), at.startswith("ros2_control")
-    at = _REFERENCE.sub(lambda it: f"[{it[1]}='{selectors.get(it[2], it[2])}']", at)
+    at = _REFERENCE.sub(
+        lambda reference: f"[{reference[1]}='{selectors.get(reference[2], reference[2])}']", at
+    )
 
     def named(key: str, value: Any) -> Any:
         if not (is_of_system or _JOINT_KEY.search(key) or (is_joint and key == "@name")):
             return value
         if isinstance(value, list):
-            return [selectors.get(it, it) for it in value]
+            return [selectors.get(name, name) for name in value]
         return selectors.get(value, value)
 
     return fact._replace(
@@ -142,8 +149,9 @@ def _carried_from_names(
 
 
 def _root_without_launch_files(solution: Solution) -> Element | None:
-    """Return the <robot> if no launch file gives arguments to xacro; None where there is no
-    robot.
+    """Return the <robot> if no launch file gives arguments to xacro.
+
+    None where there is no robot.
     """
     urdf, submission = solution.submission.urdf, solution.submission
     if not isinstance(urdf, Read) or not urdf.is_expanded:
@@ -156,8 +164,9 @@ def _root_without_launch_files(solution: Solution) -> Element | None:
 def _carried_from_launch(
     fact: Fact, other: Mapping[str, Any] | None, causes: tuple[str, ...]
 ) -> list[CarriedFact]:
-    """Return what counts instead of a fact if launch files give xacro no arguments: what stays true
-    without them.
+    """Return what counts instead of a fact if launch files give xacro no arguments.
+
+    This is what stays true without them.
     """
     if other == fact.arguments:
         return []
@@ -170,18 +179,24 @@ def _carried_from_launch(
 
 def _weakened(arguments: Mapping[str, Any], names: Collection[str]) -> Mapping[str, Any]:
     """Return the arguments without conditions and values that are names of joints and links."""
-    at = _CONDITION.sub(lambda found: "" if found[1] in names else found[0], arguments["at"])
+    at = _CONDITION.sub(
+        lambda condition: "" if condition[1] in names else condition[0], arguments["at"]
+    )
     return _entry(
         at,
-        {key: it for key, it in arguments.get("values", {}).items() if not _names_any(it, names)},
+        {
+            key: expected
+            for key, expected in arguments.get("values", {}).items()
+            if not _names_any(expected, names)
+        },
     )
 
 
 def _names_any(value: Any, names: Collection[str]) -> bool:
     """Return whether a value is a name, or a list with one."""
     return any(
-        isinstance(it, str) and it in names
-        for it in (value if isinstance(value, list) else [value])
+        isinstance(word, str) and word in names
+        for word in (value if isinstance(value, list) else [value])
     )
 
 
@@ -244,8 +259,9 @@ def _value_words(value: Any) -> str:
 
 
 def _entries(root: Element, covered: Collection[str]) -> Facts:
-    """Yield the values in each element, without the interfaces that are `covered`; or why it is
-    omitted.
+    """Yield the values in each element, or why it is omitted.
+
+    The interfaces that are `covered` are left out.
     """
     for element in foreign_elements(root):
         about = f"<{name_of(element)}>"
@@ -292,15 +308,18 @@ def _drop_free(values: _Values, tag: str) -> None:
 
 def _drop_covered(values: _Values, covered: Collection[str]) -> None:
     """Remove the command interfaces of a joint if controllers need all of them."""
-    found = values.get(_INTERFACE, [])
-    interfaces = found if isinstance(found, list) else [found]
-    if interfaces and all(f"{values.get('@name')}/{it}" in covered for it in interfaces):
+    interface_value = values.get(_INTERFACE, [])
+    interfaces = interface_value if isinstance(interface_value, list) else [interface_value]
+    if interfaces and all(
+        f"{values.get('@name')}/{interface}" in covered for interface in interfaces
+    ):
         del values[_INTERFACE]
 
 
 def _element_values(element: Element) -> Iterator[tuple[str, str, _Values]]:
-    """Yield the plain values in an element, then those in each child that has elements or
-    attributes.
+    """Yield the plain values in an element, then those in its children.
+
+    The children are those that have elements or attributes.
 
     Each has a label, the path of the child, and values by their paths in it.
     """
@@ -319,19 +338,19 @@ def _element_values(element: Element) -> Iterator[tuple[str, str, _Values]]:
 
 def _values_by_path(element: Element, path: str = "") -> _Values:
     """Return all attributes and texts in an element by their paths; of repeated ones a list."""
-    found: _Values = {}
+    values_by_path: _Values = {}
     for key, text in element.attrib.items():
-        _add(found, f"{path}@{key!s}", _value(str(text)))
+        _add(values_by_path, f"{path}@{key!s}", _value(str(text)))
     for child in _children(element):
         inner = f"{path}{name_of(child)}"
         if not _children(child) and (text_in(child) or not child.attrib):
-            _add(found, inner, _value(text_in(child)))
+            _add(values_by_path, inner, _value(text_in(child)))
         for key, value in _values_by_path(child, f"{inner}/").items():
-            _add(found, key, value)
-    return found
+            _add(values_by_path, key, value)
+    return values_by_path
 
 
-def _add(found: _Values, key: str, value: Any) -> None:
+def _add(values: _Values, key: str, value: Any) -> None:
     """Add a value; of several values with one path, a list.
 
     A path that exists on one machine only is none, nor is an empty text: what it becomes, an
@@ -339,16 +358,17 @@ def _add(found: _Values, key: str, value: Any) -> None:
     """
     if isinstance(value, str) and (not value or is_of_one_machine(value)):
         return
-    if key not in found:
-        found[key] = value
+    if key not in values:
+        values[key] = value
     else:
-        before = found[key] if isinstance(found[key], list) else [found[key]]
-        found[key] = before + (value if isinstance(value, list) else [value])
+        before = values[key] if isinstance(values[key], list) else [values[key]]
+        values[key] = before + (value if isinstance(value, list) else [value])
 
 
 def _value(text: str) -> str | bool | int | float:
-    """Return the text of an element or attribute as a rubric writes it: a number, true or false,
-    else a string.
+    """Return the text of an element or attribute as a rubric writes it.
+
+    This is a number, true or false, else a string.
     """
     word = readable(text.strip())
     if word in _TRUTH:

@@ -1,5 +1,6 @@
-"""Equivalents of a reference: the same robot in another file, one of each family. Each must keep
-full marks.
+"""Equivalents of a reference: the same robot in another file, one of each family.
+
+Each must keep full marks.
 
 `is_same_robot` tells whether a changed file is still the same robot.
 """
@@ -42,8 +43,9 @@ _SLIDE = 0.19  # metres
 
 
 class Equivalent(NamedTuple):
-    """Another text for the robot: how it was rewritten, and the text with only its layout
-    changed.
+    """Another text for the robot.
+
+    It says how it was rewritten, and has the text with only its layout changed.
     """
 
     family: str
@@ -63,8 +65,9 @@ _Rewriting = Callable[[Element, RewritingRules], bool]  # returns whether it cha
 
 
 def equivalents(root: Element, rules: RewritingRules) -> Iterator[Equivalent]:
-    """Yield a rewriting of a robot of each family, which changes all that the rules and the family
-    allow.
+    """Yield a rewriting of a robot of each family.
+
+    Each changes all that the rules and the family allow.
     """
     rules = rules._replace(named={*rules.named, *words_of_foreign(root)})
     before = text_of(copied(root))
@@ -90,8 +93,9 @@ def _reorder(tree: Element, _: RewritingRules) -> bool:
 
 
 def _split_joints(tree: Element, _: RewritingRules) -> bool:
-    """Put an empty link into the middle of fixed joints; each keeps its name, in turn of the upper
-    and lower half.
+    """Put an empty link into the middle of fixed joints.
+
+    Each keeps its name, in turn of the upper and lower half.
     """
     fixed = [joint for joint in tree.iterchildren("joint") if joint.get("type") == "fixed"]
     for index, joint in enumerate(fixed):
@@ -115,8 +119,9 @@ def _move_frames(tree: Element, rules: RewritingRules) -> bool:
 
 
 def _free_move(tree: Element, joint: Element, rules: RewritingRules) -> Transform | None:
-    """Return a change of a child's frame that leaves the motion of the joint as it is; None if
-    there is none.
+    """Return a change of a child's frame that leaves the motion of the joint as it is.
+
+    None if there is none.
 
     @root, @tip and @moved:2 name links by structure, whose frames are those that move, and those at
     the ends.
@@ -211,9 +216,14 @@ def _change_layout(tree: Element, _: RewritingRules) -> bool:
 def _use_properties(tree: Element, _: RewritingRules) -> bool:
     """Write numbers that occur more than once as properties of xacro."""
     values = [
-        (it, str(key)) for it in own_elements(tree, "*") for key in it.attrib if PARTS.get(str(key))
+        (element, str(key))
+        for element in own_elements(tree, "*")
+        for key in element.attrib
+        if PARTS.get(str(key))
     ]
-    counts = Counter(number for it, key in values for number in _NUMBER.findall(it.get(key, "")))
+    counts = Counter(
+        number for element, key in values for number in _NUMBER.findall(element.get(key, ""))
+    )
     repeated = [
         number for number, count in counts.items() if count > 1 and len(number) <= _MAX_DIGITS
     ]
@@ -221,13 +231,13 @@ def _use_properties(tree: Element, _: RewritingRules) -> bool:
         return False
     names = {number: f"number_{index}" for index, number in enumerate(repeated)}
 
-    def use(found: re.Match[str]) -> str:
-        if found[0] in names:
-            return f"${{{names[found[0]]}}}"
-        return found[0]
+    def use(number_match: re.Match[str]) -> str:
+        if number_match[0] in names:
+            return f"${{{names[number_match[0]]}}}"
+        return number_match[0]
 
-    for it, key in values:
-        it.set(key, _NUMBER.sub(use, it.get(key, "")))
+    for element, key in values:
+        element.set(key, _NUMBER.sub(use, element.get(key, "")))
     for number, name in names.items():
         tree.insert(0, etree.Element(f"{{{XACRO}}}property", {"name": name, "value": number}))
     return True
@@ -267,8 +277,9 @@ _REWRITINGS: dict[str, _Rewriting] = dict(zip(EQUIVALENTS, _ALL, strict=True))
 
 
 def is_same_robot(one: Urdf, other: Urdf, kept: Collection[str]) -> bool:
-    """Return whether two URDFs are the same robot; `kept` are names that something outside of the
-    file refers to.
+    """Return whether two URDFs are the same robot.
+
+    `kept` are names that something outside of the file refers to.
 
     ROS 2's verdict counts, the normal form of the robot, and the elements for simulators and
     controllers.
@@ -284,7 +295,9 @@ def _counting_form(urdf: Urdf, kept: Collection[str]) -> object:
     robot, root = urdf.reading.robot, urdf.reading.root
     foreign = [
         etree.tostring(child, with_tail=False)
-        for child in sorted(foreign_elements(root), key=lambda it: str(it.tag))
+        for child in sorted(
+            foreign_elements(root), key=lambda child_element: str(child_element.tag)
+        )
     ]
     form = normal_form(
         robot, {*kept, *words_of_foreign(root)}, decimals=2

@@ -1,5 +1,6 @@
-"""The facts of a reference: what may be true of it, as arguments of checks that are to be tried on
-it.
+"""The facts of a reference: what may be true of it.
+
+They are arguments of checks that are to be tried on it.
 
 Here are those of the robot: its file, links, joints and tree.
 """
@@ -46,8 +47,9 @@ _MAX_TIPS_IN_TITLE = 2
 
 
 class Solution(NamedTuple):
-    """A solution: its submission; its URDF as it was read, and the robot that ROS 2 loads, with the
-    joints at 0.
+    """A solution: its submission, its URDF and its robot.
+
+    The URDF is as it was read, the robot is the one that ROS 2 loads, with the joints at 0.
     """
 
     submission: Submission
@@ -112,11 +114,12 @@ def robot_facts(solution: Solution) -> Facts:
 
 
 def are_joints_free(solution: Solution) -> bool:
-    """Return whether joints may have other names: those that files use are compared with those of
-    the robot.
+    """Return whether joints may have other names.
+
+    Names that files use are compared with those of the robot.
     """
-    found = read_agreement(solution.submission.workspace)
-    return found.holds("frames") and found.holds("controllers")
+    agreement = read_agreement(solution.submission.workspace)
+    return agreement.holds("frames") and agreement.holds("controllers")
 
 
 def _link_fact(link: str, check: str, **arguments: Any) -> Fact:
@@ -133,8 +136,9 @@ def _rounded(vector: Sequence[float], digits: int = 6) -> list[float]:
 
 
 def _visual_facts(link: Link) -> Facts:
-    """Yield what a link shows; the place and colour of a shape only if no other shape of the link
-    is of its kind.
+    """Yield what a link shows.
+
+    The place and colour of a shape only if no other shape of the link is of its kind.
     """
     if len(link.visuals) > MAX_SHAPES:
         yield Omission(f"{link.name} visuals", f"it has more than {MAX_SHAPES}")
@@ -210,8 +214,9 @@ def _axis(visual: Visual) -> dict[str, Any]:
 
 
 def _body_facts(link: Link) -> Facts:
-    """Yield the mass and inertia of a link, and its collision shapes, or that they are those that
-    it shows.
+    """Yield the mass and inertia of a link, and its collision shapes.
+
+    Or that these are those that it shows.
     """
     if link.inertial is not None:
         least = abs(link.inertial.mass) * _MASS_SHARE
@@ -234,9 +239,9 @@ def _body_facts(link: Link) -> Facts:
         checks = ("shows_box", "shows_cylinder", "shows_sphere", "centre_at")
         what_is_shown = tuple(f"{link.name} {check}" for check in checks)
         known = [
-            CarriedFact(what_is_shown, it.check, it.arguments)
-            for it in shapes
-            if only and it.check == "collides_as"
+            CarriedFact(what_is_shown, shape.check, shape.arguments)
+            for shape in shapes
+            if only and shape.check == "collides_as"
         ]
         shown = "shape" if len(shapes) == 1 else "shapes"
         title = f"{link.name!r} collides with the {shown} that it shows"
@@ -278,8 +283,9 @@ def _shape_text(collision: Collision) -> str:
 
 
 def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
-    """Yield what may be true of the parent joint of a link; raise MissingElement for an axis of
-    length zero.
+    """Yield what may be true of the parent joint of a link.
+
+    Raise MissingElement for an axis of length zero.
     """
     link, parent = joint.child, joint.parent
     title = f"a {joint.type} joint connects {link!r} to {parent!r}"  # its name is free
@@ -313,8 +319,8 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
         )
     if joint.type not in _WITH_AXIS:
         return
-    own = robot.axis(joint)
-    direction = _rounded(pose.rotate(own), 2)
+    own_axis = robot.axis(joint)
+    direction = _rounded(pose.rotate(own_axis), 2)
     follows = joint.mimic is not None and robot.robot.has_joint(joint.mimic.joint)
     if follows:
         yield _mimic_fact(robot, joint, direction)
@@ -327,15 +333,16 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
     in_own_frame = {
         "link": link,
         "relative_to": link,
-        "direction": _rounded(own, 2),
+        "direction": _rounded(own_axis, 2),
         **either_way,
     }
     yield axis._replace(carried=(CarriedFact((f"{link} frame_at",), "joint_axis", in_own_frame),))
 
 
 def _mimic_fact(robot: Configuration, joint: Joint, direction: Sequence[float]) -> Fact:
-    """Return how a joint follows another one: by its motion, as the opposite axis with the opposite
-    multiplier is the same.
+    """Return how a joint follows another one, by its motion.
+
+    The opposite axis with the opposite multiplier is the same.
     """
     mimic = joint.mimic
     assert mimic is not None
@@ -372,8 +379,10 @@ def _range_fact(joint: Joint) -> Fact:
 
 
 def _tree_facts(solution: Solution) -> Iterator[Fact]:
-    """Yield the names of joints that other elements use, the root, the numbers of joints, and how
-    the tips move.
+    """Yield the facts of the whole tree of links.
+
+    These are the names of joints that other elements use, the root, the numbers of joints, and
+    how the tips move.
     """
     robot = solution.robot
     joints, root = robot.parent_joints.values(), robot.main_tree[0]
@@ -414,11 +423,17 @@ def _joints_in_words(moving: Sequence[Joint]) -> str:
         [(joint_type, count)] = leaders.items()
         verb = "moves" if count == 1 else "move"
         return f"{counted(count, f'{joint_type} joint')} {verb}, and no other joint does"
-    kinds = [f"{count} {joint_type}" for joint_type, count in leaders.items()]
+    kinds = [*_kinds_in_words(leaders, followers)]
+    return f"the robot has {counted(len(moving), 'moving joint')}: {enumerated(kinds)}"
+
+
+def _kinds_in_words(leaders: Counter[str], followers: Counter[str]) -> Iterator[str]:
+    """Yield how many joints of each type move by themselves, and how many follow another one."""
+    for joint_type, count in leaders.items():
+        yield f"{count} {joint_type}"
     for joint_type, count in followers.items():
         verb = "follows" if count == 1 else "follow"
-        kinds.append(f"{count} {joint_type} that {verb} another joint")
-    return f"the robot has {counted(len(moving), 'moving joint')}: {enumerated(kinds)}"
+        yield f"{count} {joint_type} that {verb} another joint"
 
 
 def _words_of_joints(joints: Iterable[Joint], *checks: str) -> tuple[str, ...]:

@@ -1,5 +1,6 @@
-"""Equivalents of the YAML files of packages: the same values in another text. Each must keep
-full marks.
+"""Equivalents of the YAML files of packages: the same values in another text.
+
+Each must keep full marks.
 """
 
 import re
@@ -28,8 +29,9 @@ def file_equivalents(submission: Submission) -> Iterator[tuple[str, Mapping[str,
 
 
 def _for_every_node(workspace: Workspace, path: str, tree: YamlNode) -> str | None:
-    """Return a file that only one node gets, and that has only its parameters, with /** in place
-    of its name.
+    """Return the file of a node with /** in place of the node's name.
+
+    Only that node gets the file, and the file has only its parameters.
     """
     sections, nodes = (
         [keys for keys, _ in sections_in(tree)],
@@ -43,8 +45,9 @@ def _for_every_node(workspace: Workspace, path: str, tree: YamlNode) -> str | No
 
 
 def _in_flow_style(tree: YamlNode) -> str | None:
-    """Return a file as one mapping in braces; None for texts that would mean something else
-    there.
+    """Return a file as one mapping in braces.
+
+    None for texts that would mean something else there.
     """
     text = _flow(tree)
     with suppress(ValueError):

@@ -1,5 +1,6 @@
-"""The kinds of mutants: for the score of each, to draw a sample over all of them, and why some may
-survive.
+"""The kinds of mutants.
+
+They are for the score of each, to draw a sample over all of them, and for why some may survive.
 """
 
 import re
@@ -59,8 +60,9 @@ def kind_of(family: str) -> str:
 
 
 def draw(mutants: Sequence[Mutant], most: int, seed: int) -> list[Mutant]:
-    """Return at most so many mutants, in their order: of each family as many, as far as there are
-    so many, drawn by the seed.
+    """Return at most so many mutants, in their order.
+
+    Of each family as many, as far as there are so many, drawn by the seed.
     """
     if len(mutants) <= most:
         return [*mutants]
@@ -68,7 +70,7 @@ def draw(mutants: Sequence[Mutant], most: int, seed: int) -> list[Mutant]:
     for mutant in mutants:
         families.setdefault(mutant.family, []).append(mutant)
     random = Random(seed)
-    shuffled = [random.sample(found, len(found)) for found in families.values()]
+    shuffled = [random.sample(places, len(places)) for places in families.values()]
     in_turn = chain.from_iterable(zip_longest(*shuffled))
     drawn = [mutant for mutant in in_turn if mutant is not None][:most]
     chosen = set(drawn)
@@ -76,8 +78,10 @@ def draw(mutants: Sequence[Mutant], most: int, seed: int) -> list[Mutant]:
 
 
 def scores_by_kind(outcomes: Iterable[tuple[str, str]]) -> list[KindScore]:
-    """Return the score of each kind; `outcomes` are the families of mutants with what became of
-    them: caught, survived, or what counts for neither.
+    """Return the score of each kind.
+
+    `outcomes` are the families of mutants with what became of them: caught, survived, or what
+    counts for neither.
     """
     caught: dict[str, int] = {}
     counts: dict[str, int] = {}
@@ -96,9 +100,9 @@ def why_right(mutant: Mutant) -> str:
     if mutant.family == "file renamed" and ".launch." in mutant.path:
         return "ROS 2 starts a launch file of any name"
     if mutant.family in ("name misspelt", "name exchanged"):
-        found = _FREE_NAMES.search(place.partition(" -> ")[0])
-        if found is not None:
-            return f"nothing refers to the name of <{found[1]}>"
+        match = _FREE_NAMES.search(place.partition(" -> ")[0])
+        if match is not None:
+            return f"nothing refers to the name of <{match[1]}>"
     if mutant.family == "attribute deleted" and _FREE_OF_ROBOT.match(place):
         return "ROS 2 reads no <transmission> outside of <ros2_control>"
     if mutant.family == "string misspelt" and place.endswith((" output", " screen", " log")):

@@ -1,5 +1,6 @@
-"""Mutants of a reference: one file with one mistake, for every single edit that a family of
-mistakes allows.
+"""Mutants of a reference: one file with one mistake.
+
+There is one for every single edit that a family of mistakes allows.
 
 Those of a URDF or xacro text come first; then those of a package: a file deleted or renamed, and
 mistakes in package.xml, setup.py, launch files and RViz files.
@@ -48,8 +49,9 @@ class Mutant(NamedTuple):
 
 
 class MutantEdit(NamedTuple):
-    """A change of a text between two offsets: its family, and its place by names, with what
-    tells it from others.
+    """A change of a text between two offsets.
+
+    It has its family, and its place by names, with what tells it from others.
     """
 
     family: str
@@ -60,8 +62,9 @@ class MutantEdit(NamedTuple):
 
 
 def mutants(text: str, path: str = "", hidden: Collection[str] = ()) -> Iterator[Mutant]:
-    """Yield every mutant of a URDF or xacro once; `hidden` are links that must show nothing,
-    which show a box.
+    """Yield every mutant of a URDF or xacro once.
+
+    `hidden` are links that must show nothing, which show a box.
     """
     return _as_mutants(text, path, _changes(text, {f"link {name}" for name in hidden}))
 
@@ -80,12 +83,18 @@ def _as_mutants(text: str, path: str, changes: Iterable[MutantEdit]) -> Iterator
         yield Mutant(name, family, path, text.count("\n", 0, start) + 1, start, end, new)
 
 
-def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
-    places = list(_places(text))
+def _names_by_tag(elements: Iterable[Element]) -> dict[str, list[str]]:
+    """Return the names of links, joints and materials, each where it is written."""
     names: dict[str, list[str]] = {"link": [], "joint": [], "material": []}
-    for element, *_ in places:
+    for element in elements:
         if element.tag in names:
             names[str(element.tag)].append(element.get("name", ""))
+    return names
+
+
+def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
+    places = list(_places(text))
+    names = _names_by_tag(element for element, *_ in places)
     for element, label, start in places:
         for attribute in attributes(text, start):
             yield from _attribute_changes(text, element, label, attribute, names)
@@ -103,8 +112,9 @@ def _changes(text: str, hidden: Collection[str]) -> Iterator[MutantEdit]:
 
 
 def _places(text: str) -> Iterator[tuple[Element, str, int]]:
-    """Yield each element with its offset, and its place by names, which does not change if lines
-    are added.
+    """Yield each element with its offset, and its place by names.
+
+    The place does not change if lines are added.
     """
     root, source = root_of(text)
     if root is None:
@@ -130,6 +140,15 @@ def _places(text: str) -> Iterator[tuple[Element, str, int]]:
         yield element, label, start
 
 
+def _next_name(known: Sequence[str], value: str) -> str:
+    """Return the name after this one, or the first; empty if there is no other one."""
+    at = known.index(value) + 1 if value in known else 0
+    for name in (*known[at:], *known[:at]):
+        if name != value:
+            return name
+    return ""
+
+
 def _attribute_changes(
     text: str,
     element: Element,
@@ -144,8 +163,7 @@ def _attribute_changes(
         value = text[slice(*span)]
         known = names.get(str(element.tag), names.get(name, names["link"]))
         yield MutantEdit("name misspelt", place, *span, misspelt(value))
-        at = known.index(value) + 1 if value in known else 0
-        other = next((it for it in (*known[at:], *known[:at]) if it != value), "")
+        other = _next_name(known, value)
         if other:
             yield MutantEdit("name exchanged", f"{place} -> {other}", *span, other)
     elif name == "type" and element.tag == "joint":
@@ -161,10 +179,10 @@ def _value_changes(text: str, label: str, span: tuple[int, int], name: str) -> I
     start, end = span
     label = f"{label} {name}".rstrip()
     pieces = list(_NUMBER.finditer(text, start, end))
-    for part, found in zip(_parts(name, len(pieces)), pieces, strict=True):
-        for family, number in _alternatives(float(found[0])):
-            if number != float(found[0]):
-                yield MutantEdit(family, f"{label}{part}", *found.span(), f"{number:.6g}")
+    for part, match in zip(_parts(name, len(pieces)), pieces, strict=True):
+        for family, number in _alternatives(float(match[0])):
+            if number != float(match[0]):
+                yield MutantEdit(family, f"{label}{part}", *match.span(), f"{number:.6g}")
     value = text[start:end].strip()
     if not pieces and value:
         start = text.index(value, start)
@@ -226,15 +244,16 @@ def package_mutants(
     *,
     prefix: str = "",
 ) -> Iterator[Mutant]:
-    """Yield the mutants of a package; `links` are those of its robot, `text` returns that of a
-    file.
+    """Yield the mutants of a package.
+
+    `links` are those of its robot, `text` returns that of a file.
 
     `further` returns more changes of a file; `prefix` is what ids have before the paths in the
     package.
     """
-    for own in package.tree.files:
-        path, label = package.path(own), prefix + own
-        if not _UNUSED.search(own):
+    for file in package.tree.files:
+        path, label = package.path(file), prefix + file
+        if not _UNUSED.search(file):
             name = path.rpartition("/")[2]
             renamed = f"{path.removesuffix(name)}{misspelt(name)}"
             yield Mutant(f"file deleted: {label}", "file deleted", path, 1, is_deleted=True)
@@ -243,29 +262,30 @@ def package_mutants(
             )
         source = Source(path, text(path))
         changes: Iterable[MutantEdit] = ()
-        if own in package.rviz_files:
+        if file in package.rviz_files:
             changes = _rviz(source, label, links)
-        elif own in (MANIFEST, SETUP) or own in package.launch_files:
-            changes = _file_changes(source, label, own)
+        elif file in (MANIFEST, SETUP) or file in package.launch_files:
+            changes = _file_changes(source, label, file)
         yield from _as_mutants(source.text, path, chain(changes, further(source, label)))
 
 
-def _file_changes(source: Source, label: str, own: str) -> Iterator[MutantEdit]:
+def _file_changes(source: Source, label: str, file: str) -> Iterator[MutantEdit]:
     """Yield the changes of a file that builds or starts something, by its format."""
     if source.path.endswith(".py"):
-        yield from _python_changes(PythonFile(source), label, is_setup=own == SETUP)
+        yield from _python_changes(PythonFile(source), label, is_setup=file == SETUP)
         return
     for mutant in mutants(source.text):
         place = mutant.id.partition(": ")[2]
-        if mutant.family in _XML_FAMILIES and (own != MANIFEST or _READ_OF_MANIFEST.match(place)):
+        if mutant.family in _XML_FAMILIES and (file != MANIFEST or _READ_OF_MANIFEST.match(place)):
             yield MutantEdit(
                 mutant.family, f"{label} {place}", mutant.start, mutant.end, mutant.new
             )
 
 
 def _rviz(source: Source, label: str, links: Iterable[str]) -> Iterator[MutantEdit]:
-    """Yield changes of the fixed frame, and of each display: disabled, its class or topic
-    misspelt.
+    """Yield changes of the fixed frame, and of each display.
+
+    A display is disabled, or its class or topic is misspelt.
     """
     root = yaml_root(source)
     frame = root.get("Visualization Manager", "Global Options", "Fixed Frame") if root else None
@@ -291,8 +311,9 @@ def _display_changes(display: YamlNode, label: str) -> Iterator[MutantEdit]:
 
 
 def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator[MutantEdit]:
-    """Yield the changes of a file: an entry of data_files, an action or an import deleted, a string
-    misspelt.
+    """Yield the changes of a Python file.
+
+    An entry of data_files, an action or an import is deleted, a string is misspelt.
     """
     family = "data_files entry deleted" if is_setup else "action removed"
     for item in _entries(file):
@@ -307,6 +328,11 @@ def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator
         for node in file.imports:
             place = f"{label} {file.segment(node)}"
             yield MutantEdit("import deleted", place, *file.span(node), "pass")
+    yield from _string_changes(file, label)
+
+
+def _string_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
+    """Yield that a string is misspelt, but none for people."""
     ignored = [*_for_people(file)]
     for text, start, end in file.literals:
         is_ignored = any(first <= start < last for first, last in ignored)
@@ -318,11 +344,11 @@ def _python_changes(file: PythonFile, label: str, *, is_setup: bool) -> Iterator
 def _entries(file: PythonFile) -> Iterator[ast.expr]:
     """Yield the entries of data_files, and the actions of a launch file."""
     given = [argument(call, "data_files") for call in file.calls("setup")]
-    lists = [found.value for found in given if found is not None]
+    lists = [keyword.value for keyword in given if keyword is not None]
     lists += [call.args[0] for call in file.calls("LaunchDescription") if call.args]
-    for found in lists:
-        if isinstance(found, ast.List | ast.Tuple):
-            yield from found.elts
+    for value in lists:
+        if isinstance(value, ast.List | ast.Tuple):
+            yield from value.elts
 
 
 def _short(file: PythonFile, node: ast.expr) -> str:

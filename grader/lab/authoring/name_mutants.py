@@ -1,5 +1,6 @@
-"""Mutants of what the files of a workspace agree on: names, values in YAML, what CMake installs,
-and dependencies.
+"""Mutants of what the files of a workspace agree on.
+
+These are names, values in YAML, what CMake installs, and dependencies.
 """
 
 import re
@@ -29,8 +30,9 @@ _REVERSED = {"true": "false", "false": "true", "True": "False", "False": "True"}
 def compared_names(
     submission: Submission, families: Iterable[Family]
 ) -> Iterator[tuple[Fact, Edit]]:
-    """Yield the names of these families that files use or define, each with the edit that misspells
-    it there.
+    """Yield the names of these families that files use or define.
+
+    Each has the edit that misspells it there.
     """
     known, name_fixes = frozenset(families), NameFixes(submission.workspace)
     for fact in compared_facts(submission.workspace, known) if known else ():
@@ -41,23 +43,31 @@ def compared_names(
 def name_changes(
     source: Source, label: str, names: Iterable[tuple[Fact, Edit]], families: Iterable[Family]
 ) -> Iterator[MutantEdit]:
-    """Yield the changes of a file of a package: those of its format, then the names in it that are
-    compared.
+    """Yield the changes of a file of a package.
+
+    First those of its format, then the names in it that are compared.
     """
     name = source.path.rpartition("/")[2]
     if name == CMAKE:
-        for found in _INSTALL.finditer(source.text):
-            place = f"{label} {' '.join(found[0].split())[:MAX_LABEL]}"
-            yield MutantEdit("install removed", place, *found.span(), "")
+        for match in _INSTALL.finditer(source.text):
+            place = f"{label} {' '.join(match[0].split())[:MAX_LABEL]}"
+            yield MutantEdit("install removed", place, *match.span(), "")
     elif name == MANIFEST and "dependencies" in families:
-        for found in _DEPENDENCY.finditer(source.text):
+        for match in _DEPENDENCY.finditer(source.text):
             yield MutantEdit(
-                "dependency removed", f"{label} {found[1]} {found[2]}", *found.span(), ""
+                "dependency removed", f"{label} {match[1]} {match[2]}", *match.span(), ""
             )
     elif name.endswith(_YAML):
         yield from _yaml_changes(source, label)
     elif name.endswith(_WORLDS) and "topics" in families:
         yield from _world_changes(source, label)
+    yield from _name_edits(source, label, names)
+
+
+def _name_edits(
+    source: Source, label: str, names: Iterable[tuple[Fact, Edit]]
+) -> Iterator[MutantEdit]:
+    """Yield the changes of the compared names that are in a file."""
     for fact, edit in names:
         if edit.path == source.path:
             start = source.offset(edit.line, edit.column)
@@ -131,8 +141,9 @@ def _node_changes(
 
 
 def _scalar_changes(source: Source, label: str, node: YamlNode) -> Iterator[MutantEdit]:
-    """Yield the change of a text: a truth value is reversed, a number is ten times as large, a word
-    is misspelt.
+    """Yield the change of a text.
+
+    A truth value is reversed, a number is ten times as large, a word is misspelt.
     """
     (start, end), text = node.span, node.text or ""
     if node.quoted:

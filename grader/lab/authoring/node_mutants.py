@@ -49,38 +49,44 @@ def node_changes(
                 if use.type.endswith(".GoalHandle") and len(use.path) == 1:
                     continue  # an attribute of rclpy's
                 yield from _misspelt_at(source, label, use.location, use.path[-1])
-            for found in nodes.imports:
-                yield from _misspelt_at(source, label, found.location, found.name.split(".")[-1])
+            for node_import in nodes.imports:
+                yield from _misspelt_at(
+                    source, label, node_import.location, node_import.name.split(".")[-1]
+                )
     if "code" in families and "rclpy" in source.text:
         yield from _code_changes(PythonFile(source), label)
 
 
 def _cpp_changes(source: Source, label: str) -> Iterator[MutantEdit]:
-    """Yield that rclcpp is not initialised, or nothing spins, a parameter is not declared, a
-    callback returns too early.
+    """Yield the changes of a node in C++.
+
+    rclcpp is not initialised, nothing spins, a parameter is not declared, or a callback returns
+    too early.
     """
     for family, pattern in _CPP_STATEMENTS.items():
-        for found in pattern.finditer(source.text):
-            place = f"{label} {' '.join(found[0].split())[:MAX_LABEL]}"
-            yield MutantEdit(family, place, *found.span(), "")
+        for match in pattern.finditer(source.text):
+            place = f"{label} {' '.join(match[0].split())[:MAX_LABEL]}"
+            yield MutantEdit(family, place, *match.span(), "")
 
 
 def _interface_changes(source: Source, label: str) -> Iterator[MutantEdit]:
-    """Yield that each field is misspelt or of another type, each separator removed, and each
-    interface not generated.
+    """Yield the changes of an interface.
+
+    Each field is misspelt or of another type, each separator is removed, and each interface is
+    not generated.
     """
     if source.path.endswith(CMAKE):
         for named in _GENERATED.finditer(source.text):
             yield MutantEdit("interface not generated", f"{label} {named[1]}", *named.span(1), "")
     if not source.path.endswith(_INTERFACES):
         return
-    for found in _FIELD.finditer(source.text):
-        yield MutantEdit("field renamed", f"{label} {found[1]}", *found.span(1), misspelt(found[1]))
-    for found in _TYPE.finditer(source.text):
-        other = "string" if found[1] != "string" else "int32"
-        yield MutantEdit("field type changed", f"{label} {found[2]}", *found.span(1), other)
-    for found in _SEPARATOR.finditer(source.text):
-        yield MutantEdit("separator removed", label, *found.span(), "")
+    for match in _FIELD.finditer(source.text):
+        yield MutantEdit("field renamed", f"{label} {match[1]}", *match.span(1), misspelt(match[1]))
+    for match in _TYPE.finditer(source.text):
+        other = "string" if match[1] != "string" else "int32"
+        yield MutantEdit("field type changed", f"{label} {match[2]}", *match.span(1), other)
+    for match in _SEPARATOR.finditer(source.text):
+        yield MutantEdit("separator removed", label, *match.span(), "")
 
 
 def _misspelt_at(source: Source, label: str, at: Location, name: str) -> Iterator[MutantEdit]:
@@ -113,6 +119,13 @@ def _code_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
                     if isinstance(callback, ast.Attribute) and name in _ANSWERING:
                         answering.add(callback.attr)
     yield from _call_changes(file, label)
+    yield from _return_changes(file, label, answering)
+
+
+def _return_changes(
+    file: PythonFile, label: str, answering: Collection[str]
+) -> Iterator[MutantEdit]:
+    """Yield that one of these callbacks does not return its response."""
     for node in file.nodes:
         if isinstance(node, ast.FunctionDef) and node.name in answering:
             last = node.body[-1]
@@ -122,8 +135,9 @@ def _code_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
 
 
 def _call_changes(file: PythonFile, label: str) -> Iterator[MutantEdit]:
-    """Yield that a statement of rclpy is missing, a quality of service is another one, or a call of
-    a service waits.
+    """Yield the changes of calls of rclpy.
+
+    A statement is missing, a quality of service is another one, or a call of a service waits.
     """
     for node in file.nodes:
         match node:

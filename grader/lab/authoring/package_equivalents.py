@@ -49,12 +49,18 @@ def package_equivalents(
     packages = [*submission.lab_packages.values()]
     for language in (_LAUNCH_IN_XML, _LAUNCH_IN_YAML):
         yield from _as_family(
-            language, (_in_other_language(submission, it, language) for it in packages)
+            language, (_in_other_language(submission, package, language) for package in packages)
         )
-    yield from _as_family(BUILT_BY_CMAKE, (_built_by_cmake(submission, it) for it in packages))
-    yield from _as_family(_UNNAMED, (_without_names(submission, it) for it in packages))
-    yield from _as_family(_LATER, (_with_later_spawners(submission, it) for it in packages))
-    yield from _as_family(_RENAMED, (_with_renamed_files(submission, it, named) for it in packages))
+    yield from _as_family(
+        BUILT_BY_CMAKE, (_built_by_cmake(submission, package) for package in packages)
+    )
+    yield from _as_family(_UNNAMED, (_without_names(submission, package) for package in packages))
+    yield from _as_family(
+        _LATER, (_with_later_spawners(submission, package) for package in packages)
+    )
+    yield from _as_family(
+        _RENAMED, (_with_renamed_files(submission, package, named) for package in packages)
+    )
     yield from _as_family(_SYSTEM_RENAMED, (_with_renamed_system(submission, named, robot_files),))
 
 
@@ -77,8 +83,10 @@ def _text(submission: Submission, path: str) -> str:
 
 
 def _in_other_language(submission: Submission, package: Package, language: str) -> _Files:
-    """Return the one launch file of a package in another language, and the build file that installs
-    it; nothing where not all of it is known, or where another file names it.
+    """Return the one launch file of a package in another language.
+
+    And the build file that installs it. Nothing where not all of it is known, or where another
+    file names it.
     """
     paths = [path for path in package.launch_files if not path.startswith("test/")]
     if len(paths) != 1 or not paths[0].endswith(".launch.py"):
@@ -90,19 +98,27 @@ def _in_other_language(submission: Submission, package: Package, language: str) 
     known = [node for node in nodes if node is not None]
     if len(known) < len(nodes) or not known:
         return {}
-    ending = ".xml" if language == _LAUNCH_IN_XML else ".yaml"
     path = package.path(paths[0])
-    name = posixpath.basename(path)
     build = package.path(CMAKE if package.is_cmake else SETUP)
-    for other in submission.whole_tree.files:
-        is_text = other.endswith(_TEXTS) and other not in (path, build)
-        if is_text and name in _text(submission, other):
-            return {}
-    text = _launch_xml(known)
-    if language == _LAUNCH_IN_YAML:  # JSON is YAML
+    if _is_named_elsewhere(submission, path, build):
+        return {}
+    if language == _LAUNCH_IN_XML:
+        ending, text = ".xml", _launch_xml(known)
+    else:  # JSON is YAML
+        ending = ".yaml"
         text = json.dumps({"launch": [{"node": node} for node in known]}, indent=2)
     built = _text(submission, build).replace(".launch.py", f".launch{ending}")
     return {path: None, f"{path.removesuffix('.py')}{ending}": text, build: built}
+
+
+def _is_named_elsewhere(submission: Submission, path: str, build: str) -> bool:
+    """Return whether a text other than the build file names a launch file."""
+    name = posixpath.basename(path)
+    for other in submission.whole_tree.files:
+        is_text = other.endswith(_TEXTS) and other not in (path, build)
+        if is_text and name in _text(submission, other):
+            return True
+    return False
 
 
 def _is_plain(launch: Launch) -> bool:
@@ -139,8 +155,9 @@ def _node_table(node: StartedNode) -> dict[str, Any] | None:
 
 
 def _parameter_rows(node: StartedNode) -> list[dict[str, Any]] | None:
-    """Return the parameters of a node as rows of a launch file; None where not all of them are
-    plain.
+    """Return the parameters of a node as rows of a launch file.
+
+    None where not all of them are plain.
     """
     rows: list[dict[str, Any]] = []
     for given in node.parameters or ():
@@ -183,8 +200,9 @@ def _launch_xml(nodes: Sequence[Mapping[str, Any]]) -> str:
 
 
 def _built_by_cmake(submission: Submission, package: Package) -> _Files:
-    """Return the files of a package that CMake builds in place of setup.py; nothing where it has
-    programs or modules, or is no package of Python.
+    """Return the files of a package that CMake builds in place of setup.py.
+
+    Nothing where it has programs or modules, or is no package of Python.
     """
     setup = package.path(SETUP)
     manifest = package.manifest
@@ -193,7 +211,15 @@ def _built_by_cmake(submission: Submission, package: Package) -> _Files:
         return {}
     if _PROGRAMS.search(_text(submission, setup)) or package.installation.unknown:
         return {}
-    installs = []
+    text = _CMAKE_TEXT.format(name=package.name, installs="\n".join(_install_commands(package)))
+    described = _text(submission, package.path(MANIFEST)).replace("ament_python", "ament_cmake")
+    depends = "<buildtool_depend>ament_cmake</buildtool_depend>"
+    described = re.sub(r"(</license>)", rf"\1\n  {depends}", described, count=1)
+    return {setup: None, package.path(CMAKE): text, package.path(MANIFEST): described}
+
+
+def _install_commands(package: Package) -> Iterator[str]:
+    """Yield the commands of CMake that install the files of a package into its share folder."""
     share = f"{package.share.rstrip('/')}/"
     for target, path in package.installed.items():
         if not target.startswith(share) or path == MANIFEST:
@@ -202,12 +228,7 @@ def _built_by_cmake(submission: Submission, package: Package) -> _Files:
         folder, name = posixpath.split(inside)
         renamed = f" RENAME {name}" if name != posixpath.basename(path) else ""
         where = f"share/${{PROJECT_NAME}}/{folder}".rstrip("/")
-        installs.append(f"install(FILES {path} DESTINATION {where}{renamed})")
-    text = _CMAKE_TEXT.format(name=package.name, installs="\n".join(installs))
-    described = _text(submission, package.path(MANIFEST)).replace("ament_python", "ament_cmake")
-    depends = "<buildtool_depend>ament_cmake</buildtool_depend>"
-    described = re.sub(r"(</license>)", rf"\1\n  {depends}", described, count=1)
-    return {setup: None, package.path(CMAKE): text, package.path(MANIFEST): described}
+        yield f"install(FILES {path} DESTINATION {where}{renamed})"
 
 
 # --- The same launch files, written differently
@@ -239,10 +260,12 @@ def _without_names(submission: Submission, package: Package) -> _Files:
         for call in file.calls("Node"):
             given = argument(call, "name")
             name, executable = _constant(call, "name"), _constant(call, "executable")
-            own = [it for it in nodes if it.executable == executable and it.node_name == name]
-            if given is None or not name or not own:
+            same_nodes = [
+                node for node in nodes if node.executable == executable and node.node_name == name
+            ]
+            if given is None or not name or not same_nodes:
                 continue
-            if submission.workspace.code.name_of(own[0]._replace(node_name="")) == name:
+            if submission.workspace.code.name_of(same_nodes[0]._replace(node_name="")) == name:
                 spans.append(file.span(given))
         text = file.text
         for start, end in sorted(spans, reverse=True):
@@ -261,11 +284,15 @@ def _with_later_spawners(submission: Submission, package: Package) -> _Files:
         for call in file.calls("LaunchDescription"):
             if call.args and isinstance(call.args[0], ast.List):
                 entries += call.args[0].elts
-        spawners = [it for it in entries if _is_spawner(file, it)]
-        others = [it for it in entries if isinstance(it, ast.Name) and _is_node(file, it)]
-        first = next((it.id for it in others if it not in spawners), "")
+        spawners = [started for started in entries if _is_spawner(file, started)]
+        others = [
+            started
+            for started in entries
+            if isinstance(started, ast.Name) and _is_node(file, started)
+        ]
+        first = next((started.id for started in others if started not in spawners), "")
         text = file.text
-        for entry in sorted(spawners, key=lambda it: file.span(it)[0], reverse=True):
+        for entry in sorted(spawners, key=lambda spawner: file.span(spawner)[0], reverse=True):
             start, end = file.span(entry)
             action = text[start:end]
             later = f"_Timer(period=3.0, actions=[{action}])"
@@ -294,9 +321,24 @@ def _is_spawner(file: PythonFile, entry: ast.expr) -> bool:
 # --- Names that are free
 
 
+def _replace_name(
+    submission: Submission, texts: Mapping[str, str], name: str, new: str
+) -> dict[str, str]:
+    """Return the files that name another file, with its new name; `texts` are changed already."""
+    word = re.compile(rf"(?<![\w.-]){re.escape(name)}(?![\w.-])")
+    uses = {}
+    for other in submission.whole_tree.files:
+        if other.endswith(_TEXTS):
+            text = texts.get(other, _text(submission, other))
+            if word.search(text):
+                uses[other] = word.sub(new, text)
+    return uses
+
+
 def _with_renamed_files(submission: Submission, package: Package, named: Collection[str]) -> _Files:
-    """Return the files of parameters and worlds under other names, with all files that name
-    them.
+    """Return the files of parameters and worlds under other names.
+
+    And all files that name them.
     """
     files: dict[str, str | None] = {}
     texts: dict[str, str] = {}
@@ -306,13 +348,7 @@ def _with_renamed_files(submission: Submission, package: Package, named: Collect
         is_asked = any(name in text or f"/{stem}" in text for text in named)
         if not _FREE_FILES.search(path) or is_asked or "*" in name:
             continue
-        word = re.compile(rf"(?<![\w.-]){re.escape(name)}(?![\w.-])")
-        uses = {}
-        for other in submission.whole_tree.files:
-            if other.endswith(_TEXTS):
-                text = texts.get(other, _text(submission, other))
-                if word.search(text):
-                    uses[other] = word.sub(f"{stem}_2x{ending}", text)
+        uses = _replace_name(submission, texts, name, f"{stem}_2x{ending}")
         old = package.path(path)
         if uses and old not in uses:
             texts.update(uses)
@@ -328,9 +364,9 @@ def _with_renamed_system(
     files: dict[str, str | None] = {}
     for path in robot_files:
         text = _text(submission, path)
-        for found in reversed([*_SYSTEM.finditer(text)]):
-            if not any(found[2] in it for it in named):
-                start, end = found.span(2)
-                text = f"{text[:start]}{found[2]}_2x{text[end:]}"
+        for match in reversed([*_SYSTEM.finditer(text)]):
+            if not any(match[2] in text_in_use for text_in_use in named):
+                start, end = match.span(2)
+                text = f"{text[:start]}{match[2]}_2x{text[end:]}"
                 files[path] = text
     return files

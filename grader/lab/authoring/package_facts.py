@@ -1,5 +1,6 @@
-"""The facts of the packages of a reference: files, builds, launch and RViz files, names and
-parameters.
+"""The facts of the packages of a reference.
+
+They are about files, builds, launch and RViz files, names and parameters.
 """
 
 import posixpath
@@ -85,8 +86,8 @@ _MAX_TITLE, _MAX_IN_TITLE = 95, 3  # characters; names
 
 def package_facts(submission: Submission) -> Facts:
     """Yield what may be true of the packages that are graded, first of the main one."""
-    found = read_agreement(submission.workspace) if submission.lab_packages else None
-    named = found.files if found is not None and found.holds("files") else frozenset()
+    agreement = read_agreement(submission.workspace) if submission.lab_packages else None
+    named = agreement.files if agreement is not None and agreement.holds("files") else frozenset()
     for package, prefix in _packages(submission):
         facts = _facts_of(submission, package, named, prefix)
         about = f"{_THE_PACKAGE} {package.name}" if prefix else _THE_PACKAGE
@@ -96,11 +97,13 @@ def package_facts(submission: Submission) -> Facts:
 
 
 def _packages(submission: Submission) -> Iterator[tuple[Package, str]]:
-    """Yield the packages, each with what the words of its facts begin with: the main one, and the
-    others.
+    """Yield the packages, the main one first.
+
+    Each comes with what the words of its facts begin with.
     """
     for package in sorted(
-        submission.lab_packages.values(), key=lambda it: it is not submission.package
+        submission.lab_packages.values(),
+        key=lambda lab_package: lab_package is not submission.package,
     ):
         yield package, "" if package is submission.package else f"{package.name} "
 
@@ -137,26 +140,35 @@ def _facts_of(
     yield from _installs(
         package, path.removeprefix(package.path("")) if package.holds(path) else "", named
     )
-    for launch in (it for it in package.launch_files if not it.startswith("test/")):
+    for launch in (file for file in package.launch_files if not file.startswith("test/")):
         yield from _launch_facts(submission, package, launch, prefix)
     yield from _rviz_facts(package)
 
 
 def measure_facts(solution: Solution) -> Iterator[Fact]:
-    """Yield the parameters of nodes that are a radius in the robot, or a distance between two
-    links.
+    """Yield the parameters of nodes that are measures of the robot.
+
+    A measure is a radius in the robot, or a distance between two links.
     """
     links = [link.name for link in solution.robot.robot.links]
     for node, name, value in _given(solution.submission):
         words = {*name.split("_")}
         alike = sorted(
-            links, key=lambda it: (not _WHEEL.search(it), -len(words & {*it.split("_")}))
+            links,
+            key=lambda link_name: (
+                not _WHEEL.search(link_name),
+                -len(words & {*link_name.split("_")}),
+            ),
         )
         sizes = _sizes_meant(name, alike)
         if sizes is None or not isinstance(value, float):
             continue
         measure, candidates = sizes
-        fits = (it for it in candidates if _is_measured(solution.robot, measure, it, value))
+        fits = (
+            candidate
+            for candidate in candidates
+            if _is_measured(solution.robot, measure, candidate, value)
+        )
         if (fitting := next(fits, None)) is not None:
             of = enumerated([repr(link) for link in fitting])
             fact = _parameter_fact(node, name, measure=measure, links=[*fitting])
@@ -173,31 +185,34 @@ def naming_facts(solution: Solution) -> Iterator[Fact]:
 
     A node without the parameter passes, as a node may have another name, or a default.
     """
-    robot, package = solution.robot.robot, solution.submission.package
+    package = solution.submission.package
     main = package.name if package is not None else ""
-    links = {link.name for link in robot.links}
-    names = {name: name for name in links}
-    for joint in robot.joints:
-        is_by_link = are_joints_free(solution) and joint.name not in links
-        names.setdefault(joint.name, f"{JOINT_OF}{joint.child}" if is_by_link else joint.name)
+    names = _names_in_rubric(solution)
     for node, name, value in _given(solution.submission):
         items = value if isinstance(value, list) else [value]
         is_naming = _NAMING.search(name.rpartition(".")[2]) is not None
-        if not items or not is_naming or any(it not in names for it in items if _is_text(it)):
+        if not items or not is_naming:
             continue
-        if not all(map(_is_text, items)):
+        if not all(isinstance(word, str) and word in names for word in items):
             continue
-        meant = [names[it] for it in items]
+        meant = [names[word] for word in items]
         asked = {"has": meant} if isinstance(value, list) else {"value": meant[0]}
-        shown = enumerated([repr(it) for it in items], _MAX_IN_TITLE)
+        shown = enumerated([repr(word) for word in items], _MAX_IN_TITLE)
         fact = _parameter_fact(node, name, **asked, where_given=True)
         elsewhere = CarriedFact(_OF_NAMING, "package_found", {"name": main})
         title = f"the parameter {name} of {node} names {shown}"
         yield fact._replace(title=title, carried=(elsewhere,))
 
 
-def _is_text(value: Any) -> bool:
-    return isinstance(value, str)
+def _names_in_rubric(solution: Solution) -> dict[str, str]:
+    """Return what a rubric writes for the name of each link and joint of the robot."""
+    robot = solution.robot.robot
+    links = {link.name for link in robot.links}
+    names = {name: name for name in links}
+    for joint in robot.joints:
+        is_by_link = are_joints_free(solution) and joint.name not in links
+        names.setdefault(joint.name, f"{JOINT_OF}{joint.child}" if is_by_link else joint.name)
+    return names
 
 
 def value_facts(submission: Submission) -> Iterator[Fact]:
@@ -207,10 +222,12 @@ def value_facts(submission: Submission) -> Iterator[Fact]:
     """
     for node, name, value in _given(submission):
         texts = [
-            it for it in (value if isinstance(value, list) else [value]) if isinstance(it, str)
+            text
+            for text in (value if isinstance(value, list) else [value])
+            if isinstance(text, str)
         ]
         if isinstance(value, Unknown) or any(
-            PREFIX in it or is_of_one_machine(it) or len(it) > _MAX_TEXT for it in texts
+            PREFIX in text or is_of_one_machine(text) or len(text) > _MAX_TEXT for text in texts
         ):
             continue
         title = f"the parameter {name} of {node} is {toml_literal(value)}"
@@ -222,17 +239,21 @@ def value_facts(submission: Submission) -> Iterator[Fact]:
 
 
 def _given(submission: Submission) -> Iterator[tuple[str, str, Any]]:
-    """Yield the parameters that nodes get, by the names of the nodes and their own, and their
-    values.
+    """Yield the values of the parameters that nodes get.
+
+    Each comes after the name of the node and its own.
     """
     for node, given in submission.workspace.parameters.owners.items():
-        for name, found in {name: it for one in given for name, it in one.values.items()}.items():
-            yield node, name, found.value
+        for name, parameter in {
+            name: parameter for one in given for name, parameter in one.values.items()
+        }.items():
+            yield node, name, parameter.value
 
 
 def _parameter_fact(node: str, name: str, **arguments: Any) -> Fact:
-    """Return a fact about a parameter, which costs nothing if a mistake of names keeps it from the
-    node.
+    """Return a fact about a parameter.
+
+    It costs nothing if a mistake of names keeps the parameter from the node.
     """
     where_given = {"node": node, "parameter": name, **arguments, "where_given": True}
     carried = (CarriedFact(_OF_PARAMETERS, "parameter_is", where_given),)
@@ -241,8 +262,9 @@ def _parameter_fact(node: str, name: str, **arguments: Any) -> Fact:
 
 
 def _sizes_meant(name: str, links: Sequence[str]) -> tuple[str, Iterable[tuple[str, ...]]] | None:
-    """Return what a parameter measures by its name, and of which links it may be; None for any
-    other parameter.
+    """Return what a parameter measures by its name, and of which links it may be.
+
+    None for any other parameter.
     """
     if "radius" in name:
         return "radius", ((link,) for link in links)
@@ -254,8 +276,8 @@ def _sizes_meant(name: str, links: Sequence[str]) -> tuple[str, Iterable[tuple[s
 def _is_measured(robot: Configuration, measure: str, links: tuple[str, ...], value: float) -> bool:
     """Return whether a value is a measure of links."""
     try:
-        found = measures(robot, [*links]).get(measure)
-        return found is not None and abs(found() - value) <= _EXACT
+        measured_length = measures(robot, [*links]).get(measure)
+        return measured_length is not None and abs(measured_length() - value) <= _EXACT
     except (MissingElement, NotDecided):
         return False
 
@@ -264,9 +286,9 @@ def name_facts(submission: Submission) -> Facts:
     """Yield that the names of each family that the packages use agree, or what is odd in them."""
     if submission.package is None:
         return
-    found = read_agreement(submission.workspace)
+    agreement = read_agreement(submission.workspace)
     unbuilt = CarriedFact(_builds(submission), "package_found", {"name": submission.package.name})
-    for family in (it for it in FAMILIES if it in found.families):
+    for family in (known_family for known_family in FAMILIES if known_family in agreement.families):
         fact = _package_fact("names_agree", family, of=family)
         carried = (unbuilt,) if family in _OF_BUILDS else ()
         if family == "values":
@@ -276,8 +298,9 @@ def name_facts(submission: Submission) -> Facts:
 
 
 def _measured_words(submission: Submission) -> tuple[str, ...]:
-    """Return the words of the parameters that may be measures of the robot, each of which is a fact
-    of its own.
+    """Return the words of the parameters that may be measures of the robot.
+
+    Each of these is a fact of its own.
     """
     words = []
     for node, name, _ in _given(submission):
@@ -289,7 +312,7 @@ def _measured_words(submission: Submission) -> tuple[str, ...]:
 def _odd(submission: Submission, family: Family) -> Omission | None:
     """Return what certainly does not agree in a family, in one line; None if nothing does not."""
     mismatches = wrong_names(submission.workspace, family, submission.lab_packages.values())
-    wrong = {it.message: it for it in mismatches}
+    wrong = {mismatch.message: mismatch for mismatch in mismatches}
     if not wrong:
         return None
     first = mismatches[0]
@@ -315,22 +338,22 @@ def _installs(package: Package, urdf: str, named: Collection[str]) -> Iterator[F
             elsewhere.add(path)
         installed.append(path)
     rest = [path for path in installed if path not in elsewhere]
-    kinds = {"urdf": [urdf] if urdf in rest else [], "rviz": package.rviz_files}
-    for kind, paths in kinds.items():
-        for path in paths:
-            if path not in elsewhere:
-                name = posixpath.basename(path)
-                yield _package_fact(
-                    "build_installs", name, kind=kind, name=name, despite_errors=True
-                )._replace(title=f"a build installs {name}")
-    yield from _install_facts(package, rest, {posixpath.splitext(it)[1] for it in elsewhere})
+    named_files = [("urdf", urdf)] if urdf in rest else []
+    named_files += [("rviz", path) for path in package.rviz_files if path not in elsewhere]
+    for kind, path in named_files:
+        name = posixpath.basename(path)
+        yield _package_fact(
+            "build_installs", name, kind=kind, name=name, despite_errors=True
+        )._replace(title=f"a build installs {name}")
+    yield from _install_facts(package, rest, {posixpath.splitext(file)[1] for file in elsewhere})
 
 
 def _install_facts(
     package: Package, paths: Sequence[str], known: Collection[str]
 ) -> Iterator[Fact]:
-    """Yield that a build installs a file of each ending, from whatever folder; not of the `known`
-    endings, of which others are installed anyway.
+    """Yield that a build installs a file of each ending, from whatever folder.
+
+    Not of the `known` endings, of which others are installed anyway.
     """
     endings: dict[str, None] = {}
     for path in paths:
@@ -349,11 +372,12 @@ def _install_facts(
 def _launch_facts(
     submission: Submission, package: Package, path: str, prefix: str
 ) -> Iterator[Fact]:
-    """Yield what may be true of a launch file, which costs nothing if it starts nothing by a
-    mistake of others.
+    """Yield what may be true of a launch file.
+
+    It costs nothing if the file starts nothing by a mistake of others.
     """
     name, launch = posixpath.basename(path), package.launch(path)
-    included = {posixpath.basename(it.path) for it in launch.passed} - {name}
+    included = {posixpath.basename(file.path) for file in launch.passed} - {name}
     causes = (*_builds(submission), *_STOPPING, *words_of_launches(submission, included))
     installed = {"kind": "launch", "name": name, "despite_errors": True}
     there = CarriedFact(causes, "build_installs", installed)
@@ -374,8 +398,9 @@ def _launch_facts(
 
 
 def _complete_fact(launch: Launch, name: str, shown: str) -> Fact:
-    """Return that a launch file is there, installed, and finds the files that it names; of one of
-    which not all are known, that none is in a wrong place.
+    """Return that a launch file is there, installed, and finds the files that it names.
+
+    Of one of which not all files are known, that none is in a wrong place.
     """
     fact = _package_fact("launch_complete", name, name=name)
     title = f"a build installs {shown}"
@@ -399,7 +424,7 @@ def _title_of_nodes(shown: str, nodes: Sequence[str]) -> str:
 
 def _launch_text(package: Package, name: str) -> str:
     """Return what a title calls a launch file: by its name, if there are several."""
-    launches = [it for it in package.launch_files if not it.startswith("test/")]
+    launches = [file for file in package.launch_files if not file.startswith("test/")]
     return "the launch file" if len(launches) == 1 else f"the launch file {name}"
 
 
@@ -409,11 +434,11 @@ def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator
         return
     asked: dict[str, dict[str, str]] = {"publishes": {}, "serves": {}}
     for node in launch.nodes:
-        for found in opened_by(submission.workspace, node) if node.when else ():
-            verb = _OPENING.get(found.endpoint.kind)
-            kind = found.endpoint.type
-            if verb is not None and kind is not None and found.name is not None and found.is_known:
-                asked[verb][found.name] = kind.replace(".", "/")
+        for end in opened_by(submission.workspace, node) if node.when else ():
+            verb = _OPENING.get(end.endpoint.kind)
+            kind = end.endpoint.type
+            if verb is not None and kind is not None and end.name is not None and end.is_known:
+                asked[verb][end.name] = kind.replace(".", "/")
     for verb, names in asked.items():
         if names:
             fact = _package_fact("node_runs", f"{name} {verb}", launch=name, **{verb: names})
@@ -422,8 +447,9 @@ def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator
 
 
 def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
-    """Yield what a launch file starts in addition, and no more, if one of its boolean arguments is
-    turned round.
+    """Yield what a launch file starts if one of its boolean arguments is turned round.
+
+    This is what it starts in addition, and no more.
     """
     launch, name = package.launch(path), posixpath.basename(path)
     before = _started(launch)
@@ -450,25 +476,27 @@ def _turned_facts(package: Package, path: str) -> Iterator[Fact]:
 
 
 def _started(launch: Launch) -> list[str]:
-    return list(dict.fromkeys(it.name for it in launch.nodes if it.when))
+    return list(dict.fromkeys(node.name for node in launch.nodes if node.when))
 
 
 def _nodes_that_start(launch: Launch) -> list[str]:
-    """Return the nodes that start, with what a condition replaces: joint_state_publisher for its
-    GUI, for example.
+    """Return the nodes that start, with what a condition replaces.
+
+    An example is joint_state_publisher, which is replaced by its GUI.
     """
     starting = _started(launch)
     replaced = dict.fromkeys(node.name for node in launch.nodes if node.when is False)
     names = []
     for name in starting:
-        alike = [it for it in replaced if name.startswith(it) or it.startswith(name)]
+        alike = [other for other in replaced if name.startswith(other) or other.startswith(name)]
         names.append(" or ".join(dict.fromkeys((name, *alike))))
     return names
 
 
 def _rviz_facts(package: Package) -> Iterator[Fact]:
-    """Yield what may be true of each RViz file, which is also found by the first launch file that
-    opens it.
+    """Yield what may be true of each RViz file.
+
+    It is also found by the first launch file that opens it.
     """
     opened: dict[str, str] = {}
     for path in package.launch_files:
@@ -478,24 +506,29 @@ def _rviz_facts(package: Package) -> Iterator[Fact]:
         of = {"name": name}
         if path in opened:
             of["launch"] = opened[path]
-        found = _package_fact("rviz_found", name, **of)
+        fact = _package_fact("rviz_found", name, **of)
         is_opened = "launch" in of
         shown = (
             "the launch file opens an RViz file" if is_opened else f"there is an RViz file {name}"
         )
-        yield found._replace(title=shown)
+        yield fact._replace(title=shown)
         if rviz.fixed_frame:
             fixed = _package_fact("rviz_fixed_frame", name, **of, frame=rviz.fixed_frame)
             yield fixed._replace(title=f"the Fixed Frame of RViz is {rviz.fixed_frame!r}")
         displays = dict.fromkeys(
             (display.package, display.kind) for display in rviz.displays if display.enabled
         )
-        for owner, kind in displays:
-            if kind == "RobotModel":
-                robot_shown = _package_fact("rviz_shows_robot", name, **of)
-                yield robot_shown._replace(title="a RobotModel display shows the robot")
-            else:
-                on = _package_fact(
-                    "rviz_display_on", f"{name} {kind}", **of, kind=f"{owner}/{kind}"
-                )
-                yield on._replace(title=f"RViz shows a {kind} display")
+        yield from _display_facts(displays, of)
+
+
+def _display_facts(displays: Iterable[tuple[str, str]], of: Mapping[str, str]) -> Iterator[Fact]:
+    """Yield that displays, by package and kind, are on; `of` says in which RViz file."""
+    for owner, kind in displays:
+        if kind == "RobotModel":
+            robot_shown = _package_fact("rviz_shows_robot", of["name"], **of)
+            yield robot_shown._replace(title="a RobotModel display shows the robot")
+        else:
+            on = _package_fact(
+                "rviz_display_on", f"{of['name']} {kind}", **of, kind=f"{owner}/{kind}"
+            )
+            yield on._replace(title=f"RViz shows a {kind} display")

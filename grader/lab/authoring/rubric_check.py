@@ -1,9 +1,10 @@
-"""What is wrong with a rubric that is valid: what its reference does not pass, and what an edit
-likely forgot.
+"""What is wrong with a rubric that is valid.
+
+This is what its reference does not pass, and what an edit likely forgot.
 """
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
 from math import degrees, inf, pi, radians
@@ -50,8 +51,9 @@ _ROUNDED = {
 
 
 class _Failures(NamedTuple):
-    """What the reference does not pass: lines that say it, whether it fails one, and how many
-    are only undecided.
+    """What the reference does not pass.
+
+    It has the lines that say it, whether it fails one, and how many are only undecided.
     """
 
     lines: tuple[str, ...]
@@ -60,22 +62,21 @@ class _Failures(NamedTuple):
 
 
 def reference_failures(rubric: Rubric) -> _Failures:
-    """Return what the reference does not pass of the automatic criteria, and of the checks in
-    `carried` tables.
+    """Return what the reference does not pass.
+
+    Of the automatic criteria, and of the checks in `carried` tables.
 
     Criteria with one message share a line.
     """
     assert rubric.solution is not None
-    places: dict[Outcome, list[tuple[TomlPath, str]]] = {}
     unearned = grade(rubric, rubric.solution.submission).unearned
-    failures = [(_path_of(it.criterion), it.criterion.id, it.outcome) for it in unearned]
+    failures = [
+        (_path_of(result.criterion), result.criterion.id, result.outcome) for result in unearned
+    ]
     failures += _carried_failures(rubric)
     failures.sort(key=lambda failure: failure[0][1])
     unresolved = {path[1]: (path, line) for path, line in _unresolved_selectors(rubric)}
-    for path, name, outcome in failures:
-        if path[1] not in unresolved:
-            what = Outcome(outcome.status, outcome.message)
-            places.setdefault(what, []).append((path, name))
+    places = _places_by_message(failures, unresolved)
     mistakes = [*unresolved.values()]
     undecided = 0
     for outcome, places_of_outcome in places.items():
@@ -89,20 +90,38 @@ def reference_failures(rubric: Rubric) -> _Failures:
     return _Failures(_lines(rubric, mistakes), is_failed, undecided)
 
 
-def _lines(rubric: Rubric, found: Iterable[tuple[TomlPath, str]]) -> tuple[str, ...]:
-    return tuple(one_line_each(rubric.path, [(rubric.line_of(path), what) for path, what in found]))
+def _lines(rubric: Rubric, notes: Iterable[tuple[TomlPath, str]]) -> tuple[str, ...]:
+    return tuple(one_line_each(rubric.path, [(rubric.line_of(path), what) for path, what in notes]))
 
 
 def _path_of(criterion: Criterion) -> TomlPath:
     return ("criterion", criterion.position, "with")
 
 
+def _places_by_message(
+    failures: Iterable[tuple[TomlPath, str, Outcome]], unresolved: Collection[int | str]
+) -> dict[Outcome, list[tuple[TomlPath, str]]]:
+    """Return the places and criteria of failures with one status and message.
+
+    Criteria whose selectors are `unresolved` are left out.
+    """
+    places: dict[Outcome, list[tuple[TomlPath, str]]] = {}
+    for path, name, outcome in failures:
+        if path[1] not in unresolved:
+            what = Outcome(outcome.status, outcome.message)
+            places.setdefault(what, []).append((path, name))
+    return places
+
+
 def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]:
-    """Yield what counts instead of a criterion where an error is carried forward, if the
-    reference does not pass it.
+    """Yield what counts instead of a criterion, if the reference does not pass it.
+
+    It counts where an error is carried forward.
     """
     assert rubric.solution is not None
-    for criterion in (it for it in rubric.criteria if not (it.adjustment or it.bonus)):
+    for criterion in rubric.criteria:
+        if criterion.adjustment or criterion.bonus:
+            continue
         for index, one in enumerate(criterion.carried):
             if one.at:  # a fact of robots with that mistake only
                 continue
@@ -110,18 +129,19 @@ def _carried_failures(rubric: Rubric) -> Iterator[tuple[TomlPath, str, Outcome]]
                 check=one.check, arguments=one.arguments, carried=(), requires=()
             )
             alone = replace(rubric, criteria=(row,))
-            for found in decide(alone, rubric.solution.submission, {row.id}):
-                if found.outcome.status != "passed":
+            for result in decide(alone, rubric.solution.submission, {row.id}):
+                if result.outcome.status != "passed":
                     # Of a single table the place has no index; `place_of` then finds the
                     # criterion's.
                     several = (index,) if len(criterion.carried) > 1 else ()
                     path = ("criterion", criterion.position, "carried", *several, "with")
-                    yield path, f"carried of {criterion.id}", found.outcome
+                    yield path, f"carried of {criterion.id}", result.outcome
 
 
 def _unresolved_selectors(rubric: Rubric) -> Iterator[tuple[TomlPath, str]]:
-    """Yield the place of each criterion that names a link by a place that not exactly one has,
-    and why.
+    """Yield the place of each criterion whose link cannot be told, and why.
+
+    It names the link by a place that not exactly one has.
     """
     assert rubric.solution is not None
     for criterion in rubric.criteria:
@@ -138,18 +158,18 @@ def _unresolved_selectors(rubric: Rubric) -> Iterator[tuple[TomlPath, str]]:
 
 def likely_mistakes(rubric: Rubric) -> Sequence[str]:
     """Return warnings: what is valid, and hardly meant."""
-    found: list[tuple[TomlPath, str]] = []
+    notes: list[tuple[TomlPath, str]] = []
     if _is_changed_copy(rubric):
-        found.append(
+        notes.append(
             (("id",), "the id is still that of the grader's own rubric: give this one another")
         )
     if note := _unknown_causes_note(rubric):
-        found.append(note)
+        notes.append(note)
     everywhere = [number for criterion in rubric.criteria for number in _numbers_given(criterion)]
     for criterion in rubric.criteria:
         for key, message in _warnings_about(rubric, criterion, everywhere):
-            found.append((("criterion", criterion.position, key), message))
-    return _lines(rubric, found)
+            notes.append((("criterion", criterion.position, key), message))
+    return _lines(rubric, notes)
 
 
 def _unknown_causes_note(rubric: Rubric) -> tuple[TomlPath, str] | None:
@@ -169,23 +189,24 @@ def _unknown_causes_note(rubric: Rubric) -> tuple[TomlPath, str] | None:
 
 
 def _is_changed_copy(rubric: Rubric) -> bool:
-    """Return whether a rubric has the id of one of the grader's and most of its criteria, but
-    not quite the same.
+    """Return whether a rubric is a changed copy of one of the grader's.
+
+    It has its id and most of its criteria, but not quite the same.
     """
     if rubric.id not in shipped_rubrics() or rubric.is_shipped:
         return False
     shipped = load_rubric(rubric.id).criteria
-    own = {criterion.id for criterion in rubric.criteria}
+    ids = {criterion.id for criterion in rubric.criteria}
     copied = {criterion.id for criterion in shipped}
-    return rubric.criteria != shipped and 2 * len(own & copied) > len(own)
+    return rubric.criteria != shipped and 2 * len(ids & copied) > len(ids)
 
 
 def _warnings_about(
     rubric: Rubric, criterion: Criterion, everywhere: list[float]
 ) -> Iterator[tuple[str, str]]:
     """Yield warnings about a criterion, each with the key that it is about."""
-    own = [*_numbers_given(criterion)]
-    if stale := _unknown_measures(criterion.title, own):
+    numbers_given = [*_numbers_given(criterion)]
+    if stale := _unknown_measures(criterion.title, numbers_given):
         yield "title", f"the title says {enumerated(stale)}, which `with` does not"
     known = [number * factor for number in (*everywhere, _RIGHT_ANGLE) for factor in _DERIVED]
     if stale := _unknown_measures(" ".join(criterion.feedback.values()), known):
@@ -209,10 +230,11 @@ def _warnings_about(
 
 
 def _measured_sizes(arguments: Mapping[str, Any]) -> Iterator[float]:
-    """Yield how large what a check measures is: lengths, a mass, a range, or the distance of a
-    place.
+    """Yield how large what a check measures is.
+
+    This is lengths, a mass, a range, or the distance of a place.
     """
-    yield from (it for key in _SIZES for it in _numbers(arguments.get(key)) if it > 0)
+    yield from (number for key in _SIZES for number in _numbers(arguments.get(key)) if number > 0)
     ends = [*_numbers([arguments.get("lower"), arguments.get("upper")])]
     if len({*ends}) > 1:
         yield max(ends) - min(ends)
@@ -248,22 +270,24 @@ def _numbers(value: Any) -> Iterator[float]:
 
 
 def _unknown_measures(sentence: str, numbers: Sequence[float]) -> list[str]:
-    """Return the measures in a sentence that are none of these numbers, as exact as they are
-    written.
+    """Return the measures in a sentence that are none of these numbers.
+
+    They are compared as exactly as they are written.
     """
-    found = []
+    unknown_measures = []
     for text, unit in _MEASURE.findall(sentence):
         scales = (1.0, *_UNITS.get(unit, _ANGLES))
         digits = -int(Decimal(text).as_tuple().exponent)
         fitting = {round(abs(number) * scale, digits) for number in numbers for scale in scales}
         if (digits or unit) and abs(float(text)) not in fitting:
-            found.append(text)
-    return found
+            unknown_measures.append(text)
+    return unknown_measures
 
 
 def _other_angles(key: str, unit: str, values: list[float]) -> Iterator[str]:
-    """Yield that angles seem to be radians where degrees are asked, or degrees where radians
-    are.
+    """Yield that angles seem to be in another unit than is asked.
+
+    These are radians in place of degrees, or degrees in place of radians.
     """
     for value in values:
         if "in degrees" in unit and _is_like_radians(value):
@@ -276,8 +300,9 @@ def _other_angles(key: str, unit: str, values: list[float]) -> Iterator[str]:
 
 
 def _is_like_radians(value: float) -> bool:
-    """Return whether a number is a multiple of 45 degrees in radians; with more decimals of 15, of
-    1.
+    """Return whether a number is a multiple of 45 degrees in radians.
+
+    With more decimals of 15, of 1.
     """
     digits = len(f"{value:.10g}".partition(".")[2])
     step = radians({2: 45, 3: 15}.get(digits, 1))
@@ -292,10 +317,10 @@ def _beyond_limits(rubric: Rubric, criterion: Criterion) -> Iterator[str]:
     """Yield positions of joints that the reference's limits exclude, or that seem to be radians."""
     assert rubric.solution is not None
     try:
-        found = joints_at(rubric.solution.robot, criterion.at)
+        joints = joints_at(rubric.solution.robot, criterion.at)
     except (MissingElement, NotDecided):
         return  # the criterion fails on the reference
-    for joint, value, unit in found:
+    for joint, value, unit in joints:
         if unit == "degrees":
             yield from _other_angles(f"at of {joint.name}", "in degrees", [value])
         if joint.limit is None or joint.type == "continuous":

@@ -1,5 +1,6 @@
-"""Test a rubric: mutants of its reference must lose points, equivalents nothing, samples what they
-declare.
+"""Test a rubric.
+
+Mutants of its reference must lose points, equivalents nothing, samples what they declare.
 
 `Trial` grades changed copies of the reference; `run_rubric_test` counts what becomes of them.
 """
@@ -36,7 +37,7 @@ from grader.lab.rubric.rubric import Rubric, read_rubric
 from grader.lab.submission.edited import content, with_files, with_urdf
 from grader.lab.submission.opening import read_submission
 from grader.lab.submission.submission import Lab, Submission
-from grader.ros.package.package import MANIFEST
+from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf.link_tree import JOINT_OF
 from grader.ros.workspace.rules.names import Fact
@@ -90,49 +91,54 @@ class Trial:
             raise InputError(f"the rubric {rubric.id} {missing}")
         self.rubric, self.reference = rubric, rubric.solution.submission
         self.report = grade(rubric, self.reference)
-        counting = (found for found in self.report.results if not found.is_adjusted)
-        own = (found for found in counting if found.criterion.check.function not in MANUAL_CHECKS)
-        self.expected: Mapping[str, Result] = {found.criterion.id: found for found in own}
+        counting = (result for result in self.report.results if not result.is_adjusted)
+        automatic = (
+            result for result in counting if result.criterion.check.function not in MANUAL_CHECKS
+        )
+        self.expected: Mapping[str, Result] = {result.criterion.id: result for result in automatic}
 
     @cached_property
     def tested(self) -> list[Criterion]:
         """The criteria that the reference passes."""
         return [
-            found.criterion for found in self.expected.values() if found.outcome.status == "passed"
+            result.criterion
+            for result in self.expected.values()
+            if result.outcome.status == "passed"
         ]
 
     @cached_property
     def kept(self) -> set[str]:
         """The names that the rubric and the text files around the URDF refer to."""
-        found = set(_names_in(self.rubric))
+        names = set(_names_in(self.rubric))
         for path, file in self.reference.whole_tree.files.items():
             if path.lower().endswith(_TEXTS) and file.size <= URDF_LIMIT:
-                found |= set(_WORD.findall(self.text(path)))
-        return found
+                names |= set(_WORD.findall(self.text(path)))
+        return names
 
     @cached_property
     def robot_files(self) -> tuple[str, ...]:
         """The URDF and the xacro files that it includes."""
         if not isinstance(self.reference.urdf, Read):
             return ()
-        found = [self.reference.urdf.path]
+        paths = [self.reference.urdf.path]
         others = [
             path for path in self.reference.whole_tree.files if path.lower().endswith(_OF_ROBOT)
         ]
-        for path in found:  # grows
+        for path in paths:  # grows
             text = self.text(path)
-            found += [
-                other for other in others if other not in found and other.rpartition("/")[2] in text
+            paths += [
+                other for other in others if other not in paths and other.rpartition("/")[2] in text
             ]
-        return tuple(found)
+        return tuple(paths)
 
     def text(self, path: str) -> str:
         """Return the text of a file of the reference."""
         return (content(self.reference, path) or b"").decode("utf-8", "surrogateescape")
 
     def unexamined(self) -> tuple[list[str], int]:
-        """Return the files that may be emptied or removed without a difference for any criterion,
-        and how many were tried.
+        """Return the files that no criterion needs, and how many were tried.
+
+        They may be emptied or removed without a difference for any criterion.
         """
         files = self.reference.whole_tree.files.items()
         tried = [path for path, file in files if file.size and not _NO_PART_OF_LAB.search(path)][
@@ -146,8 +152,9 @@ class Trial:
         return any(self._differs(path, data) for data in (b"", None))
 
     def _differs(self, path: str, data: bytes | None) -> bool:
-        """Return whether a criterion has another status with other bytes of a file; None removes
-        it.
+        """Return whether a criterion has another status with other bytes of a file.
+
+        None removes it.
         """
         try:
             changed = with_files(self.reference, {path: data})
@@ -155,7 +162,8 @@ class Trial:
             return True
         results = decide(self.rubric, changed, self.expected)
         return any(
-            it.outcome.status != self.expected[it.criterion.id].outcome.status for it in results
+            result.outcome.status != self.expected[result.criterion.id].outcome.status
+            for result in results
         )
 
     def mutants(self) -> Iterator[Mutant]:
@@ -167,21 +175,29 @@ class Trial:
         ]
         for path in self.robot_files:
             yield from mutants(self.text(path), path, hidden)
-        package, urdf = self.reference.package, self.reference.urdf
-        if package is not None:
-            robot = urdf.reading.robot if isinstance(urdf, Read) else None
-            links = [link.name for link in robot.links] if robot is not None else []
-            packages = [
-                it for it in self.reference.lab_packages.values() if it.folder != package.folder
-            ]
-            for one in (package, *packages):
-                prefix = "" if one is package else f"{one.name}/"
-                made = package_mutants(one, links, self.text, self._name_changes, prefix=prefix)
-                yield from filter(self._is_looked_at, made)
+        if self.reference.package is not None:
+            yield from self._mutants_of_packages(self.reference.package)
+
+    def _mutants_of_packages(self, package: Package) -> Iterator[Mutant]:
+        """Yield the mutants of the packages, the main one first, that a criterion may look at."""
+        urdf = self.reference.urdf
+        robot = urdf.reading.robot if isinstance(urdf, Read) else None
+        links = [link.name for link in robot.links] if robot is not None else []
+        packages = [
+            lab_package
+            for lab_package in self.reference.lab_packages.values()
+            if lab_package.folder != package.folder
+        ]
+        for one in (package, *packages):
+            prefix = "" if one is package else f"{one.name}/"
+            made = package_mutants(one, links, self.text, self._name_changes, prefix=prefix)
+            yield from filter(self._is_looked_at, made)
 
     def _name_changes(self, source: Source, label: str) -> Iterable[MutantEdit]:
         """Return the changes of names and values in a file, if a criterion compares them."""
-        is_compared = any(it.check.name in ("names_agree", "parameter_is") for it in self.tested)
+        is_compared = any(
+            criterion.check.name in ("names_agree", "parameter_is") for criterion in self.tested
+        )
         if is_compared:
             names = name_changes(source, label, self._names, self._families)
             return chain(names, node_changes(self.reference, source, label, self._families))
@@ -190,15 +206,20 @@ class Trial:
     @cached_property
     def _families(self) -> tuple[Family, ...]:
         """The families of names that have to agree."""
-        return tuple(it.arguments["of"] for it in self.tested if it.check.name == "names_agree")
+        return tuple(
+            criterion.arguments["of"]
+            for criterion in self.tested
+            if criterion.check.name == "names_agree"
+        )
 
     @cached_property
     def _names(self) -> list[tuple[Fact, Edit]]:
         return [*compared_names(self.reference, self._families)]
 
     def _is_looked_at(self, mutant: Mutant) -> bool:
-        """Return whether a criterion may look at a mutant of a package: some look at its name or at
-        meshes only.
+        """Return whether a criterion may look at a mutant of a package.
+
+        Some look at its name or at meshes only.
         """
         subjects = {criterion.check.subject for criterion in self.tested}
         if "package" in subjects:
@@ -221,11 +242,12 @@ class Trial:
             return None
 
     def results(self, mutant: Mutant, submission: Submission) -> list[Result]:
-        """Return the results of the criteria that a mutant can change: of the robot only the URDF
-        is read again.
+        """Return the results of the criteria that a mutant can change.
+
+        Of the robot only the URDF is read again.
         """
         is_of_robot = self._is_of_robot(mutant)
-        subjects = {name: found.criterion.check.subject for name, found in self.expected.items()}
+        subjects = {name: result.criterion.check.subject for name, result in self.expected.items()}
         names = [
             name for name, subject in subjects.items() if not is_of_robot or subject != "package"
         ]
@@ -245,9 +267,9 @@ class Trial:
             return MutantOutcome(mutant, "caught")
         results = self.results(mutant, submission)
         faults = {
-            found.criterion.id: found.outcome.message
-            for found in results
-            if found.outcome.status == "errored"
+            result.criterion.id: result.outcome.message
+            for result in results
+            if result.outcome.status == "errored"
         }
         is_of_robot = self._is_of_robot(mutant)
         if faults:
@@ -258,7 +280,9 @@ class Trial:
             fate = "same"
         else:
             fate = "survived"
-        failed = tuple(found.criterion.id for found in results if found.outcome.status == "failed")
+        failed = tuple(
+            result.criterion.id for result in results if result.outcome.status == "failed"
+        )
         return MutantOutcome(mutant, fate, failed, faults)
 
     def equivalents(self) -> Iterator[Loss]:
@@ -273,14 +297,16 @@ class Trial:
 
     def _file_equivalent(self, family: str, texts: Mapping[str, str | None]) -> Loss:
         """Return what other texts of files lose; None for a file that is not there any more."""
-        criteria = [it for it in self.tested if not _is_of_writing(it, family)]
+        criteria = [criterion for criterion in self.tested if not _is_of_writing(criterion, family)]
         files: dict[str, bytes | None] = {}
         diffs = []
         for path, text in texts.items():
             files[path] = None if text is None else text.encode("utf-8", "surrogateescape")
             diffs.append(_text_diff(path, self.text(path), text or ""))
         changed = with_files(self.reference, files)
-        return Loss(family, self._lost(changed, [it.id for it in criteria]), "\n".join(diffs))
+        return Loss(
+            family, self._lost(changed, [criterion.id for criterion in criteria]), "\n".join(diffs)
+        )
 
     def _robot_equivalents(self, urdf: Read) -> Iterator[Loss]:
         root = urdf.reading.root
@@ -301,15 +327,24 @@ class Trial:
     def _lost(self, submission: Submission, names: Collection[str]) -> Mapping[str, str]:
         """Return the criteria that lose points, with their messages."""
         results = decide(self.rubric, submission, names)
-        return {it.criterion.id: it.outcome.message for it in results if self.is_lost(it)}
+        return {
+            result.criterion.id: result.outcome.message
+            for result in results
+            if self.is_lost(result)
+        }
 
     def _must_pass(self, submission: Submission, family: str) -> Collection[str]:
-        """Return the criteria on the robot that must still pass; for a URDF on its own, those that
-        need no package.
+        """Return the criteria on the robot that must still pass.
+
+        For a URDF on its own, those that need no package.
         """
         others = ("package", "submission") if submission.is_single else ("package",)
-        asked = (it for it in self.tested if it.check.subject not in others)
-        return [it.id for it in asked if family not in it.check.about.breaks_under(it.arguments)]
+        asked = (criterion for criterion in self.tested if criterion.check.subject not in others)
+        return [
+            criterion.id
+            for criterion in asked
+            if family not in criterion.check.about.breaks_under(criterion.arguments)
+        ]
 
 
 def _is_of_writing(criterion: Criterion, family: str) -> bool:
@@ -324,8 +359,9 @@ def _is_of_writing(criterion: Criterion, family: str) -> bool:
 
 
 def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Submission:
-    """Return the reference with another text of its robot; a URDF that becomes xacro is graded on
-    its own.
+    """Return the reference with another text of its robot.
+
+    A URDF that becomes xacro is graded on its own.
     """
     data = equivalent.text.encode()
     if not equivalent.is_xacro or (urdf.is_expanded and urdf.as_it_stands is None):
@@ -337,11 +373,18 @@ def _rewritten(reference: Submission, urdf: Read, equivalent: Equivalent) -> Sub
 
 
 def _names_in(rubric: Rubric) -> Iterator[str]:
-    """Yield every text in the arguments of a rubric's checks, also keys of tables, and the joints
-    that it poses.
+    """Yield every text in the arguments of a rubric's checks, and the joints that it poses.
+
+    Keys of tables are texts, too.
     """
-    for it in rubric.criteria:
-        yield from _texts_in((it.arguments, it.at, [(one.arguments, one.at) for one in it.carried]))
+    for criterion in rubric.criteria:
+        yield from _texts_in(
+            (
+                criterion.arguments,
+                criterion.at,
+                [(one.arguments, one.at) for one in criterion.carried],
+            )
+        )
 
 
 def _texts_in(value: Any) -> Iterator[str]:
@@ -398,8 +441,9 @@ class RubricTest(NamedTuple):
 
     @property
     def score(self) -> Decimal:
-        """The mutation score: the share of the mutants that lose points, in percent, without those
-        that are ignored.
+        """The mutation score: the percentage of the mutants that lose points.
+
+        Those that are ignored do not count.
         """
         count = self.caught + len(self.survivors)
         if count:
@@ -408,10 +452,11 @@ class RubricTest(NamedTuple):
 
     @property
     def lost(self) -> tuple[str, ...]:
-        """The criteria that the reference does not pass, without extra credit and those for manual
-        grading.
+        """The criteria that the reference does not pass.
+
+        Without extra credit and those for manual grading.
         """
-        return tuple(found.criterion.id for found in self.reference.unearned)
+        return tuple(result.criterion.id for result in self.reference.unearned)
 
     @property
     def is_faulty(self) -> bool:
@@ -435,8 +480,9 @@ def run_rubric_test(
     most: int = _MAX_MUTANTS,
     seed: int = 0,
 ) -> RubricTest:
-    """Return the test of a rubric. Raises InputError without a readable reference, RubricError for
-    wrong samples.
+    """Return the test of a rubric.
+
+    Raises InputError without a readable reference, RubricError for wrong samples.
 
     `grade_all` grades mutants elsewhere, as `mutant_outcomes` does: all of at most `most`, else a
     sample that the seed draws.
@@ -456,7 +502,7 @@ def run_rubric_test(
         for outcome in grade_all(chosen):
             outcomes.append(outcome)
             if len(outcomes) % _SCORED_EACH == 1:
-                scores = scores_by_kind((it.mutant.family, it.fate) for it in outcomes)
+                scores = scores_by_kind((graded.mutant.family, graded.fate) for graded in outcomes)
             progress(len(samples or ()) + len(outcomes), total, scores)
         rest = _Rest([*trial.equivalents()], *trial.unexamined())
     except KeyboardInterrupt:
@@ -482,8 +528,9 @@ def _counted(
     samples: SampleResults | None,
     rest: "_Rest | None",
 ) -> RubricTest:
-    """Return the result of a test: `outcomes` are those of the mutants that were graded, in any
-    order.
+    """Return the result of a test.
+
+    `outcomes` are those of the mutants that were graded, in any order.
     """
     places = {mutant: place for place, mutant in enumerate(every)}
     graded = sorted(outcomes, key=lambda outcome: places[outcome.mutant])
@@ -546,8 +593,9 @@ def _unused_patterns(rubric: Rubric, mutants: Sequence[Mutant]) -> tuple[str, ..
 
 
 def _survivor(trial: Trial, mutant: Mutant) -> _Survivor:
-    """Return a mutant that loses nothing, with the reason for which the rubric ignores it, or for
-    which it is right.
+    """Return a mutant that loses nothing, with a reason.
+
+    This is why the rubric ignores it, or why it is right.
     """
     reason = why_right(mutant)
     for row in trial.rubric.ignored:
@@ -574,7 +622,8 @@ def _text_diff(path: str, before: str, after: str) -> str:
 
 
 def _matches(mutant: Mutant, pattern: str) -> bool:
-    """Return whether a pattern is a mutant's id or matches it: brackets in an id are a set of
-    characters to fnmatch.
+    """Return whether a pattern is a mutant's id or matches it.
+
+    Brackets in an id are a set of characters to fnmatch.
     """
     return mutant.id == pattern or fnmatchcase(mutant.id, pattern)

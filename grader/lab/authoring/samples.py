@@ -16,6 +16,7 @@ from grader.lab.grading.report import Result
 from grader.lab.rubric.keys import NAMES
 from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.opening import open_submission
+from grader.lab.submission.submission import Submission
 from grader.ros.package.robot_file import Read
 
 _EXPECTED = "expected.toml"
@@ -43,8 +44,9 @@ class Loss(NamedTuple):
 
 
 class SampleResults(NamedTuple):
-    """How many samples were graded, how many belong to another rubric, and what differs from their
-    expected.toml.
+    """How many samples were graded, and what differs from their expected.toml.
+
+    It also says how many belong to another rubric.
     """
 
     tried: int
@@ -69,17 +71,18 @@ class Sample:
 
 
 def read_samples(folder: Path) -> list[Sample]:
-    """Return the samples in a folder by name. Raises RubricError for a broken expected.toml,
-    InputError without any.
+    """Return the samples in a folder by name.
+
+    Raises RubricError for a broken expected.toml, InputError without any.
     """
     if not folder.is_dir():
         raise InputError(f"{printable_path(folder)} is not a folder with samples")
-    found = [_sample(path) for path in sorted(folder.glob(f"*/{_EXPECTED}"))]
-    if not found:
+    samples = [_sample(path) for path in sorted(folder.glob(f"*/{_EXPECTED}"))]
+    if not samples:
         raise InputError(
             f"{printable_path(folder)} has no samples: no folder in it has an {_EXPECTED}"
         )
-    return found
+    return samples
 
 
 def _sample(path: Path) -> Sample:
@@ -94,19 +97,20 @@ def tested_samples(
     rubric: Rubric, samples: list[Sample], show: Callable[[int], None]
 ) -> SampleResults:
     """Return which samples of a rubric differ from what they expect."""
-    own = [sample for sample in samples if sample.rubric in ("", rubric.id)]
+    own_samples = [sample for sample in samples if sample.rubric in ("", rubric.id)]
     different: list[Loss] = []
-    for done, sample in enumerate(own):
+    for done, sample in enumerate(own_samples):
         show(done)
-        found = dict(_differences(sample, rubric))
-        if found:
-            different.append(Loss(sample.folder.name, found))
-    return SampleResults(len(own), len(samples) - len(own), tuple(different))
+        differences = dict(_differences(sample, rubric))
+        if differences:
+            different.append(Loss(sample.folder.name, differences))
+    return SampleResults(len(own_samples), len(samples) - len(own_samples), tuple(different))
 
 
 def _differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
-    """Yield what differs from the expected report: a criterion that is not adjusted, or `verdict`,
-    and a message.
+    """Yield what differs from the expected report.
+
+    Each is a criterion that is not adjusted, or `verdict`, and a message.
     """
     try:
         submission = open_submission(str(sample.folder / sample.path), rubric.lab)
@@ -116,13 +120,24 @@ def _differences(sample: Sample, rubric: Rubric) -> Iterator[tuple[str, str]]:
     verdict = submission.urdf.loaded.verdict if isinstance(submission.urdf, Read) else "missing"
     if sample.verdict not in ("", verdict):
         yield "verdict", f"is {verdict}, expected {sample.verdict}"
-    expected = {name: words for kind, words in _WORDS.items() for name in getattr(sample, kind)}
+    yield from _differences_of_criteria(sample, rubric, submission)
+
+
+def _differences_of_criteria(
+    sample: Sample, rubric: Rubric, submission: Submission
+) -> Iterator[tuple[str, str]]:
+    """Yield the criteria whose results differ from the expected ones, each with a message."""
+    expected = {}
+    for kind, words in _WORDS.items():
+        for name in getattr(sample, kind):
+            expected[name] = words
     known = {criterion.id: criterion.adjustment is None for criterion in rubric.criteria}
-    for name in (name for name in expected if name not in known):
-        yield name, f"the rubric has no such criterion{did_you_mean(name, known)}"
+    for name in expected:
+        if name not in known:
+            yield name, f"the rubric has no such criterion{did_you_mean(name, known)}"
     graded = {
-        it.criterion.id: (_actual(it), f": {it.outcome.message}")
-        for it in grade(rubric, submission).results
+        result.criterion.id: (_actual(result), f": {result.outcome.message}")
+        for result in grade(rubric, submission).results
     }
     for name in (name for name, counts in known.items() if counts):
         actual, message = graded.get(name, ("is not graded", ""))

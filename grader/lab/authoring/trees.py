@@ -21,15 +21,16 @@ _FOUND = re.compile(rf"\Afile:/*{INSTALLED}/([^/]+)/share/\1/")
 
 
 def copied(root: Element) -> Element:
-    """Return a copy of a tree without comments; paths of meshes that $(find package) gave become
-    package:// ones.
+    """Return a copy of a tree without comments.
+
+    Paths of meshes that $(find package) gave become package:// ones.
 
     Its root declares the namespace of xacro.
     """
     plain = etree.XMLParser(remove_comments=True, remove_pis=True, remove_blank_text=True)
-    found = etree.fromstring(etree.tostring(root, with_tail=False), plain)
-    copy = etree.Element(found.tag, dict(found.attrib), nsmap={"xacro": XACRO})
-    copy.extend(list(found))
+    parsed = etree.fromstring(etree.tostring(root, with_tail=False), plain)
+    copy = etree.Element(parsed.tag, dict(parsed.attrib), nsmap={"xacro": XACRO})
+    copy.extend(list(parsed))
     for mesh in copy.iter("mesh"):
         if mesh.get("filename"):
             mesh.set("filename", _FOUND.sub(r"package://\1/", mesh.get("filename", "")))
@@ -71,47 +72,52 @@ def vector_of(element: Element | None, attribute: str, default: str = "0 0 0") -
 
 def pose(owner: Element) -> Transform:
     """Return the pose in the `<origin>` of a joint, a visual, a collision or an inertial."""
-    found = owner.find("origin")
-    place = origin(attribute_numbers(found, "xyz"), attribute_numbers(found, "rpy"))
+    origin_element = owner.find("origin")
+    place = origin(
+        attribute_numbers(origin_element, "xyz"), attribute_numbers(origin_element, "rpy")
+    )
     version = owner.getroottree().getroot().get("version", "1.0")
-    if found is None or "quat_xyzw" not in found.attrib or version == "1.0":  # which ignores it
+    if origin_element is None or "quat_xyzw" not in origin_element.attrib:
         return place
-    x, y, z, w = attribute_numbers(found, "quat_xyzw")
+    if version == "1.0":  # which ignores it
+        return place
+    x, y, z, w = attribute_numbers(origin_element, "quat_xyzw")
     return Transform(rotation_from_quaternion((x, y, z, w)), place.translation)
 
 
 def set_pose(owner: Element, transform: Transform) -> None:
     """Write a pose into the `<origin>` of an element."""
-    found = owner.find("origin")
-    if found is None:
+    origin_element = owner.find("origin")
+    if origin_element is None:
         if transform == IDENTITY:
             return
-        found = etree.SubElement(owner, "origin")
-    found.set("xyz", attribute_text(transform.translation))
-    found.set("rpy", attribute_text(transform.rpy))
-    found.attrib.pop("quat_xyzw", "")
+        origin_element = etree.SubElement(owner, "origin")
+    origin_element.set("xyz", attribute_text(transform.translation))
+    origin_element.set("rpy", attribute_text(transform.rpy))
+    origin_element.attrib.pop("quat_xyzw", "")
 
 
 def end(joint: Element, role: str) -> Element:
     """Return the `<parent>` or `<child>` of a joint."""
-    found = joint.find(role)
-    assert found is not None
-    return found
+    end_element = joint.find(role)
+    assert end_element is not None
+    return end_element
 
 
 def parent_joint(tree: Element, link: str) -> Element | None:
     """Return the one joint whose child is this link; None of several."""
-    found = [
+    joints = [
         joint for joint in tree.iterchildren("joint") if end(joint, "child").get("link") == link
     ]
-    if len(found) == 1:
-        return found[0]
+    if len(joints) == 1:
+        return joints[0]
     return None
 
 
 def move_frame(tree: Element, link: Element, change: Transform) -> None:
-    """Move a link's frame by `change`, given in the frame, and everything in the link back: nothing
-    else moves.
+    """Move a link's frame by `change`, given in the frame.
+
+    Everything in the link is moved back: nothing else moves.
     """
     name = link.get("name", "")
     held = parent_joint(tree, name)
@@ -145,8 +151,9 @@ def add_joint(tree: Element, name: str, parent: str, child: str, transform: Tran
 
 
 def own_elements(tree: Element, *tags: str) -> Iterator[Element]:
-    """Yield the elements with these tags that ROS 2 reads: not those inside of elements for a
-    simulator.
+    """Yield the elements with these tags that ROS 2 reads.
+
+    Those inside of elements for a simulator are left out.
     """
     for child in tree:
         if child.tag not in FOREIGN:
@@ -154,8 +161,9 @@ def own_elements(tree: Element, *tags: str) -> Iterator[Element]:
 
 
 def split_joint(tree: Element, joint: Element, first: Transform, *, is_first: bool) -> None:
-    """Put an empty link into a joint, at `first` in the parent's frame; `is_first` if the upper
-    half keeps the name.
+    """Put an empty link into a joint, at `first` in the parent's frame.
+
+    `is_first` if the upper half keeps the name.
     """
     middle, parent, child = fresh(tree, "link"), end(joint, "parent"), end(joint, "child")
     etree.SubElement(tree, "link", {"name": middle})

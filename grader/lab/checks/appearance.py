@@ -240,21 +240,23 @@ def shows_nothing(robot: Configuration, *, link: str) -> Outcome:
 def _visuals_of_kind(
     robot: Configuration, link: str, kind: type[_Shown]
 ) -> list[tuple[Visual, _Shown]]:
-    """Return the visuals of a link that show a shape of a kind; raise MissingElement where there is
-    none.
+    """Return the visuals of a link that show a shape of a kind.
+
+    Raise MissingElement where there is none.
     """
     pairs = ((visual, visual.geometry) for visual in visuals(robot, link))
-    found = [(visual, shape) for visual, shape in pairs if isinstance(shape, kind)]
-    if not found:
+    visuals_of_kind = [(visual, shape) for visual, shape in pairs if isinstance(shape, kind)]
+    if not visuals_of_kind:
         other, wanted = main_visual(robot, link).geometry, kind.__name__.lower()
         message = f"{link!r} shows {shape_name(other)}; it should show a {wanted}"
         raise MissingElement(wanted, link, message=message, location=place(other.location))
-    return found
+    return visuals_of_kind
 
 
 def _edges_along_link(visual: Visual, box: Box) -> Vector | None:
-    """Return the edge lengths of a box along its link's axes, in metres; None where they are not
-    along them.
+    """Return the edge lengths of a box along its link's axes, in metres.
+
+    None where they are not along them.
     """
     size = box.size
     rotation = rotation_from_rpy(visual.origin.rpy)

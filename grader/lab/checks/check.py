@@ -1,5 +1,6 @@
-"""A check: what a rubric names, what its signature and docstring say, and what it declares to
-hints and pictures.
+"""A check: what a rubric names.
+
+It has what its signature and docstring say, and what it declares to hints and pictures.
 """
 
 import inspect
@@ -118,8 +119,9 @@ class Check(NamedTuple):
     about: About = About()  # what its module declares of it
 
     def for_arguments(self, arguments: Mapping[str, Any]) -> "Check":
-        """Return the check as it is called with these arguments, which may decide what is
-        examined.
+        """Return the check as it is called with these arguments.
+
+        They may decide what is examined.
         """
         if self.about.function_for is not None:
             function = self.about.function_for(arguments)
@@ -133,7 +135,10 @@ class Check(NamedTuple):
     def outcome(self, examined: Iterable[object], arguments: Mapping[str, Any]) -> Outcome:
         """Return what it finds in the objects that it examines, with the arguments of a rubric."""
         if not _KEYWORDS.isdisjoint(arguments):
-            arguments = {f"{key}_" if iskeyword(key) else key: it for key, it in arguments.items()}
+            arguments = {
+                f"{key}_" if iskeyword(key) else key: argument
+                for key, argument in arguments.items()
+            }
         return self.function(*examined, **arguments)
 
     @property
@@ -153,8 +158,9 @@ class Check(NamedTuple):
 
 
 def describe(function: Callable[..., Outcome], distribution: str = "") -> Check:
-    """Return the check that a function is: its signature is the schema of the rubric's `with`
-    table.
+    """Return the check that a function is.
+
+    Its signature is the schema of the rubric's `with` table.
 
     An argument whose key is a keyword of Python, such as `not`, has an underscore behind it in the
     function: `not_`. Raises InputError for a signature that is no schema.
@@ -197,14 +203,17 @@ def _key(name: str) -> str:
 
 
 def _is_subject(parameter: inspect.Parameter) -> bool:
-    """Return whether a parameter after the first is another object that is examined: it is no
-    keyword-only argument.
+    """Return whether a parameter after the first is another object that is examined.
+
+    Such a parameter is no keyword-only argument.
     """
     return parameter.kind is parameter.POSITIONAL_OR_KEYWORD and parameter.name in _SUBJECTS
 
 
 class Documentation(NamedTuple):
-    """The paragraphs of a docstring before its first section, a fact first; the meaning of each
+    """The parts of a docstring.
+
+    They are the paragraphs before its first section, a fact first, and the meaning of each
     argument.
     """
 
@@ -218,8 +227,9 @@ class Documentation(NamedTuple):
 
 
 def documentation(function: Callable[..., Any]) -> Documentation:
-    """Return what the docstring of a function says; a function without one, or without `Args:`, has
-    empty parts.
+    """Return what the docstring of a function says.
+
+    A function without one, or without `Args:`, has empty parts.
     """
     text, *sections = re.split(_SECTION, inspect.getdoc(function) or "")
     named = dict(zip(sections[::2], sections[1::2], strict=True))
@@ -232,11 +242,16 @@ def documentation(function: Callable[..., Any]) -> Documentation:
 
 
 def _arguments(section: str) -> dict[str, str]:
-    """Return the entries of an `Args:` section by name; an entry continues on lines that are
-    indented further.
+    """Return the entries of an `Args:` section by name.
+
+    An entry continues on lines that are indented further.
     """
     entries = (re.split(_ARGUMENT, entry) for entry in re.split(r"\n(?=\S)", section))
-    return {_key(found[1]): _one_line(found[2]) for found in entries if len(found) == 3}
+    return {
+        _key(entry_match[1]): _one_line(entry_match[2])
+        for entry_match in entries
+        if len(entry_match) == 3
+    }
 
 
 def _one_line(text: str) -> str:

@@ -110,32 +110,18 @@ def collides_as(
         relative_to: The link in whose frame the place is given, by default the link itself.
         only: Whether the link has no other collision shape.
     """
-    shapes: list[Shape] = []
-    if box is not None:
-        shapes.append(Box(box))
-    if cylinder is not None:
-        shapes.append(Cylinder(*cylinder))
-    if capsule is not None:
-        shapes.append(Capsule(*capsule))
-    if sphere is not None:
-        shapes.append(Sphere(sphere))
-    if len(shapes) != 1:
-        raise RubricError(("collides_as takes exactly one of box, cylinder, capsule and sphere",))
-    [wanted] = shapes
-    what = _shape_text(wanted)
-    what += f" at {point(xyz)} m" if xyz else ""
-    what += f" with rpy = {point(rpy)} (radians)" if any(rpy or ()) else ""
-    what += f" in {relative_to!r}" if relative_to else ""
+    wanted = _wanted_shape(box, cylinder, capsule, sphere)
+    what = _shape_text(wanted) + _place_text(xyz, rpy, relative_to)
     origin = Origin(xyz or _ZERO, rpy or _ZERO)
     pose = origin.placed_in(robot.pose(relative_to or link, relative_to=link))
     placed = PlacedShape(wanted, pose)
 
     def off(collision: Collision) -> ShapeDifference | None:
         other = PlacedShape(collision.geometry, collision.origin.placed_in())
-        found = placed.mismatch(other, tolerance + SLACK, turned=rpy is not None)
-        if found is None or xyz is not None:
-            return found
-        return found._replace(apart=0.0)
+        mismatch = placed.mismatch(other, tolerance + SLACK, turned=rpy is not None)
+        if mismatch is None or xyz is not None:
+            return mismatch
+        return mismatch._replace(apart=0.0)
 
     solid = _solid_collisions(robot, link, what)
     fitting = next((one for one in solid if _fits(off(one), tolerance)), None)
@@ -154,9 +140,43 @@ def collides_as(
     return passed(f"{link!r} collides as {what}")
 
 
+def _wanted_shape(
+    box: Size | None,
+    cylinder: RadiusAndLength | None,
+    capsule: RadiusAndLength | None,
+    sphere: NonNegative | None,
+) -> Shape:
+    """Return the only shape that is given; raise RubricError for none or several."""
+    shapes: list[Shape] = []
+    if box is not None:
+        shapes.append(Box(box))
+    if cylinder is not None:
+        shapes.append(Cylinder(*cylinder))
+    if capsule is not None:
+        shapes.append(Capsule(*capsule))
+    if sphere is not None:
+        shapes.append(Sphere(sphere))
+    if len(shapes) != 1:
+        raise RubricError(("collides_as takes exactly one of box, cylinder, capsule and sphere",))
+    return shapes[0]
+
+
+def _place_text(xyz: Vector | None, rpy: Vector | None, relative_to: str) -> str:
+    """Return the wanted place of a shape in words, empty if none is given."""
+    text = ""
+    if xyz:
+        text += f" at {point(xyz)} m"
+    if rpy and any(rpy):
+        text += f" with rpy = {point(rpy)} (radians)"
+    if relative_to:
+        text += f" in {relative_to!r}"
+    return text
+
+
 def _solid_collisions(robot: Configuration, link: str, expected: str) -> tuple[Collision, ...]:
-    """Return the collision shapes of a link that have a size; raise MissingElement if there is
-    none.
+    """Return the collision shapes of a link that have a size.
+
+    Raise MissingElement if there is none.
     """
     solid = tuple(
         collision for collision in robot.link(link).collisions if not collision.geometry.is_empty
@@ -174,32 +194,40 @@ def _fits(off: ShapeDifference | None, tolerance: float) -> bool:
 
 
 def _mismatch(visual: Visual, collision: Collision, tolerance: float) -> ShapeDifference | None:
-    """Return how far two shapes differ; None for shapes of different kinds, and for different
-    meshes.
+    """Return how far two shapes differ.
+
+    None for shapes of different kinds, and for different meshes.
     """
     shown = PlacedShape(visual.geometry, visual.origin.placed_in())
     solid = PlacedShape(collision.geometry, collision.origin.placed_in())
     return shown.mismatch(solid, tolerance + SLACK)
 
 
+def _refuse_other_meshes(link: str, lonely: Sequence[Visual], others: Sequence[Collision]) -> None:
+    """Raise NotDecided for a collision mesh that is not shown, if all shapes are meshes."""
+    shown_meshes = [visual.geometry for visual in lonely if isinstance(visual.geometry, Mesh)]
+    meshes = [collision.geometry for collision in others if isinstance(collision.geometry, Mesh)]
+    if len(meshes) < len(others) or len(shown_meshes) < len(lonely):
+        return
+    files = {mesh.filename for mesh in shown_meshes}
+    for mesh in meshes:
+        if mesh.filename not in files:
+            cause = "mesh files are not opened"
+            message = (
+                f"whether the collision mesh {quoted_end(mesh.filename)} of {link!r} has the "
+                f"shape that is shown cannot be determined: {cause}"
+            )
+            raise NotDecided(message, cause)
+
+
 def _judge_unmatched(
     link: str, lonely: Sequence[Visual], others: Sequence[Collision], tolerance: float
 ) -> Outcome:
-    """Return the outcome for visuals without a collision shape, and collision shapes without a
-    visual.
+    """Return the outcome for shapes without a counterpart.
+
+    These are visuals without a collision shape, and collision shapes without a visual.
     """
-    shown_meshes = [visual.geometry for visual in lonely if isinstance(visual.geometry, Mesh)]
-    meshes = [collision.geometry for collision in others if isinstance(collision.geometry, Mesh)]
-    if len(meshes) == len(others) and len(shown_meshes) == len(lonely):
-        files = {mesh.filename for mesh in shown_meshes}
-        for mesh in meshes:
-            if mesh.filename not in files:
-                cause = "mesh files are not opened"
-                message = (
-                    f"whether the collision mesh {quoted_end(mesh.filename)} of {link!r} has the "
-                    f"shape that is shown cannot be determined: {cause}"
-                )
-                raise NotDecided(message, cause)
+    _refuse_other_meshes(link, lonely, others)
     pairs = [
         (_mismatch(visual, other, tolerance), visual, other)
         for visual in lonely
@@ -218,18 +246,19 @@ def _rank_mismatch(off: ShapeDifference | None) -> tuple[bool, float]:
 def _fail_with_nearest(
     message: str, nearest: Collision, off: ShapeDifference | None, tolerance: float
 ) -> Outcome:
-    """Return a failure that says how the nearest shape differs from the one that should be, at the
-    place to look at.
+    """Return a failure that says how the nearest shape differs from the one that should be.
+
+    Its location is the place to look at.
     """
     message += f"; the nearest is {_describe_shape(nearest)}"
     if off is None:
         return failed(message, nearest.geometry.location or nearest.location)
-    found = [
+    differences = [
         (f"{in_millimetres(off.apart)} away", off.apart, nearest.origin.location, "xyz"),
         (f"of a size {in_millimetres(off.size)} off", off.size, nearest.geometry.location, None),
         (f"rotated by {in_degrees(off.angle)}", off.turn, nearest.origin.location, "rpy"),
     ]
-    wrong = [row for row in found if not row[1] <= tolerance + SLACK]
+    wrong = [row for row in differences if not row[1] <= tolerance + SLACK]
     text = " and ".join(text for text, *_ in wrong)
     return failed(f"{message} ({text})", place(wrong[0][2], wrong[0][3]) or nearest.location)
 

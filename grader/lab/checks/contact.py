@@ -73,13 +73,15 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
         of: The other link.
         tolerance: How deep the visuals may overlap, in metres.
     """
-    own = [(visual, placed(robot, link, visual, of).pose) for visual in visuals(robot, link)]
+    own_visuals = [
+        (visual, placed(robot, link, visual, of).pose) for visual in visuals(robot, link)
+    ]
     others = [placed(robot, of, visual, of) for visual in visuals(robot, of)]
-    if len(own) * len(others) > _MAX_PAIRS:
+    if len(own_visuals) * len(others) > _MAX_PAIRS:
         raise NotDecided(f"{link!r} and {of!r} show too many shapes to compare", "too many shapes")
-    deepest, culprit = 0.0, own[0][0]
+    deepest, culprit = 0.0, own_visuals[0][0]
     unknown: Mesh | None = None
-    for (visual, pose), (geometry, other) in product(own, others):
+    for (visual, pose), (geometry, other) in product(own_visuals, others):
         if isinstance(visual.geometry, Mesh):
             unknown = visual.geometry
         elif isinstance(geometry, Mesh):
@@ -99,8 +101,9 @@ def clear_of(robot: Configuration, *, link: str, of: str, tolerance: NonNegative
 
 
 def _overhang(above: list[PlacedShape], below: PlacedShape) -> float:
-    """Return how far shapes reach beyond the outline of the one below, seen from above, in
-    metres.
+    """Return how far shapes reach beyond the outline of the one below, in metres.
+
+    The outline is seen from above.
     """
     directions = [X_AXIS, _LEFT]
     if isinstance(below.geometry, Box):  # its own edges: it may be turned about the vertical

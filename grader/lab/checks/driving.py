@@ -1,6 +1,6 @@
 """Checks of a robot as a whole: how it stands on level ground, and where its wheels drive it."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from grader.base.errors import NotDecided, RubricError
 from grader.base.quantities import SLACK, in_degrees, in_millimetres
@@ -50,12 +50,7 @@ def stands_level(
     standing = StandingRobot(robot, on, base)
     rest = standing.rest
     faults: list[RobotFault] = []
-    hanging: list[RobotFault] = []
-    for link in on:
-        height = standing.height(link)
-        if not height <= tolerance + SLACK:
-            text = f"{link!r} is {in_millimetres(height)} above the ground"
-            hanging.append(RobotFault(text, height, tolerance, "m", origin_place(robot, link)))
+    hanging = [*_find_hanging(standing, robot, on, tolerance)]
     others = [link for link in standing.touching if link not in on]
     if rest.has_fallen:
         faults.append(RobotFault("it tips over"))
@@ -74,6 +69,17 @@ def stands_level(
             faults.append(RobotFault(text, at=origin_place(robot, others[0])))
     message = f"it stands level on {in_quotes(on)}"
     return _judge(standing, faults, message, RobotFault("", rest.tilt, tilt, "deg"))
+
+
+def _find_hanging(
+    standing: StandingRobot, robot: Configuration, links: Iterable[str], tolerance: float
+) -> Iterator[RobotFault]:
+    """Yield a fault for each of these links that does not touch the ground."""
+    for link in links:
+        height = standing.height(link)
+        if not height <= tolerance + SLACK:
+            text = f"{link!r} is {in_millimetres(height)} above the ground"
+            yield RobotFault(text, height, tolerance, "m", origin_place(robot, link))
 
 
 def drives_straight(
@@ -206,8 +212,9 @@ def _judge(
     *,
     by_mass: bool = True,
 ) -> Outcome:
-    """Return the outcome for faults; `fine` has the numbers of a robot without any. If it is
-    decided by the centre of mass, the message says what is assumed of that.
+    """Return the outcome for faults; `fine` has the numbers of a robot without any.
+
+    If it is decided by the centre of mass, the message says what is assumed of that.
     """
     shown = faults[0] if faults else fine
     text = "; ".join(fault.text for fault in faults) or message

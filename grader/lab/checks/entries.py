@@ -146,8 +146,9 @@ class _Wanted(NamedTuple):
 
     @property
     def identity(self) -> str:
-        """The key of the attribute that identifies one of several elements; empty if the values
-        have none.
+        """The key of the attribute that identifies one of several elements.
+
+        Empty if the values have none.
         """
         return next((key for key in _IDENTIFYING if isinstance(self.values.get(key), str)), "")
 
@@ -160,8 +161,9 @@ class _Wanted(NamedTuple):
         return not all(self.wrong(search, entry) for entry in entries)
 
     def has_own(self, entries: Sequence[TreeEntry]) -> bool:
-        """Return whether the entries at the path have the value themselves, or several of them
-        the values.
+        """Return whether the entries at the path have the value themselves.
+
+        Or whether several of them have the values.
         """
         if self.value is not None and not self._have(entries, self.value):
             return False
@@ -186,8 +188,9 @@ class _Wanted(NamedTuple):
         return min(entries, key=lambda entry: (self.identity in wrong[entry], len(wrong[entry])))
 
     def equals(self, entry: TreeEntry, expected: Scalar) -> bool:
-        """Return whether a text is an expected value; in YAML, one in quotes is no number and no
-        boolean.
+        """Return whether a text is an expected value.
+
+        In YAML, a text in quotes is no number and no boolean.
         """
         if entry.text is None:
             return False
@@ -203,8 +206,9 @@ class _Wanted(NamedTuple):
         return len(numbers) == 1 and abs(numbers[0] - expected) <= self.tolerance + _SLACK
 
     def _have(self, entries: Sequence[TreeEntry], expected: Content) -> bool:
-        """Return whether an entry is a value; for a list, whether one is the list, or several
-        have its items.
+        """Return whether an entry is a value.
+
+        For a list, whether one is the list, or several have its items.
         """
         if not isinstance(expected, list):
             return self._is_any_of(entries, [expected])
@@ -261,8 +265,9 @@ def _judge(tree: TreeEntry, wanted: _Wanted, where: str) -> Outcome:
 
 
 def _no_entry(tree: TreeEntry, search: Search, wanted: _Wanted, where: str) -> Outcome:
-    """Return the failure of a path that leads to nothing: at its first step that has no entry,
-    or none that fits.
+    """Return the failure of a path that leads to nothing.
+
+    It is at the first step that has no entry, or none that fits.
     """
     steps = wanted.steps
     depth = max(count for count in range(len(steps)) if search.find(tree, steps[:count]))
@@ -416,8 +421,9 @@ def _with_names(step: PathStep, robot: Configuration) -> PathStep:
 
 
 def _kept(robot: Configuration, root: Element) -> Element:
-    """Return a copy of a robot without the inertials, visuals and collisions of links that ROS 2
-    drops.
+    """Return a copy of a robot without what ROS 2 drops.
+
+    These are inertials, visuals and collisions of links.
     """
     kept_tags = set()
     for link in robot.known.links:
@@ -464,8 +470,9 @@ def _check_known(reading: Reading, tree: TreeEntry, wanted: _Wanted) -> None:
 
 
 def _may_fit(entry: TreeEntry, step: PathStep, reading: Reading) -> bool:
-    """Return whether an element, of which not all may be known, can have the attributes of a
-    step.
+    """Return whether an element can have the attributes of a step.
+
+    Not all of the element may be known.
     """
     conditions = [(key, value) for key, value in step.conditions if key.startswith("@")]
     unresolved = reading.unresolved.get(entry.element) if entry.element is not None else None

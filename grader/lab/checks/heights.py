@@ -1,6 +1,6 @@
 """Checks of heights: the lowest points of links, and a footprint level with them."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import inf
 
 from grader.base.errors import MissingElement
@@ -8,7 +8,7 @@ from grader.base.quantities import SLACK, in_degrees, in_millimetres, point, wit
 from grader.base.source import LazyLocation, place
 from grader.base.text import enumerated
 from grader.base.toml_types import NonNegative
-from grader.base.transforms import IDENTITY_ROTATION, Z_AXIS, turn_between
+from grader.base.transforms import IDENTITY_ROTATION, Z_AXIS, Transform, turn_between
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, difference, judged, measured
 from grader.lab.checks.visuals import ShapeName, main_visual, shape_name, span
@@ -108,31 +108,39 @@ def under_the_base(
     """
     T_link_base = robot.pose(base, relative_to=link)
     x, y, _ = T_link_base.translation
-    turned = turn_between(T_link_base.rotation, IDENTITY_ROTATION)
     lowest, missing = _measure_each(wheels, lambda wheel: span(robot, wheel, link, Z_AXIS)[0])
     off = {wheel: value for wheel, value in lowest.items() if not within(value, 0.0, tolerance)}
-    faults = []
-    if not (within(x, 0.0, tolerance) and within(y, 0.0, tolerance)):
-        faults.append(f"{base!r} is at x, y = {point((x, y))} m in it and should be at 0 0")
-    if turned > angle + SLACK:
-        faults.append(
-            f"{base!r} is rotated by {in_degrees(turned)} in it and should not be rotated"
-        )
-    heights = {wheel: difference(value, "above", "below") for wheel, value in off.items()}
-    faults += [f"the lowest point of {wheel!r} is {height} it" for wheel, height in heights.items()]
+    faults = [*_find_pose_faults(base, T_link_base, tolerance, angle)]
+    for wheel, value in off.items():
+        height = difference(value, "above", "below")
+        faults.append(f"the lowest point of {wheel!r} is {height} it")
     if missing is not None and not faults:
         raise missing
-    verb, found = ("should be", f": {'; '.join(faults)}") if faults else ("is", "")
+    verb, explanation = "is", ""
+    if faults:
+        verb, explanation = "should be", f": {'; '.join(faults)}"
     message = (
-        f"the frame {link!r} {verb} under {base!r}, level with the bottoms of the wheels{found}"
+        f"the frame {link!r} {verb} under {base!r}, "
+        f"level with the bottoms of the wheels{explanation}"
     )
     actual = (x, y, *lowest.values())
     at = origin_place(robot, base)
-    if (
-        len(off) == len(faults) < len(lowest)
-    ):  # the frame is where it should be, and some wheel is not
+    # The frame is where it should be, and some wheel is not.
+    if len(off) == len(faults) < len(lowest):
         at = origin_place(robot, next(iter(off), base))
     return judged(not faults, message, actual, 0.0, tolerance, "m", at=at)
+
+
+def _find_pose_faults(
+    base: str, T_link_base: Transform, tolerance: float, angle: float
+) -> Iterator[str]:
+    """Yield what is wrong with the pose of a base in a frame that should be below it."""
+    x, y, _ = T_link_base.translation
+    if not (within(x, 0.0, tolerance) and within(y, 0.0, tolerance)):
+        yield f"{base!r} is at x, y = {point((x, y))} m in it and should be at 0 0"
+    turned = turn_between(T_link_base.rotation, IDENTITY_ROTATION)
+    if turned > angle + SLACK:
+        yield f"{base!r} is rotated by {in_degrees(turned)} in it and should not be rotated"
 
 
 def above_others(
@@ -170,19 +178,20 @@ def above_others(
 def _measure_each(
     links: Sequence[str], measure: Callable[[str], float]
 ) -> tuple[dict[str, float], MissingElement | UnknownShape | None]:
-    """Return what can be measured of each link; and why one of them cannot, so that it does not
-    hide the others.
+    """Return what can be measured of each link, and why one of them cannot.
+
+    Such a link does not hide the others.
     """
-    found: dict[str, float] = {}
+    measurements: dict[str, float] = {}
     missing: MissingElement | UnknownShape | None = None
     for link in links:
         try:
-            found[link] = measure(link)
+            measurements[link] = measure(link)
         except (MissingElement, UnknownShape) as error:
             missing = missing or error.with_traceback(
                 None
             )  # a traceback keeps this frame and its values alive
-    return found, missing
+    return measurements, missing
 
 
 def _common_place(
@@ -192,8 +201,9 @@ def _common_place(
     relative_to: str,
     tolerance: float,
 ) -> LazyLocation | None:
-    """Return where to look if heights are off: the origin of the frame if all are off alike, else
-    of the first link.
+    """Return where to look if heights are off.
+
+    This is the origin of the frame if all are off alike, else of the first link.
     """
     first, value = next(iter(wrong.items()))
     alike = len(wrong) == len(lowest) > 1 and all(

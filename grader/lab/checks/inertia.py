@@ -1,5 +1,6 @@
-"""Checks of the mass of a link, and of its inertia against that of a uniform solid of its
-shapes.
+"""Checks of the mass and the inertia of a link.
+
+The inertia is compared with that of a uniform solid of its shapes.
 """
 
 from math import isfinite
@@ -117,11 +118,11 @@ def inertia_plausible(robot: Configuration, *, link: str, tolerance: NonNegative
 
 def _needed_inertial(robot: Configuration, link: str) -> Inertial:
     """Return the <inertial> of a link; raise MissingElement if ROS 2 reads none."""
-    found = robot.link(link)
-    if found.inertial is None:
+    found_link = robot.link(link)
+    if found_link.inertial is None:
         message = f"link {link!r} has no valid <inertial>"
-        raise MissingElement("inertial", link, message=message, location=place(found.location))
-    return found.inertial
+        raise MissingElement("inertial", link, message=message, location=place(found_link.location))
+    return found_link.inertial
 
 
 def _refuse_impossible(link: str, inertial: Inertial) -> Outcome | None:
@@ -148,9 +149,9 @@ def _solid_of(robot: Configuration, link: str) -> tuple[str, Solid]:
 
     Raises UnknownShape for a mesh, MissingElement for a link without a shape.
     """
-    found = robot.link(link)
+    found_link = robot.link(link)
     for word in ("collision shape", "visual"):
-        placed = with_volume(found.visuals if word == "visual" else found.collisions)
+        placed = with_volume(found_link.visuals if word == "visual" else found_link.collisions)
         if len(placed) > MAX_SHAPES:
             raise NotDecided(
                 f"{link!r} has more than {MAX_SHAPES} shapes", "a link has very many shapes"
@@ -158,4 +159,4 @@ def _solid_of(robot: Configuration, link: str) -> tuple[str, Solid]:
         if placed:
             return word if len(placed) == 1 else f"{word}s", Solid.of(placed)
     message = f"link {link!r} has no visual or collision shape with a volume"
-    raise MissingElement("visual", link, message=message, location=place(found.location))
+    raise MissingElement("visual", link, message=message, location=place(found_link.location))

@@ -1,5 +1,6 @@
-"""What a build of a package installs of its files, and why it does not: for the checks of packages
-and of launch files.
+"""What a build of a package installs of its files, and why it does not.
+
+For the checks of packages and of launch files.
 """
 
 import posixpath
@@ -28,14 +29,13 @@ def build_error(package: Package, *, where_there: bool = False) -> Outcome | Non
     if package.ignored_by:
         message = f"colcon does not build the package, because there is a file {package.ignored_by}"
         return failed(message, problem=message)
-    stops = [stop for stop in setup.stops if stop.path != MANIFEST or package.manifest is not None]
     errors = [(fault.message, "", fault.at) for fault in setup.faults]
     there = package.tree.files.keys() | package.tree.folders
-    errors += [
-        (stop.message, stop.hint, stop.at)
-        for stop in stops
-        if not where_there or not stop.path or stop.path.rstrip("/") in there
-    ]
+    for stop in setup.stops:
+        if stop.path == MANIFEST and package.manifest is None:
+            continue
+        if not where_there or not stop.path or stop.path.rstrip("/") in there:
+            errors.append((stop.message, stop.hint, stop.at))
     if errors:
         messages = list(dict.fromkeys(message for message, _, _ in errors))
         _, hint, at = errors[0]
@@ -61,8 +61,9 @@ def build_error(package: Package, *, where_there: bool = False) -> Outcome | Non
 
 
 def files_of_kind(package: Package, kind: FileKind, name: str) -> Sequence[str]:
-    """Return the file of a package that has this name, else all of the kind that are no part of
-    another one.
+    """Return the file of a package that has this name.
+
+    Without one, all of the kind that are no part of another one.
     """
     if kind == "launch":
         chosen = package.launch_file(name)
@@ -96,37 +97,37 @@ def require_installed(
         return passed(f"{setup.file} has an entry for {files[0]}")
     copies = [copy for copy in setup.copies if copy.source in files]
     inside = [copy for copy in copies if copy.target.startswith(package.share)]
-    twice = sorted(
-        {
-            copy.target
-            for copy in inside
-            if posixpath.basename(copy.target) == posixpath.basename(files[0])
-        }
-    )
-    if kind == "launch" and len(twice) > 1:
-        message = (
-            f"a build installs {files[0]} as {' and as '.join(twice)}; ros2 launch needs "
-            "exactly one"
-        )
-        return failed(
-            message, setup.location(inside[-1].at), mistake="a build installs the launch file twice"
-        )
+    name = posixpath.basename(files[0])
+    targets = sorted({copy.target for copy in inside if posixpath.basename(copy.target) == name})
+    if kind == "launch" and len(targets) > 1:
+        shown = " and as ".join(targets)
+        message = f"a build installs {files[0]} as {shown}; ros2 launch needs exactly one"
+        mistake = "a build installs the launch file twice"
+        return failed(message, setup.location(inside[-1].at), mistake=mistake)
     if inside and setup.misspelt is not None:
         raise package.without_data_files(setup.misspelt.message)
     if inside:
         return passed(f"a build installs {inside[0].source} as {inside[0].target}")
     if despite_errors and setup.is_unknown_after_error:
         return passed(f"what {setup.file} installs is not known because of an error in it")
-    if setup.unknown:
-        reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of {setup.file})"
-        message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
-        raise NotDecided(message, f"cannot determine statically what {setup.file} installs")
-    if copies:
+    if copies and not setup.unknown:
         message = f"a build installs {copies[0].source} as {copies[0].target}"
         message += f"; ROS 2 looks for the package's files below {package.share}"
         mistake = f"a build installs the file outside of {package.share}"
         return failed(message, setup.location(copies[0].at), mistake=mistake, cause="elsewhere")
-    raise _why_not_installed(package, files, kind)
+    raise _why_no_copy(package, files, kind)
+
+
+def _why_no_copy(
+    package: Package, files: Sequence[str], kind: FileKind | None
+) -> MissingElement | NotDecided:
+    """Return why no copy of these files is known: NotDecided where not all copies are known."""
+    setup = package.needed_installation()
+    if not setup.unknown:
+        return _why_not_installed(package, files, kind)
+    reason = f"{setup.unknown[0].reason} (line {setup.unknown[0].at.line} of {setup.file})"
+    message = f"cannot determine statically whether a build installs {files[0]}: {reason}"
+    return NotDecided(message, f"cannot determine statically what {setup.file} installs")
 
 
 def _stops_at(package: Package, files: Sequence[str], kind: FileKind | None) -> bool:
@@ -197,5 +198,9 @@ def _kinds_by_folder(package: Package) -> dict[str, FileKind]:
         folder = posixpath.dirname(path)
         if folder and (path.endswith(endings) or ".launch." in path):
             kinds.setdefault(folder, set()).add(_kind_by_ending(path))
-    of_one_kind = [(folder, found.pop()) for folder, found in kinds.items() if len(found) == 1]
+    of_one_kind = [
+        (folder, kinds_in_folder.pop())
+        for folder, kinds_in_folder in kinds.items()
+        if len(kinds_in_folder) == 1
+    ]
     return {folder: kind for folder, kind in of_one_kind if kind is not None}

@@ -1,5 +1,6 @@
-"""Checks of the joint that moves a link, the last one above it that is not fixed: limits, axis,
-mimic, dynamics.
+"""Checks of the joint that moves a link: limits, axis, mimic, dynamics.
+
+It is the last joint above the link that is not fixed.
 
 The numbers of an element of a joint are compared with the expected ones together, in one outcome.
 """
@@ -29,7 +30,8 @@ def _breaks_without_direction(arguments: Mapping[str, Any]) -> Collection[str]:
 ABOUT = {
     "joint_limits": About(("limit",), breaks_under=_breaks_without_direction),
     "joint_axis": About(
-        ("axis",), breaks_under=lambda it: () if it.get("either_way") else (MIMIC_TURNED,)
+        ("axis",),
+        breaks_under=lambda arguments: () if arguments.get("either_way") else (MIMIC_TURNED,),
     ),
     "mimics": About(("mimic",), breaks_under=_breaks_without_direction),
     "joint_dynamics": About(("dynamics",)),
@@ -129,8 +131,8 @@ def joint_axis(
     if joint.type == "floating":
         message = f"the joint that moves {link!r} is floating, so it has no axis"
         return failed(message, place(joint.location, "type"), detail=_joint_detail(joint))
-    own, T_relative_joint = robot.axis(joint), robot.pose(joint.child, relative_to=relative_to)
-    actual, expected = T_relative_joint.rotate(own), unit(direction) or direction
+    own_axis, T_relative_joint = robot.axis(joint), robot.pose(joint.child, relative_to=relative_to)
+    actual, expected = T_relative_joint.rotate(own_axis), unit(direction) or direction
     off = degrees_between(actual, expected)
     off = min(off, 180.0 - off) if either_way else off
     axis = f"the axis of the joint that moves {link!r}"
@@ -148,9 +150,16 @@ def joint_axis(
     message += f" and passes {in_millimetres(away)} from {point(through)} m"
     message += "" if fine else "; it should pass through that point"
     at = place(joint.origin.location if joint.origin else None, "xyz") or joint.location
-    found = away if isfinite(away) else None
+    measured_distance = away if isfinite(away) else None
     return judged(
-        fine, message, found, 0.0, distance, "m", at=at, detail="" if fine else _joint_detail(joint)
+        fine,
+        message,
+        measured_distance,
+        0.0,
+        distance,
+        "m",
+        at=at,
+        detail="" if fine else _joint_detail(joint),
     )
 
 
@@ -186,12 +195,11 @@ def mimics(
     at = place(joint.mimic.location, "joint") if joint.mimic else joint.location
     if leading.name not in followed:
         message = f"the joint that moves {link!r} does not mimic the joint that moves {leader!r}"
-        last = next(reversed(followed), joint.name)
         detail = f" (joint {joint.name!r})"
         if joint.mimic is not None:
             detail = f" (joint {joint.name!r} mimics {joint.mimic.joint!r}, not {leading.name!r})"
-        is_missing = not robot.robot.has_joint(last)
-        if is_missing:
+        last = next(reversed(followed), joint.name)
+        if not robot.robot.has_joint(last):
             message = f"the joint that moves {link!r} mimics a joint that does not exist"
             detail += did_you_mean(last, (other.name for other in robot.robot.joints))
         return failed(message, at, detail=detail)
@@ -226,9 +234,10 @@ def joint_dynamics(
     """
     joint = robot.moving_joint(link)
     given = joint.dynamics
-    found = given or Dynamics()
+    dynamics = given or Dynamics()
     numbers = _expected_numbers(
-        {"friction": (found.friction, friction), "damping": (found.damping, damping)}, tolerance
+        {"friction": (dynamics.friction, friction), "damping": (dynamics.damping, damping)},
+        tolerance,
     )
     message = f"the joint that moves {link!r} has {'<dynamics>' if given else 'no <dynamics>'}"
     if given is None and not numbers:
@@ -250,27 +259,28 @@ def _is_reversed(
 
 
 def _mimic_chain(robot: Configuration, joint: Joint, link: str) -> dict[str, tuple[float, float]]:
-    """Return the joints that a joint mimics, directly and through others, each with the multiplier
-    and offset to it.
+    """Return the joints that a joint mimics, directly and through others.
+
+    Each has the multiplier and offset to it.
 
     The last may not exist. Raises MissingElement for a loop.
     """
-    found: dict[str, tuple[float, float]] = {}
+    ratios: dict[str, tuple[float, float]] = {}
     first, ratio, shift = joint, 1.0, 0.0
     while True:
         if joint.mimic is None:
-            return found
+            return ratios
         name = joint.mimic.joint
         ratio, shift = ratio * joint.mimic.multiplier, ratio * joint.mimic.offset + shift
-        if name == first.name or name in found:
+        if name == first.name or name in ratios:
             message = f"the joint that moves {link!r} mimics itself, directly or through others"
             at = place(joint.mimic.location, "joint")
             raise MissingElement(
                 "mimicked joint", link, message=message, detail=_joint_detail(first), location=at
             )
-        found[name] = ratio, shift
+        ratios[name] = ratio, shift
         if not robot.robot.has_joint(name):
-            return found
+            return ratios
         joint = robot.joint(name)
 
 
@@ -281,8 +291,9 @@ def _range_text(lower: float, upper: float) -> str:
 def _wrong_type(
     joint: Joint, link: str, lower: float, upper: float, tolerance: float
 ) -> Outcome | None:
-    """Return the failure of limits that are as expected, but in metres instead of degrees or the
-    other way round.
+    """Return the failure of limits that are as expected in another unit.
+
+    They are in metres instead of degrees, or the other way round.
     """
     limit = joint.limit
     assert limit is not None
@@ -341,8 +352,9 @@ def _compare_numbers(
     element: LazyLocation | None,
     of: str | None = None,
 ) -> Outcome:
-    """Compare numbers of an element, which are in the unit `of` if they have one tolerance; NaN
-    fails.
+    """Compare numbers of an element, which are in the unit `of` if they have one tolerance.
+
+    NaN fails.
     """
     faults = {number.fault: number.attribute for number in reversed(numbers) if number.is_wrong}
     message = "; ".join((message, *reversed(faults)))

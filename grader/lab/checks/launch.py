@@ -1,5 +1,7 @@
-"""Checks of a launch file: its name, the nodes that it starts, and whether a build installs the
-files that it names.
+"""Checks of a launch file.
+
+They are about its name, the nodes that it starts, and whether a build installs the files that it
+names.
 """
 
 import posixpath
@@ -119,10 +121,11 @@ def node_runs(
     if (remap or arguments) and not nodes:
         raise RubricError(("node_runs looks for remap and arguments in nodes: name one",))
     places = find_places(package, evaluated, "read", "urdf", "include", built=built)
-    choices = [_names_in(evaluated, node.split(" or ")) for node in nodes or ()]
+    wanted_nodes = tuple(nodes or ())
+    choices = [_names_in(evaluated, node.split(" or ")) for node in wanted_nodes]
     missing = _missing_nodes(evaluated, choices)
     if missing and not _may_start(evaluated, missing):
-        return _fail_missing(evaluated, missing, nodes or ())
+        return _fail_missing(evaluated, missing, wanted_nodes)
     wanted = Wanted(
         absent=_names_in(evaluated, not_ or ()),
         remap=remap,
@@ -134,27 +137,43 @@ def node_runs(
         calls=calls,
     )
     faults = find_faults(submission, evaluated, choices, wanted) if any(wanted) else []
-    certain = [fault for fault in faults if fault.is_certain]
-    if certain:
-        wrong = certain[0]
-        return failed(wrong.message, wrong.at, detail=wrong.detail, cause=wrong.cause)
-    if fault := _faulty_program(package, evaluated, choices):
-        raise fault
-    stopped = _stop_at_files(package, places, built=built)
-    if stopped is not None:
-        return stopped
+    failure = _fail_certainly(package, evaluated, choices, faults)
+    failure = failure or _stop_at_files(package, places, built=built)
+    if failure is not None:
+        return failure
     if built or not any(place.is_in_misnamed(package) for place in places):
         _check_starts(evaluated)
     _check_decided(evaluated, missing, faults, places)
-    started = sorted({node.name for node in evaluated.nodes if node.when})
-    return judged(
-        True, f"the launch file starts {', '.join(started)}", tuple(started), tuple(nodes or ())
-    )
+    return _pass_started(evaluated, wanted_nodes)
+
+
+def _fail_certainly(
+    package: Package,
+    launch: "Launch",
+    choices: Sequence[Sequence[str]],
+    faults: Sequence[Fault],
+) -> Outcome | None:
+    """Return the failure of the first certain fault; raise that of a program that ends at once."""
+    for fault in faults:
+        if fault.is_certain:
+            return failed(fault.message, fault.at, detail=fault.detail, cause=fault.cause)
+    ending = _faulty_program(package, launch, choices)
+    if ending is not None:
+        raise ending
+    return None
+
+
+def _pass_started(launch: "Launch", wanted_nodes: tuple[str, ...]) -> Outcome:
+    """Return the outcome of a launch file that starts what it should."""
+    started = sorted({node.name for node in launch.nodes if node.when})
+    message = f"the launch file starts {', '.join(started)}"
+    return judged(True, message, tuple(started), wanted_nodes)
 
 
 def _names_in(launch: "Launch", names: Iterable[str]) -> list[str]:
-    """Return names of nodes as a launch file has them: a build may install a script with .py, or
-    without.
+    """Return names of nodes as a launch file has them.
+
+    A build may install a script with .py, or without.
     """
     known = {node.name for node in launch.nodes}
     others = {
@@ -189,12 +208,15 @@ def _fail_missing(
 
 
 def _stop_at_files(package: Package, places: Sequence[FilePlace], *, built: bool) -> Outcome | None:
-    """Return the failure of a launch file that stops at a file that it reads; None if it does
-    not.
+    """Return the failure of a launch file that stops at a file that it reads.
+
+    None if it does not.
     """
-    if built and (wrong := [it for it in places if it.state == "wrong" and it.stops_launch]):
+    if built and (
+        wrong := [place for place in places if place.state == "wrong" and place.stops_launch]
+    ):
         return _fail_places(package, wrong)._replace(cause="stops")
-    return next(filter(None, (_warning_that_stops(package, it) for it in places)), None)
+    return next(filter(None, (_warning_that_stops(package, place) for place in places)), None)
 
 
 def _check_decided(
@@ -203,8 +225,9 @@ def _check_decided(
     faults: Sequence[Fault],
     places: Sequence[FilePlace],
 ) -> None:
-    """Raise NotDecided if it is not known whether the launch file starts the nodes as they are
-    wanted.
+    """Raise NotDecided if the started nodes are not known.
+
+    It has to be known whether the launch file starts them as they are wanted.
     """
     reason = f": {launch.unknown[0].message}" if launch.unknown else ""
     if missing:
@@ -216,7 +239,11 @@ def _check_decided(
             message, "cannot determine statically what the launch file gives its nodes"
         )
     unknown = next(
-        (it.text for it in places if it.state == "unknown" and it.stops_launch and it.file.path),
+        (
+            place.text
+            for place in places
+            if place.state == "unknown" and place.stops_launch and place.file.path
+        ),
         "",
     )
     if unknown:
@@ -330,8 +357,9 @@ def _check_starts(launch: "Launch") -> None:
 def _faulty_program(
     package: Package, launch: "Launch", choices: Sequence[Sequence[str]]
 ) -> MissingElement | None:
-    """Return the fault of a wanted node that certainly ends at once: setup.py names no function for
-    its program.
+    """Return the fault of a wanted node that certainly ends at once.
+
+    setup.py names no function for its program.
     """
     from grader.ros.package.entry_points import certain_fault  # late: most start nodes of ROS 2
 
@@ -365,8 +393,9 @@ def _may_start(launch: "Launch", missing: Sequence[Sequence[str]]) -> bool:
 
 
 def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | None]":
-    """Return why a launch file does not start nodes that should be started, in a sentence, and
-    where to look.
+    """Return why a launch file does not start nodes that should be started.
+
+    The reason is a sentence; where to look comes with it.
     """
     for node in launch.forgotten:
         if node.name in missing:
@@ -388,17 +417,17 @@ def _why_missing(launch: "Launch", missing: set[str]) -> "tuple[str, Location | 
 
 
 def _pass_places(places: Sequence[FilePlace]) -> Outcome:
-    if any(it.state == "missing" for it in places):
+    if any(place.state == "missing" for place in places):
         return passed("the launch file looks for files of the package")
-    found = dict.fromkeys(it.text for it in places if it.text)
-    if not found:
+    texts = dict.fromkeys(place.text for place in places if place.text)
+    if not texts:
         return passed("the launch file names no file")
-    return passed(f"a build installs {enumerated(found)}, where the launch file looks")
+    return passed(f"a build installs {enumerated(texts)}, where the launch file looks")
 
 
 def _fail_places(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
-    message = "; ".join(dict.fromkeys(it.text for it in wrong))
-    is_local = any(it.is_local for it in wrong)
+    message = "; ".join(dict.fromkeys(place.text for place in wrong))
+    is_local = any(place.is_local for place in wrong)
     if is_local:
         message += (
             f"; use get_package_share_directory({package.name!r}), which returns the installed "
@@ -448,8 +477,9 @@ def _path_of(package: Package, name: str) -> str:
 
 
 def _launch_of(package: Package, name: str) -> "Launch":
-    """Return a launch file, evaluated. Raises MissingElement, and NotDecided for one that is not
-    read.
+    """Return a launch file, evaluated.
+
+    Raises MissingElement, and NotDecided for one that is not read.
     """
     path = _path_of(package, name)
     launch = package.launch(path)

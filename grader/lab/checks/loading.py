@@ -32,6 +32,11 @@ def urdf_loads(urdf: Reading) -> Outcome:
             undetermined[0].message,
             undetermined[0].location,
         )
+    return _fail_loading(urdf, problems)
+
+
+def _fail_loading(urdf: Reading, problems: list[Problem]) -> Outcome:
+    """Return the failure of a URDF that ROS 2 does not load as one tree, with its first cause."""
     problems.sort(key=lambda problem: (not problem.kind.is_before_ros, problem.kind not in _OF_XML))
     causes = [problem for problem in problems if not problem.kind.is_consequence]
     first = (causes or problems or list(urdf.problems))[0]
@@ -48,16 +53,17 @@ def urdf_loads(urdf: Reading) -> Outcome:
 
 
 def _list_assumed(urdf: Reading) -> str:
-    """Return what is assumed about a file that ROS 2 rejects, each with its lines; empty if nothing
-    is.
+    """Return what is assumed about a file that ROS 2 rejects, each with its lines.
+
+    Empty if nothing is.
     """
     lines: dict[str, list[str]] = {}
     for problem in urdf.problems:
         if problem.kind is xml_problems.RECOVERED and not problem.subject:
             lines.setdefault(problem.message, []).append(str(problem.location.line))
     texts = []
-    for message, found in lines.items():
-        at = [*dict.fromkeys(found)]
+    for message, assuming in lines.items():
+        at = [*dict.fromkeys(assuming)]
         texts.append(
             f"{message} ({'line' if len(at) == 1 else 'lines'} {enumerated(at, _MAX_ASSUMED)})"
         )

@@ -1,5 +1,6 @@
-"""Checks that need manual grading: the grader finds answers and pictures, and a person marks
-them.
+"""Checks that need manual grading.
+
+The grader finds answers and pictures, and a person marks them.
 """
 
 import re
@@ -67,12 +68,12 @@ def answered(
         return pending(
             message, problem=f"the documents cannot be read: {submission.opening.no_documents}"
         )
-    found = find_answer(submission.documents, files, places, question)
-    unread = f" (not read: {'; '.join(found.unread[:4])})" if found.unread else ""
-    doubts = ["not every document was read"] if found.unread else []
-    passage = found.passage
+    found_answer = find_answer(submission.documents, files, places, question)
+    unread = f" (not read: {'; '.join(found_answer.unread[:4])})" if found_answer.unread else ""
+    doubts = ["not every document was read"] if found_answer.unread else []
+    passage = found_answer.passage
     if passage is None:
-        searched = f" in {enumerated(found.read, _MAX_LISTED)}" if found.read else ""
+        searched = f" in {enumerated(found_answer.read, _MAX_LISTED)}" if found_answer.read else ""
         labels = enumerated([repr(label) for label in places[:3]], word="or")
         message = (
             f"{question} No answer was found under {labels}{searched}; needs manual grading{unread}"
@@ -93,12 +94,11 @@ def answered(
         problem = "perhaps"
         message = f"Perhaps the answer {passage.where}{how}; needs manual grading"
     text = passage.text
-    for other in found.others:
+    for other in found_answer.others:
         text += f"\n\n[Also {other.where}]\n{other.text}"
-    if found.others:
-        message += (
-            f"; {enumerated([f'another passage is {other.where}' for other in found.others])}"
-        )
+    if found_answer.others:
+        others = [f"another passage is {other.where}" for other in found_answer.others]
+        message += f"; {enumerated(others)}"
     outcome = Outcome("pending", f"{question} {message}{unread}", text, location=passage.location)
     if passage.is_empty and not doubts:
         outcome = outcome._replace(expected=f"an answer {passage.where} ({_UNANSWERED})")
@@ -116,13 +116,13 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
     """
     from grader.lab.documents.evidence import find_evidence
 
-    found = find_evidence(submission.labelled_files, names, submission.readable_documents)
-    if found.files:
-        return _pending_pictures("needs manual grading: ", found.files)
+    evidence = find_evidence(submission.labelled_files, names, submission.readable_documents)
+    if evidence.files:
+        return _pending_pictures("needs manual grading: ", evidence.files)
     labels = enumerated([repr(name) for name in names[:3]], word="or")
-    if found.possible:
+    if evidence.possible:
         start = f"no picture or document is certain to be {labels}; needs manual grading, perhaps: "
-        return _pending_pictures(start, found.possible)._replace(problem="perhaps")
+        return _pending_pictures(start, evidence.possible)._replace(problem="perhaps")
     paths = [labelled.file.path for labelled in submission.labelled_files]
     others = enumerated(paths, _MAX_LISTED) or "no pictures"
     message = (
@@ -138,8 +138,9 @@ def evidence_shown(submission: Submission, *, names: list[str]) -> Outcome:
 
 
 def picture_named(names: Sequence[str]) -> str:
-    """Return words for the picture that the first of these labels names: a picture named
-    `Task3_Step3.png`.
+    """Return words for the picture that the first of these labels names.
+
+    An example is a picture named `Task3_Step3.png`.
     """
     return f"a picture named `{picture_name(names)}`"
 

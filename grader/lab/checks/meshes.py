@@ -1,5 +1,6 @@
-"""Checks of the meshes of a link: which file, where a build puts it, its scale and its pose. No
-mesh is loaded.
+"""Checks of the meshes of a link: which file, where a build puts it, its scale and its pose.
+
+No mesh is loaded.
 """
 
 from collections.abc import Iterator, Sequence
@@ -95,11 +96,11 @@ def shows_mesh(
             shown[0].geometry.location,
         )
         raise MissingElement("mesh", link, message=message, location=place(at))
-    named = [it for it in meshes if it.file.ends_in(mesh_file(file))]
+    named = [mesh for mesh in meshes if mesh.file.ends_in(mesh_file(file))]
     if not named:
         return _another_file(meshes, file)
     wanted = _Pose(relative_to or link, scale, xyz, rpy, tolerance)
-    outcomes = [_examine_mesh(robot, submission, it, wanted) for it in named]
+    outcomes = [_examine_mesh(robot, submission, mesh, wanted) for mesh in named]
     best = min(outcomes, key=lambda outcome: _BEST_FIRST.index(outcome.status))
     if best.status == "failed":
         return best
@@ -109,7 +110,7 @@ def shows_mesh(
 def _broken_collision(robot: Configuration, submission: Submission, link: str) -> Outcome | None:
     """Return the failure of a link with a collision mesh whose file is certainly broken."""
     is_expanded = isinstance(submission.urdf, Read) and submission.urdf.is_expanded
-    for shape in (it.geometry for it in robot.link(link).collisions):
+    for shape in (collision.geometry for collision in robot.link(link).collisions):
         if isinstance(shape, Mesh):
             mesh = mesh_file(shape.filename, is_expanded=is_expanded)
             with suppress(NotDecided):
@@ -123,37 +124,37 @@ def _broken_collision(robot: Configuration, submission: Submission, link: str) -
 def _another_file(meshes: Sequence[_ShownMesh], file: str) -> Outcome:
     """Return the failure of a link that shows other meshes only."""
     wanted = mesh_file(file)
-    alike = [it for it in meshes if it.file.ends_in(wanted, any_case=True)]
-    it = (alike or meshes)[0]
+    alike = [mesh for mesh in meshes if mesh.file.ends_in(wanted, any_case=True)]
+    nearest = (alike or meshes)[0]
     reason = "; upper and lower case differ" if alike else ""
-    message = f"{it.link!r} shows the mesh {quoted_end(it.file.written)}"
+    message = f"{nearest.link!r} shows the mesh {quoted_end(nearest.file.written)}"
     return failed(
         f"{message}; its path should end in {quoted(file)}{reason}",
-        place(it.mesh.location, "filename"),
+        place(nearest.mesh.location, "filename"),
     )
 
 
 def _examine_mesh(
-    robot: Configuration, submission: Submission, it: _ShownMesh, wanted: _Pose
+    robot: Configuration, submission: Submission, shown: _ShownMesh, wanted: _Pose
 ) -> Outcome:
     """Return the outcome for one mesh of the right name."""
     name, fault, doubt, cause = (
-        quoted_end(it.file.written),
-        it.file.fault,
-        it.file.doubt,
-        it.file.doubt,
+        quoted_end(shown.file.written),
+        shown.file.fault,
+        shown.file.doubt,
+        shown.file.doubt,
     )
     try:
-        fault = fault or it.file.why_not_found(submission.packages, submission.tree)
+        fault = fault or shown.file.why_not_found(submission.packages, submission.tree)
     except NotDecided as reason:
         doubt, cause = str(reason), reason.cause
     if fault:
-        wrong = [(f"the mesh of {it.link!r} {fault}", place(it.mesh.location, "filename"))]
+        wrong = [(f"the mesh of {shown.link!r} {fault}", place(shown.mesh.location, "filename"))]
     else:
         wrong = []
-    wrong += _pose_differences(robot, it, wanted)
+    wrong += _pose_differences(robot, shown, wanted)
     if wrong:
-        problem = it.file.problem_text(it.link, fault) if fault else ""
+        problem = shown.file.problem_text(shown.link, fault) if fault else ""
         return failed(
             "; ".join(text for text, _ in wrong),
             wrong[0][1],
@@ -162,40 +163,40 @@ def _examine_mesh(
         )
     if doubt:
         text = (
-            f"whether ROS 2 finds the mesh {name} of {it.link!r} cannot be determined: {doubt}; "
+            f"whether ROS 2 finds the mesh {name} of {shown.link!r} cannot be determined: {doubt}; "
             "needs manual grading"
         )
         return pending(text, cause)
-    return passed(f"{it.link!r} shows the mesh {name}")
+    return passed(f"{shown.link!r} shows the mesh {name}")
 
 
 def _pose_differences(
-    robot: Configuration, it: _ShownMesh, wanted: _Pose
+    robot: Configuration, shown: _ShownMesh, wanted: _Pose
 ) -> Iterator[tuple[str, LazyLocation | None]]:
     """Yield what is wrong with the scale and the pose of a mesh, and where."""
-    scale = it.mesh.scale
+    scale = shown.mesh.scale
     if wanted.scale is not None and not all(
         map(_is_scaled, scale, wanted.scale, [wanted.tolerance] * 3)
     ):
         yield (
             f"its scale is {_scale_text(scale)}; it should be {_scale_text(wanted.scale)}",
-            place(it.mesh.location, "scale"),
+            place(shown.mesh.location, "scale"),
         )
     if wanted.xyz is None and wanted.rpy is None:
         return
-    pose = placed(robot, it.link, it.visual, wanted.frame).pose
-    origin = it.visual.origin.location
+    pose = placed(robot, shown.link, shown.visual, wanted.frame).pose
+    origin = shown.visual.origin.location
     if wanted.xyz is not None:
-        what = f"the mesh of {it.link!r}"
+        what = f"the mesh of {shown.link!r}"
         outcome = measured_point(what, pose.translation, wanted.xyz, wanted.tolerance, wanted.frame)
         if outcome.status == "failed":
-            yield outcome.message, place(origin, "xyz") or place(it.visual.location)
+            yield outcome.message, place(origin, "xyz") or place(shown.visual.location)
     if wanted.rpy is not None:
         angle = turn_between(pose.rotation, rotation_from_rpy(wanted.rpy))
         if not angle <= _ANGLE + SLACK:
             yield (
                 f"its orientation is {in_degrees(angle)} off",
-                place(origin, "rpy") or place(it.visual.location),
+                place(origin, "rpy") or place(shown.visual.location),
             )
 
 

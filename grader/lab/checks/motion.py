@@ -130,8 +130,8 @@ def turns_about_itself(
         )
     joint = turning_joint(robot, link, base)
     T_joint_wheel = placed(robot, link, visual, joint.child).pose
-    turning, own = robot.axis(joint), T_joint_wheel.rotate((0.0, 0.0, 1.0))
-    tilt = min(degrees_between(turning, own), 180.0 - degrees_between(turning, own))
+    turning, wheel_axis = robot.axis(joint), T_joint_wheel.rotate((0.0, 0.0, 1.0))
+    tilt = min(degrees_between(turning, wheel_axis), 180.0 - degrees_between(turning, wheel_axis))
     away = hypot(*cross(turning, T_joint_wheel.translation))
     at, detail = place(joint.axis_location, "xyz") or joint.location, f" (joint {joint.name!r})"
     if tilt > angle + SLACK:

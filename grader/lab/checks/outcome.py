@@ -1,5 +1,6 @@
-"""The outcome of a check, and its wording: measured against expected, the difference, its unit and
-frame.
+"""The outcome of a check, and its wording.
+
+It says measured against expected, the difference, its unit and frame.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -29,8 +30,10 @@ WRONG, MISSING, SLIP = "wrong", "missing", "slip"
 
 
 class Outcome(NamedTuple):
-    """The result of one check: whether its fact is true, a sentence about it, what was measured,
-    and where to look.
+    """The result of one check.
+
+    It says whether its fact is true, has a sentence about it, what was measured, and where to
+    look.
 
     A check returns it, mostly from `judged`, `measured`, `failed` or `passed` below; the grader
     itself makes those that are skipped or errored. Points come from the status alone, and every
@@ -113,8 +116,9 @@ def passed(message: str) -> Outcome:
 
 
 def pending(message: str, cause: str = "", at: _AnyPlace = None, *, problem: str = "") -> Outcome:
-    """Return the outcome for manual grading; `cause` is the reason without what differs between
-    students.
+    """Return the outcome for manual grading.
+
+    `cause` is the reason without what differs between students.
     """
     return Outcome("pending", message, location=location_of(at), mistake=cause, problem=problem)
 
@@ -171,8 +175,9 @@ def measured(
     sides: tuple[str, str] = _SIDES,
     at: _AnyPlace = None,
 ) -> Outcome:
-    """Compare one length in metres: "the radius of 'wheel' is 0.2 m; it should be 0.1 m (100 mm too
-    large)".
+    """Compare one length in metres.
+
+    "the radius of 'wheel' is 0.2 m; it should be 0.1 m (100 mm too large)".
     """
     fine = within(actual, expected, tolerance)
     message = f"{what} {point((actual,))} m"
@@ -204,8 +209,9 @@ def measured_point(
 
 
 def _off_along(axis: int, off: float, frame: str) -> str:
-    """Return how far a coordinate is off: in the frame of a base by where that is, else by its
-    sign.
+    """Return how far a coordinate is off.
+
+    In the frame of a base by where that is, else by its sign.
     """
     if not frame.startswith(_BASE):
         return f"{'xyz'[axis]} {difference(off)}"
@@ -213,8 +219,9 @@ def _off_along(axis: int, off: float, frame: str) -> str:
 
 
 def how_far_off(outcome: Outcome) -> float | None:
-    """Return by how many metres a length or a point is off that fails; None if it fails for another
-    reason.
+    """Return by how many metres a length or a point is off that fails.
+
+    None if it fails for another reason.
     """
     if outcome.status != "failed" or outcome.unit != "m":
         return None
@@ -230,8 +237,9 @@ def how_far_off(outcome: Outcome) -> float | None:
 
 
 def other_unit(actual: Sequence[float], expected: Sequence[float]) -> str:
-    """Return that lengths seem to be in millimetres or centimetres; empty unless all are too large
-    by that factor.
+    """Return that lengths seem to be in millimetres or centimetres.
+
+    Empty unless all are too large by that factor.
     """
     pairs = [
         (a, b) for a, b in zip(actual, expected, strict=True) if abs(a) > SLACK or abs(b) > SLACK

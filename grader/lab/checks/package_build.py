@@ -1,4 +1,5 @@
 """Checks of a package: its manifest, whether a build of it succeeds, and what that installs.
+
 Nothing is run.
 """
 

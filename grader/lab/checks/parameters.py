@@ -1,5 +1,6 @@
-"""The check of parameters: the values that nodes get, wherever they are written, also measured on
-the robot.
+"""The check of parameters: the values that nodes get, wherever they are written.
+
+They are also measured on the robot.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -68,7 +69,9 @@ def parameter_is(
     """
     del package  # without one, there are no parameters
     try:
-        said, found = _value_or_default(submission, node, parameter, or_default=or_default)
+        said, parameter_value = _value_or_default(
+            submission, node, parameter, or_default=or_default
+        )
     except MissingElement:
         if not where_given:
             raise
@@ -76,13 +79,29 @@ def parameter_is(
         other = _written_otherwise(submission, parameter, meant, tolerance)
         if other is None:
             return passed(f"nothing gives {parameter} to {node}")
-        found, said = other, f"a parameter file has {parameter} ="
-    if isinstance(found.value, Unknown):
+        parameter_value, said = other, f"a parameter file has {parameter} ="
+    if isinstance(parameter_value.value, Unknown):
         cause = f"the parameter {parameter} of {node} cannot be determined statically"
-        raise NotDecided(f"{cause}: {found.value.reason}", cause)
+        raise NotDecided(f"{cause}: {parameter_value.value.reason}", cause)
     if measure is not None:
         value = measured(submission, measure, links or [])
-    actual, wanted, fits = found.value, "", True
+    actual = parameter_value.value
+    wanted, fits = _compare_value(actual, value, one_of, has, tolerance)
+    message = f"{said} {_text(actual)}"
+    if measure is not None:
+        wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
+    return passed(message) if fits else failed(f"{message}; it {wanted}", parameter_value.location)
+
+
+def _compare_value(
+    actual: Any,
+    value: Content | None,
+    one_of: list[Scalar] | None,
+    has: list[Scalar] | None,
+    tolerance: float,
+) -> tuple[str, bool]:
+    """Return what a value should be, in words, and whether it is so."""
+    wanted, fits = "", True
     if value is not None:
         shown = round(value, _DIGITS) if isinstance(value, float) else value
         wanted, fits = f"should be {_text(shown)}", _equal(actual, value, tolerance)
@@ -93,17 +112,15 @@ def parameter_is(
         items = actual if isinstance(actual, list) else [actual]
         wanted = f"should have {enumerated([*map(_text, has)])}"
         fits = all(_has(items, expected, tolerance) for expected in has)
-    message = f"{said} {_text(actual)}"
-    if measure is not None:
-        wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
-    return passed(message) if fits else failed(f"{message}; it {wanted}", found.location)
+    return wanted, fits
 
 
 def _value_or_default(
     submission: Submission, node: str, parameter: str, *, or_default: bool
 ) -> tuple[str, ParameterValue]:
-    """Return the value that a node gets, or else its default, after the words for that. Raises
-    MissingElement and NotDecided, as `value_of` does.
+    """Return the value that a node gets, or else its default, after the words for that.
+
+    Raises MissingElement and NotDecided, as `value_of` does.
     """
     try:
         return f"{node} gets {parameter} =", value_of(submission, node, parameter)
@@ -126,64 +143,86 @@ def _measured_if_there(
 def _written_otherwise(
     submission: Submission, parameter: str, value: Any, tolerance: float
 ) -> ParameterValue | None:
-    """Return what parameter files have for a parameter, of whatever node, if none of them has a
-    certain value.
+    """Return what parameter files have for a parameter, of whatever node.
+
+    Only if none of them has a certain value.
     """
     written = submission.workspace.installed.written_values(parameter)
-    known = [it for it in written if not isinstance(it.value, Unknown)]
-    has_it = value is None or any(_equal(it.value, value, tolerance) for it in known)
+    known = [
+        value_written for value_written in written if not isinstance(value_written.value, Unknown)
+    ]
+    has_it = value is None or any(
+        _equal(value_written.value, value, tolerance) for value_written in known
+    )
     return None if has_it else next(iter(known), None)
 
 
 def value_of(submission: Submission, node: str, parameter: str) -> ParameterValue:
-    """Return the value that a node gets. Raises MissingElement if it gets none, NotDecided where
-    that is not known.
+    """Return the value that a node gets.
+
+    Raises MissingElement if it gets none, NotDecided where that is not known.
     """
     workspace = submission.workspace
     given = workspace.parameters.owners.get(node, [])
-    values = [found.values[parameter] for found in given if parameter in found.values]
-    if len({repr(it.value) for it in values}) == 1 and len(values) == len(given):
+    values = [
+        node_values.values[parameter] for node_values in given if parameter in node_values.values
+    ]
+    if len({repr(value.value) for value in values}) == 1 and len(values) == len(given):
         return values[0]
     unknown = (
-        next((found.unknown for found in given if found.unknown), "")
+        next((node_values.unknown for node_values in given if node_values.unknown), "")
         or workspace.launches.unknown_nodes
     )
-    if values and not unknown:
-        places = enumerated([it.location.file_and_line for it in values])
-        raise NotDecided(
-            f"{node} gets different values of {parameter}: {places}",
-            "a parameter has several values",
-        )
     if unknown:
         raise NotDecided(
             f"the parameters of {node} are not known: {unknown}",
             "parameters of a node are not known",
         )
-    for _, other in [] if given else _nameless(workspace):
-        cause = "the name of a node is only in its program"
-        raise NotDecided(f"{cause}: {other.package}/{other.executable}", cause)
+    if values:
+        places = enumerated([value.location.file_and_line for value in values])
+        raise NotDecided(
+            f"{node} gets different values of {parameter}: {places}",
+            "a parameter has several values",
+        )
     if not given:
-        there = similar_there(node, workspace.parameters.owners)
-        message = f"nothing gives parameters to a node {quoted(node)}{there}"
-        raise MissingElement("parameters of the node", node, message=message)
-    written = {name: it.location for found in given for name, it in found.values.items()}
+        raise _explain_nothing_given(workspace, node)
+    raise _explain_missing_parameter(submission, node, parameter)
+
+
+def _explain_nothing_given(workspace: Workspace, node: str) -> NotDecided | MissingElement:
+    """Return the error of a node that nothing gives parameters to."""
+    for _, other in _nameless(workspace):
+        cause = "the name of a node is only in its program"
+        return NotDecided(f"{cause}: {other.package}/{other.executable}", cause)
+    there = similar_there(node, workspace.parameters.owners)
+    message = f"nothing gives parameters to a node {quoted(node)}{there}"
+    return MissingElement("parameters of the node", node, message=message)
+
+
+def _explain_missing_parameter(submission: Submission, node: str, parameter: str) -> MissingElement:
+    """Return the error of a node that gets other parameters, but not this one."""
+    written = {}
+    for node_values in submission.workspace.parameters.owners[node]:
+        for name, value in node_values.values.items():
+            written[name] = value.location
     message = (
         f"{node} does not get the parameter {quoted(parameter)}{similar_there(parameter, written)}"
     )
     at = written.get(closest(parameter, written) or "", next(iter(written.values()), None))
-    raise MissingElement("parameter", f"{node} {parameter}", message=message, location=at)
+    return MissingElement("parameter", f"{node} {parameter}", message=message, location=at)
 
 
 def _nameless(workspace: Workspace) -> list[tuple[Package, StartedNode]]:
-    """Return the own nodes whose names neither the launch file nor their programs give, with their
-    packages.
+    """Return the own nodes that have no name, with their packages.
+
+    Neither the launch file nor their programs give one.
     """
-    found = []
+    nameless = []
     for _, node in workspace.launches.nodes:
         package = workspace.package_of(node)
         if package is not None and workspace.code.name_of(node) is None:
-            found.append((package, node))
-    return found
+            nameless.append((package, node))
+    return nameless
 
 
 def _equal(actual: Any, wanted: Any, tolerance: float) -> bool:
@@ -217,8 +256,9 @@ def _text(value: Any) -> str:
 
 
 def measured(submission: Submission, measure: _Measure, links: list[str]) -> float:
-    """Return a measure of the robot, in metres or radians. Raises MissingElement for a link that is
-    not there.
+    """Return a measure of the robot, in metres or radians.
+
+    Raises MissingElement for a link that is not there.
     """
     robot = submission.needed_urdf().robot
     if robot is None:
@@ -234,15 +274,16 @@ def measured(submission: Submission, measure: _Measure, links: list[str]) -> flo
                 ),
             )
         )
-    found = measures(Configuration(robot), links).get(measure)
-    if found is None:
+    measurement = measures(Configuration(robot), links).get(measure)
+    if measurement is None:
         raise MissingElement("measure", links[0], message=f"{quoted(links[0])} has no {measure}")
-    return found()
+    return measurement()
 
 
 def measures(robot: Configuration, links: list[str]) -> Mapping[str, Callable[[], float]]:
-    """Return what can be measured of one link, or of two: a radius, a distance, the limits of a
-    joint.
+    """Return what can be measured of one link, or of two.
+
+    This is a radius, a distance, or the limits of a joint.
 
     Args:
         robot: The robot.
@@ -252,8 +293,9 @@ def measures(robot: Configuration, links: list[str]) -> Mapping[str, Callable[[]
 
 
 def _place(robot: Configuration, link: str, relative_to: str) -> Vector:
-    """Return the centre of a cylinder or sphere that a joint turns without end, or where the link's
-    frame is.
+    """Return the centre of a cylinder or sphere that a joint turns without end.
+
+    For another link, where its frame is.
     """
     joint = robot.parent_joints.get(link)
     if joint is not None and joint.type == "continuous" and robot.robot.link(link).visuals:
@@ -276,7 +318,7 @@ def _measures(robot: Configuration, links: list[str]) -> Iterator[tuple[str, Cal
             case Sphere(radius=radius):
                 yield "radius", lambda: radius
     joint: Joint | None = next(
-        (it for it in reversed(robot.chain(links[0])) if it.type != "fixed"), None
+        (moving for moving in reversed(robot.chain(links[0])) if moving.type != "fixed"), None
     )
     if joint is not None and joint.limit is not None:
         limit = joint.limit

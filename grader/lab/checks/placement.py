@@ -112,8 +112,9 @@ def centre_at(
 def _with_orientation(
     placed: Outcome, turned: float, angle: float, wanted: str, at: LazyLocation | None
 ) -> Outcome:
-    """Return the outcome of a position, or its failure where the orientation is more than `angle`
-    degrees off.
+    """Return the outcome of a position, or the failure of its orientation.
+
+    The orientation may be at most `angle` degrees off.
     """
     if turned <= angle + SLACK:
         return placed
@@ -124,18 +125,19 @@ def _with_orientation(
 
 
 def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome | None:
-    """Return the failure of a link that moves in another link's frame; None where only fixed joints
-    lie between.
+    """Return the failure of a link that moves in another link's frame.
+
+    None where only fixed joints lie between.
     """
     path = robot.between(relative_to, link)
     loose = next((joint for joint in path if joint.type != "fixed"), None)
     if loose is None:
         return None
-    own, detail = robot.parent_joints.get(link), f" (joint {loose.name!r})"
-    if own is not None and own in path and loose is not own:
+    parent_joint, detail = robot.parent_joints.get(link), f" (joint {loose.name!r})"
+    if parent_joint is not None and parent_joint in path and loose is not parent_joint:
         reason = f"which moves: a joint above it is {loose.type}; it should be fixed"
-        at = place(own.location, "link", "parent")
-        message = f"{link!r} is a child of {own.parent!r}, {reason}"
+        at = place(parent_joint.location, "link", "parent")
+        message = f"{link!r} is a child of {parent_joint.parent!r}, {reason}"
         return failed(message, at, detail=detail, cause="joint")
     message = f"a joint between {relative_to!r} and {link!r} is {loose.type}; it should be fixed"
     return failed(message, place(loose.location, "type"), detail=detail, cause="joint")
@@ -144,8 +146,9 @@ def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome |
 def _origin_by(
     robot: Configuration, link: str, visual: Visual, relative_to: str, off: Vector
 ) -> LazyLocation | None:
-    """Return the origin that puts a visual off: its own if it moves the visual along that line,
-    else the joint's.
+    """Return the origin that puts a visual off.
+
+    This is its own if it moves the visual along that line, else the joint's.
 
     In the frame of its own link, nothing but the visual's own origin moves it.
     """

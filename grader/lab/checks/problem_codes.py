@@ -1,5 +1,6 @@
-"""The check of the problems that the reader finds in a URDF, and in the xacro that it is written
-in.
+"""The check of the problems that the reader finds in a URDF.
+
+Also of those in the xacro that it is written in.
 """
 
 from collections.abc import Sequence
@@ -41,14 +42,14 @@ def without_problems(urdf: Reading, submission: Submission, *, problems: _Codes)
         problems: The codes of the problems, such as "URDF051" or "XACRO002".
     """
     assert isinstance(submission.urdf, Read)  # else there is none that is needed
-    found = [problem for problem in submission.urdf.problems if problem.code in problems]
-    certain = [problem for problem in found if problem.kind.effect != "undetermined"]
+    reported = [problem for problem in submission.urdf.problems if problem.code in problems]
+    certain = [problem for problem in reported if problem.kind.effect != "undetermined"]
     if certain:
         return _fail_with_problems(certain)
     open_ones = [
-        it
-        for it in submission.urdf.problems
-        if it.kind.effect == "undetermined" or it.kind is UNLISTED
+        problem
+        for problem in submission.urdf.problems
+        if problem.kind.effect == "undetermined" or problem.kind is UNLISTED
     ]
     if open_ones:
         first = open_ones[0]
@@ -60,8 +61,8 @@ def without_problems(urdf: Reading, submission: Submission, *, problems: _Codes)
     return passed(f"the URDF has none of the problems {enumerated(problems, MAX_NAMED)}")
 
 
-def _fail_with_problems(found: Sequence[Problem]) -> Outcome:
-    first, more = found[0], len(found) - 1
+def _fail_with_problems(reported: Sequence[Problem]) -> Outcome:
+    first, more = reported[0], len(reported) - 1
     others = f" (and {counted(more, 'more such problem')})" if more else ""
     outcome = failed(
         f"{first.code}: {first.message}{others}", first.location, problem=first.message

@@ -1,5 +1,6 @@
-"""Checks that compare a robot with the rubric's reference solution: how its links move, and
-because of which joint.
+"""Checks that compare a robot with the rubric's reference solution.
+
+They say how its links move, and because of which joint.
 """
 
 from collections.abc import Collection, Hashable, Iterable, Iterator, Mapping, Sequence
@@ -97,8 +98,9 @@ def _link_name(robot: Configuration, link: str) -> str:
 
 
 def _name_in_reference(reference: Configuration, link: str) -> str:
-    """Return the name of a link of the reference. Raises RubricError, because no student can do
-    anything about it.
+    """Return the name of a link of the reference.
+
+    Raises RubricError, because no student can do anything about it.
     """
     try:
         return _link_name(reference, link)
@@ -123,24 +125,25 @@ def _pair_joints(
     pairs: Sequence[tuple[str, str]],
     match: _MatchBy,
 ) -> list[tuple[Joint, Joint]] | Outcome:
-    """Return the joints of the robot that move links, each with that of the reference, or the
-    failure to pair them.
+    """Return the joints of the robot that move links, each with that of the reference.
+
+    Or the failure to pair them.
     """
-    own = _find_movers(robot, bases[0], [link for link, _ in pairs])
+    own_movers = _find_movers(robot, bases[0], [link for link, _ in pairs])
     others = _find_movers(reference, bases[1], [link for _, link in pairs])
     shown = _list_names([link for link, _ in pairs])
     if match == "order":
-        if len(own) != len(others):
+        if len(own_movers) != len(others):
             message = (
-                f"{counted(len(own), 'joint')} on the chains to {shown}; there should be "
+                f"{counted(len(own_movers), 'joint')} on the chains to {shown}; there should be "
                 f"{len(others)}"
             )
-            return failed(message, detail=f" (joints {_list_names(own) or 'none'})")
-        joints = [*zip(own.values(), others.values(), strict=True)]
+            return failed(message, detail=f" (joints {_list_names(own_movers) or 'none'})")
+        joints = [*zip(own_movers.values(), others.values(), strict=True)]
     else:
         _check_names(robot, [*others])
         joints = [(robot.joint(name), joint) for name, joint in others.items()]
-        for name, joint in own.items():
+        for name, joint in own_movers.items():
             if name not in others:
                 message = f"a joint on the chains to {shown} has no counterpart in the reference"
                 return failed(message, joint.location, detail=f" (joint {quoted(name)})")
@@ -169,8 +172,9 @@ def _check_names(robot: Configuration, names: Sequence[str]) -> None:
 
 
 def _wrong_type(joint: Joint, other: Joint) -> Outcome | None:
-    """Return the failure of a joint that cannot move as its counterpart does, such as a
-    prismatic one for a wheel.
+    """Return the failure of a joint that cannot move as its counterpart does.
+
+    An example is a prismatic one for a wheel.
     """
     if (
         joint.type == other.type
@@ -183,8 +187,9 @@ def _wrong_type(joint: Joint, other: Joint) -> Outcome | None:
 
 
 class _Offset(NamedTuple):
-    """How far a link is from its place, in metres and degrees, with the joints at these
-    positions.
+    """How far a link is from its place, in metres and degrees.
+
+    The joints are at these positions.
     """
 
     link: str
@@ -199,8 +204,9 @@ class _Offset(NamedTuple):
 
 
 class _MotionComparison(NamedTuple):
-    """A robot and the reference: their paired joints and links, and the links in whose frames poses
-    are compared.
+    """A robot and the reference, with their paired joints and links.
+
+    It also has the links in whose frames poses are compared.
 
     Offsets are compared by how many times they are larger than the tolerances: metres of a
     distance, degrees of an angle.
@@ -214,8 +220,9 @@ class _MotionComparison(NamedTuple):
     angle: float
 
     def outcome(self, samples: int) -> Outcome:
-        """Return whether the offsets are within the tolerances, with all joints at 0, one joint
-        moved, or all of them.
+        """Return whether the offsets are within the tolerances.
+
+        They are measured with all joints at 0, one joint moved, or all of them.
 
         If they are not, it is the largest offset, and when the robots differ.
         """
@@ -255,20 +262,21 @@ class _MotionComparison(NamedTuple):
     def _offset(self, positions: tuple[float, ...]) -> _Offset:
         """Return the largest offset at these positions of the joints."""
         pairs = zip(self.joints, positions, strict=True)
-        own = {
+        own_positions = {
             joint.name: position for (joint, _), position in pairs if joint.mimic is None
         }  # a mimic joint follows
-        posed = self.robots[0].at(own)
-        found = []
+        posed = self.robots[0].at(own_positions)
+        offsets = []
         for (name, _), wanted in zip(self.links, self._reference_poses(positions), strict=True):
             pose = posed.pose(name, relative_to=self.bases[0])
             distance = dist(pose.translation, wanted.translation)
-            found.append(_Offset(name, distance, _angle_between(pose, wanted), positions))
-        return max(found, key=lambda offset: (self._times(offset), offset.distance))
+            offsets.append(_Offset(name, distance, _angle_between(pose, wanted), positions))
+        return max(offsets, key=lambda offset: (self._times(offset), offset.distance))
 
     def _reference_poses(self, positions: tuple[float, ...]) -> tuple[Transform, ...]:
-        """Return the poses of the reference's links, computed once for all robots that are compared
-        with it.
+        """Return the poses of the reference's links.
+
+        They are computed once for all robots that are compared with it.
         """
         known = _EXPECTED.setdefault(self.robots[1], {})
         names = tuple(joint.name for _, joint in self.joints)
@@ -280,8 +288,9 @@ class _MotionComparison(NamedTuple):
         return known[key]
 
     def _times(self, offset: _Offset) -> float:
-        """Return how far an offset exceeds the tolerances, rounded, so that equal ones are equal;
-        infinite for NaN.
+        """Return how far an offset exceeds the tolerances, rounded, so that equal ones are equal.
+
+        Infinite for NaN.
         """
         shares = (
             offset.distance / max(self.tolerance, _LEAST),
@@ -311,20 +320,22 @@ class _MotionComparison(NamedTuple):
 
 
 def _angle_between(one: Transform, other: Transform) -> float:
-    """Return the angle between two orientations in degrees: exact near 0, where the trace of the
-    rotation is not.
+    """Return the angle between two orientations in degrees.
+
+    It is exact near 0, where the trace of the rotation is not.
     """
     return degrees(2.0 * asin(min(dist(one.rotation, other.rotation) / (2.0 * sqrt(2.0)), 1.0)))
 
 
 def _find_movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[str, Joint]:
-    """Return the joints that move links relative to a base by their names, along the chain to each
-    link.
+    """Return the joints that move links relative to a base by their names.
+
+    They are along the chain to each link.
 
     Instead of a mimic joint it is the joint that leads it. Raises MissingElement, and NotDecided
     where a mimic is not known.
     """
-    found: dict[str, Joint] = {}
+    movers: dict[str, Joint] = {}
     for link in links:
         chain = robot.between(base, link)
         if len(chain) > _MAX_CHAIN:
@@ -335,8 +346,8 @@ def _find_movers(robot: Configuration, base: str, links: Iterable[str]) -> dict[
         for joint in chain:
             leader = _find_leader(robot.known, joint.known)
             if leader is not None and leader.type != "fixed":
-                found.setdefault(leader.name, leader)
-    return found
+                movers.setdefault(leader.name, leader)
+    return movers
 
 
 def _find_leader(robot: Robot, joint: Joint) -> Joint | None:
@@ -354,8 +365,9 @@ def _find_leader(robot: Robot, joint: Joint) -> Joint | None:
 
 
 def _single_positions(joints: Sequence[Joint]) -> Iterator[tuple[int, tuple[float, ...]]]:
-    """Yield positions with one joint at an end of its range, or between, and the others at 0; each
-    with its index.
+    """Yield positions with one joint at an end of its range, or between, and the others at 0.
+
+    Each with its index.
     """
     for index, joint in enumerate(joints):
         low, high = _joint_range(joint)
@@ -379,8 +391,9 @@ def _random_positions(joints: Sequence[Joint], count: int) -> list[tuple[float, 
 
 
 def _joint_range(joint: Joint) -> tuple[float, float]:
-    """Return the range of a joint in radians or metres; a joint without limits that does not turn
-    freely stays at 0.
+    """Return the range of a joint in radians or metres.
+
+    A joint without limits that does not turn freely stays at 0.
     """
     if joint.type == "continuous":
         return -pi, pi

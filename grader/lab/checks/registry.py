@@ -88,15 +88,17 @@ def _own_check(place: str) -> Check:
 
 
 def check_names() -> list[str]:
-    """Return the names of all checks: the grader's own in the order of the catalogue, then those of
-    other packages.
+    """Return the names of all checks.
+
+    The grader's own come first, in the order of the catalogue, then those of other packages.
     """
     return [*_PLACES, *sorted(set(_entry_points()) - set(_PLACES))]
 
 
 def unused_checks() -> list[tuple[str, str]]:
-    """Return each check of another package that is not used because the grader has its name, with
-    that package.
+    """Return each check that the grader replaces, with its package.
+
+    A check of another package is not used if the grader has its name.
     """
     entries = _entry_points()
     return sorted(
@@ -107,8 +109,9 @@ def unused_checks() -> list[tuple[str, str]]:
 
 
 def find_check(name: str) -> Check | None:
-    """Return the check of this name; a check of another package cannot replace one of the grader's
-    own.
+    """Return the check of this name.
+
+    A check of another package cannot replace one of the grader's own.
 
     Raises InputError for a check of another package that cannot be used, or that two packages have.
     """
@@ -124,8 +127,9 @@ def find_check(name: str) -> Check | None:
 
 
 def usable_check(name: str) -> Check | None:
-    """Return the check of this name; None for one that cannot be used: a rubric that names it is
-    refused.
+    """Return the check of this name.
+
+    None for one that cannot be used: a rubric that names it is refused.
     """
     try:
         return find_check(name)
@@ -158,7 +162,7 @@ def _entry_points() -> dict[str, list["EntryPoint"]]:
         entry_points,
     )  # reading the metadata of all packages takes longer than grading
 
-    found: dict[str, list[EntryPoint]] = {}
+    entries: dict[str, list[EntryPoint]] = {}
     for entry in entry_points(group=ENTRY_POINTS):
-        found.setdefault(entry.name, []).append(entry)
-    return found
+        entries.setdefault(entry.name, []).append(entry)
+    return entries

@@ -87,11 +87,7 @@ def rviz_fixed_frame(
         )
     if None in frames and actual.endswith(frame):
         raise NotDecided(_UNKNOWN_PREFIX)
-    links: list[str] = []
-    robot = submission.robot
-    # A robot that ROS 2 does not load may lack links, such as those of a file that is not there.
-    for link in robot.links if robot is not None and not robot.rejected else ():
-        links += filter(None, _frames_of_link(opened, link.name))
+    links = _known_frames(submission, opened)
     message, detail = f"the Fixed Frame is {actual!r}", ""
     if actual not in frames:
         message += f"; it should be {expected!r}"
@@ -105,6 +101,20 @@ def rviz_fixed_frame(
     return judged(
         actual in frames, message, actual, expected, at=rviz.frame_location, detail=detail
     )
+
+
+def _known_frames(submission: Submission, opened: "Launch | None") -> list[str]:
+    """Return the frames of the robot's links that are known.
+
+    A robot that ROS 2 does not load may lack links, such as those of a file that is not there: of
+    such a robot, there are none.
+    """
+    robot = submission.robot
+    frames: list[str] = []
+    if robot is not None and not robot.rejected:
+        for link in robot.links:
+            frames += filter(None, _frames_of_link(opened, link.name))
+    return frames
 
 
 def rviz_shows_robot(
@@ -139,7 +149,9 @@ def rviz_shows_robot(
     fine = [model for verdict, model in verdicts if verdict.status == "passed"]
     if fine:
         return passed(f"the display {fine[0].name or 'RobotModel'!r} shows the robot")
-    verdict, model = next((it for it in verdicts if it[0].status == "pending"), verdicts[0])
+    verdict, model = next(
+        (pending for pending in verdicts if pending[0].status == "pending"), verdicts[0]
+    )
     return Outcome(verdict.status, verdict.reason, location=model.location, cause=verdict.cause)
 
 
@@ -154,16 +166,18 @@ def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "")
             only `name` decides.
     """
     rviz = _read_rviz(package, name, launch)
-    found = [display for display in rviz.displays if display.kind == kind.rpartition("/")[2]]
+    displays_of_kind = [
+        display for display in rviz.displays if display.kind == kind.rpartition("/")[2]
+    ]
     owner = kind.rpartition("/")[0]
     faults = [
         _class_of_ros1(display) or _why_other_class(display, owner) or _why_off(display)
-        for display in found
+        for display in displays_of_kind
     ]
     if "" in faults:
         return passed(f"a {kind} display is on")
-    if found:
-        return failed(faults[0], found[0].location)
+    if displays_of_kind:
+        return failed(faults[0], displays_of_kind[0].location)
     return _no_display(rviz, kind)
 
 
@@ -175,8 +189,9 @@ def _no_display(rviz: "RvizFile", kind: str) -> Outcome:
 
 
 def _class_of_ros1(display: "Display") -> str:
-    """Return what is wrong with a display's class: RViz of ROS 2 has no class rviz/..., and none
-    without a package.
+    """Return what is wrong with a display's class.
+
+    RViz of ROS 2 has no class rviz/..., and none without a package.
     """
     right = f"in ROS 2 it is {_PLUGINS}/{display.kind}"
     if not display.package:
@@ -189,8 +204,8 @@ def _class_of_ros1(display: "Display") -> str:
 def _why_other_class(display: "Display", package: str) -> str:
     if package in ("", display.package):
         return ""
-    own, wanted = f"{display.package}/{display.kind}", f"{package}/{display.kind}"
-    return f"the class of the {display.kind} display is {own}; it should be {wanted}"
+    class_of_display, wanted = f"{display.package}/{display.kind}", f"{package}/{display.kind}"
+    return f"the class of the {display.kind} display is {class_of_display}; it should be {wanted}"
 
 
 def _why_off(display: "Display") -> str:
@@ -228,15 +243,7 @@ def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> _Verd
         return _Verdict("failed", fault, "display")
     source = model.node.get("Description Source")
     if source is not None and source.text == "File":
-        path = model.file
-        if not path or model.reads_file_of_one_machine:
-            where = f"the file {path!r} of one machine" if path else "a file, and names none"
-            message = f"the RobotModel display reads {where}; it should read {topic!r}"
-            return _Verdict("failed", message)
-        return _Verdict(
-            "pending",
-            "the RobotModel display reads a local file instead of a topic; needs manual grading",
-        )
+        return _judge_file(model, topic)
     value = model.node.get("Description Topic", "Value") or model.node.get("Description Topic")
     verdict = _judge_topic(
         (value.text or "" if value is not None else "").strip(), topic, _Names.of(opened)
@@ -246,9 +253,23 @@ def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> _Verd
     return _judge_prefix(model, opened)
 
 
+def _judge_file(model: "Display", topic: str) -> _Verdict:
+    """Return the verdict on a RobotModel display that reads a file instead of a topic."""
+    path = model.file
+    if not path or model.reads_file_of_one_machine:
+        where = f"the file {path!r} of one machine" if path else "a file, and names none"
+        message = f"the RobotModel display reads {where}; it should read {topic!r}"
+        return _Verdict("failed", message)
+    return _Verdict(
+        "pending",
+        "the RobotModel display reads a local file instead of a topic; needs manual grading",
+    )
+
+
 def _judge_topic(actual: str, topic: str, names: "_Names") -> _Verdict:
-    """Return whether a RobotModel display reads the robot, by the nodes that are started or else by
-    the topic.
+    """Return whether a RobotModel display reads the robot.
+
+    This is known by the nodes that are started or else by the topic.
     """
     described, shown = names.described, names.shown(actual)
     if described is None or (described and None in shown):
@@ -270,8 +291,9 @@ def _judge_topic(actual: str, topic: str, names: "_Names") -> _Verdict:
 
 
 class _Names(NamedTuple):
-    """The nodes that a launch file certainly starts: who publishes the robot and its joints, and
-    who shows it.
+    """The nodes that a launch file certainly starts.
+
+    It says who publishes the robot and its joints, and who shows it.
     """
 
     publishers: "Sequence[StartedNode]" = ()
@@ -313,8 +335,9 @@ class _Names(NamedTuple):
 
     @property
     def unheard(self) -> str:
-        """Why transforms do not get from the joints to RViz; empty if they do, or if this is not
-        known.
+        """Why transforms do not get from the joints to RViz.
+
+        Empty if they do, or if this is not known.
         """
         without_description = [node for node in self.joints if not node.has_description]
         for name, sources, readers in (
@@ -335,22 +358,24 @@ def _listed(topics: set[str] | set[str | None]) -> str:
 
 
 def _judge_prefix(model: "Display", opened: "Launch | None") -> _Verdict:
-    """Return whether a RobotModel display finds the links' frames: it puts its TF Prefix and a
-    slash before them.
+    """Return whether a RobotModel display finds the links' frames.
+
+    It puts its TF Prefix and a slash before them.
     """
     node = model.node.get("TF Prefix")
-    own = node.text or "" if node is not None else ""
+    written_prefix = node.text or "" if node is not None else ""
     # TFLinkUpdater::getLinkTransforms of rviz_default_plugins always adds the slash,
     # robot_state_publisher none.
-    found, prefixes = f"{own}/" if own else "", _frames_of_link(opened, "")
-    if found in prefixes:
+    shown_prefix = f"{written_prefix}/" if written_prefix else ""
+    prefixes = _frames_of_link(opened, "")
+    if shown_prefix in prefixes:
         return _Verdict("passed")
     if None in prefixes:
         return _Verdict("pending", f"{_UNKNOWN_PREFIX}; needs manual grading")
     expected = prefixes[0] or ""
     message = (
-        f"the TF Prefix of the RobotModel display is {own!r}, so it looks for frames like "
-        f"'{found}LINK'; "
+        f"the TF Prefix of the RobotModel display is {written_prefix!r}, "
+        f"so it looks for frames like '{shown_prefix}LINK'; "
     )
     reason = f"{message}robot_state_publisher publishes '{expected}LINK'"
     return _Verdict("failed", reason, "nodes")

@@ -1,5 +1,6 @@
-"""What a rubric asks of the nodes that a launch file starts: which not, their remappings, arguments
-and topics.
+"""What a rubric asks of the nodes that a launch file starts.
+
+This is which are not started, their remappings, arguments and topics.
 
 What cannot be determined is a fault that is not sure.
 """
@@ -33,8 +34,9 @@ _Topics = Sequence[str] | Mapping[str, str] | None  # a table has their types
 
 
 class Wanted(NamedTuple):
-    """What a rubric asks besides the nodes that are started: the arguments of the check
-    node_runs.
+    """What a rubric asks besides the nodes that are started.
+
+    These are the arguments of the check node_runs.
     """
 
     absent: Sequence[str] | None
@@ -48,8 +50,9 @@ class Wanted(NamedTuple):
 
 
 class Fault(NamedTuple):
-    """What is not as a rubric asks; or, if it is not `is_certain`, what may not be so, after
-    "whether".
+    """What is not as a rubric asks.
+
+    If it is not `is_certain`, what may not be so, after "whether".
     """
 
     message: str
@@ -71,15 +74,20 @@ def find_faults(
         wanted: What else is wanted.
     """
     workspace = submission.workspace
-    started = [node for node in launch.nodes if node.when is not False]
-    named = [node._replace(node_name=workspace.code.name_of(node)) for node in started]
-    launch = launch._replace(nodes=tuple(named))
+    launch = _with_node_names(launch, workspace)
     faults: list[Fault | None] = [*_started_although(launch, wanted.absent or ())]
     if wanted.remap or wanted.arguments:
         faults += [_ill_started(launch, names, wanted) for names in choices]
     faults += [_not_included(launch, end) for end in wanted.includes or ()]
     faults += _not_opened(launch, workspace, wanted)
     return [fault for fault in faults if fault is not None]
+
+
+def _with_node_names(launch: "Launch", workspace: "Workspace") -> "Launch":
+    """Return a launch file with the nodes that may start, named as their programs name them."""
+    started = [node for node in launch.nodes if node.when is not False]
+    named = [node._replace(node_name=workspace.code.name_of(node)) for node in started]
+    return launch._replace(nodes=tuple(named))
 
 
 def _not_opened(launch: "Launch", workspace: "Workspace", wanted: Wanted) -> Iterator[Fault | None]:
@@ -109,8 +117,9 @@ def _started_although(launch: "Launch", names: Iterable[str]) -> Iterator[Fault]
 
 
 def _ill_started(launch: "Launch", names: Sequence[str], wanted: Wanted) -> Fault | None:
-    """Return what is wrong with a node, if it is started, and none of its name has the remappings
-    and arguments.
+    """Return what is wrong with a node that is started.
+
+    None of its name has the remappings and arguments.
     """
     findings = [(node, _fault_of(node, wanted)) for node in launch.nodes if node.name in names]
     if not findings or any(fault is None and node.when for node, fault in findings):
@@ -172,9 +181,9 @@ def _is_phrase(words: Sequence[str | None], phrase: Sequence[str]) -> bool:
 
 def _is_word(word: str | None, wanted: str) -> bool:
     """Return whether a word is another one: numbers by their value, paths by their ends."""
-    own, other = numbers_in(word or ""), numbers_in(wanted)
+    numbers, other = numbers_in(word or ""), numbers_in(wanted)
     is_path = word is not None and word.startswith(PREFIX) and word.endswith(f"/{wanted}")
-    return word == wanted or is_path or (bool(own) and own == other)
+    return word == wanted or is_path or (bool(numbers) and numbers == other)
 
 
 def _not_included(launch: "Launch", end: str) -> Fault | None:
@@ -260,14 +269,10 @@ class _NodeTopics:
         python_type = re.sub("[/:]+", ".", message_type)
         of_kind = [topic for topic in self._topics if topic.verb == verb]
         same = [topic for topic in of_kind if topic.name == full_name]
-        is_certain = not self._is_open
         for topic in same:
-            actual = topic.type
-            if topic.node.when and (actual == python_type or not python_type):
+            if topic.node.when and python_type in (topic.type, ""):
                 return None
-            if actual is None or actual == python_type:
-                is_certain = False
-        if not is_certain:
+        if self._is_open or any(topic.type in (None, python_type) for topic in same):
             typed = f" with {message_type}" if message_type else ""
             return Fault(f"a node {verb} {full_name}{typed}", is_certain=False)
         if same:
@@ -276,10 +281,14 @@ class _NodeTopics:
             return Fault(message, same[0].location, cause="type")
         if self._unread:
             return self._unread[0]
-        message = f"no node {verb} {full_name}"
-        meant = closest(full_name, [topic.name for topic in of_kind])
-        for topic in of_kind:
-            if topic.name == meant:
-                guess = f"; there is {quoted(meant)}"
-                return Fault(message, topic.location, guess, cause="topic")
-        return Fault(message, cause="topic")
+        return _find_similar_topic(f"no node {verb} {full_name}", full_name, of_kind)
+
+
+def _find_similar_topic(message: str, full_name: str, topics: Sequence[_NodeTopic]) -> Fault:
+    """Return a fault with the topic whose name is like the missing one, if there is one."""
+    meant = closest(full_name, [topic.name for topic in topics])
+    for topic in topics:
+        if topic.name == meant:
+            guess = f"; there is {quoted(meant)}"
+            return Fault(message, topic.location, guess, cause="topic")
+    return Fault(message, cause="topic")

@@ -1,15 +1,16 @@
-"""Checks of the tree of links: its root, its joints, their types and names, and how many there
-are.
+"""Checks of the tree of links.
+
+They are about its root, its joints, their types and names, and how many there are.
 """
 
 from collections import Counter
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from grader.base.errors import MissingElement
 from grader.base.names import did_you_mean
 from grader.base.quantities import number_text
-from grader.base.source import place
+from grader.base.source import LazyLocation, place
 from grader.base.text import counted, enumerated
 from grader.base.toml_types import Count
 from grader.lab.checks.check import About
@@ -58,22 +59,31 @@ def held_by(
     moving = [joint for joint in chain if joint.type != "fixed"]
     wanted = [] if joint_type == "fixed" else [joint_type]
     if [joint.type for joint in moving] == wanted:
-        blocked = _driven_or_blocked(moving[0], link) if free and moving else None
+        if free and moving:
+            blocked = _driven_or_blocked(moving[0], link)
+            if blocked is not None:
+                return blocked
         connecting = (moving or [joint])[0].name
-        message = f"the {joint_type} joint {connecting!r} connects {link!r} to {parent!r}"
-        return blocked or passed(message)
+        return passed(f"the {joint_type} joint {connecting!r} connects {link!r} to {parent!r}")
     if not moving:
         message = f"{link!r} cannot move: its joint is fixed; it should be {joint_type}"
         raise MissingElement(
             "moving joint", link, message=message, detail=f" (joint {joint.name!r})", location=at
         )
+    return _fail_other_joints(moving, link, parent, joint_type, at)
+
+
+def _fail_other_joints(
+    moving: Sequence[Joint], link: str, parent: str, joint_type: JointType, at: LazyLocation | None
+) -> Outcome:
+    """Return the failure of a link that several joints move, or one of another type."""
     unknown = [joint for joint in moving if joint.type not in JOINT_TYPES]
     if unknown:
-        may_be_wanted = bool(wanted) and len(unknown) == len(moving)
+        may_be_wanted = joint_type != "fixed" and len(unknown) == len(moving)
         return _fail_unknown_type(unknown[0], link, parent, may_be_wanted=may_be_wanted)
     if len(moving) > 1:
         names = enumerated([repr(joint.name) for joint in moving])
-        expected = "only fixed joints" if not wanted else f"one {joint_type} joint"
+        expected = "only fixed joints" if joint_type == "fixed" else f"one {joint_type} joint"
         return failed(
             f"several joints move {link!r}; there should be {expected}",
             at,
@@ -212,8 +222,9 @@ def counts(
 
 
 def _fail_unknown_type(wrong: Joint, link: str, parent: str, *, may_be_wanted: bool) -> Outcome:
-    """Fail for a joint whose type does not exist; raise MissingElement where it may be the one that
-    is asked for.
+    """Fail for a joint whose type does not exist.
+
+    Raise MissingElement where it may be the one that is asked for.
     """
     kind = f"the type {wrong.type!r}, which does not exist" if wrong.type else "no type"
     message = f"a joint between {parent!r} and {link!r} has {kind}"
@@ -227,12 +238,13 @@ def _fail_unknown_type(wrong: Joint, link: str, parent: str, *, may_be_wanted: b
 def _joint_above_root(
     robot: Configuration, link: str, links: Collection[str] | None
 ) -> Joint | None:
-    """Return the nearest joint that should not be above a link; of a frame, one may be if the links
-    are named.
+    """Return the nearest joint that should not be above a link.
+
+    Of a frame, one may be if the links are named.
     """
-    own = robot.parent_joints.get(link)
-    if own is None or not links:
-        return own
+    parent_joint = robot.parent_joints.get(link)
+    if parent_joint is None or not links:
+        return parent_joint
     robot.root_of(link)  # raises for a loop of joints
     wrong = (
         joint for joint in reversed(robot.chain(link)) if not _is_of_frame(robot, joint, links)
@@ -247,8 +259,9 @@ def _is_of_frame(robot: Configuration, joint: Joint, links: Collection[str]) -> 
 
 
 def _driven_or_blocked(joint: Joint, link: str) -> Outcome | None:
-    """Return the failure of a joint that another one moves, or that has no velocity; None if it
-    moves by itself.
+    """Return the failure of a joint that another one moves, or that has no velocity.
+
+    None if it moves by itself.
     """
     if joint.mimic is not None:
         leader = "itself" if joint.mimic.joint == joint.name else "another joint"
@@ -271,12 +284,12 @@ def _is_named(robot: Configuration, name: str, link: str, parent: str) -> bool:
         return True
     if not robot.robot.has_link(link):
         return False
-    own = robot.parent_joints.get(link)
-    if own is None:
+    parent_joint = robot.parent_joints.get(link)
+    if parent_joint is None:
         return any(joint.parent == link for joint in named)
     is_joined = robot.robot.has_link(parent) and robot.root_of(parent) == robot.root_of(link)
     path = robot.between(parent, link) if is_joined else ()
-    return any(joint.known in named for joint in (*path, own))
+    return any(joint.known in named for joint in (*path, parent_joint))
 
 
 def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:
@@ -299,16 +312,17 @@ def _not_below(robot: Configuration, link: str, parent: str) -> Outcome:
 
 
 def _count_parts(robot: Configuration, nouns: Collection[str]) -> Counter[str]:
-    """Return the numbers of links and joints by kind in the largest tree; raise NotDecided if xacro
-    leaves one open.
+    """Return the numbers of links and joints by kind in the largest tree.
+
+    Raise NotDecided if xacro leaves one open.
     """
     tree = robot.main_tree
-    found = Counter({"link": len(tree), "joint": max(0, len(tree) - 1)})
+    part_counts = Counter({"link": len(tree), "joint": max(0, len(tree) - 1)})
     if {"link", "joint"}.issuperset(nouns):
-        return found
+        return part_counts
     for link in tree[1:]:
         joint = robot.parent_joints[link]
-        found[f"{joint.type} joint"] += 1
+        part_counts[f"{joint.type} joint"] += 1
         if joint.type != "fixed" and joint.mimic is None:
-            found["moving joint"] += 1
-    return found
+            part_counts["moving joint"] += 1
+    return part_counts

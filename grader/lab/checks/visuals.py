@@ -22,8 +22,9 @@ _SHAPES: dict[str, type[Box] | type[Cylinder] | type[Sphere]] = {
 
 
 def visible(robot: Configuration, link: str) -> list[Visual]:
-    """Return the visuals of a link that have a size and are not transparent; raise MissingElement
-    without the link.
+    """Return the visuals of a link that have a size and are not transparent.
+
+    Raise MissingElement without the link.
     """
     shown = (visual for visual in robot.link(link).visuals if not visual.geometry.is_empty)
     return [
@@ -32,8 +33,9 @@ def visible(robot: Configuration, link: str) -> list[Visual]:
 
 
 def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Visual:
-    """Return the visual that counts for a link: its only one, else the first mesh, of unknown size,
-    else the largest.
+    """Return the visual that counts for a link.
+
+    This is its only one, else the first mesh, of unknown size, else the largest.
 
     If the link has visuals of the named shape, only these count.
     """
@@ -54,8 +56,9 @@ def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Vi
 def span(
     robot: Configuration, link: str, relative_to: str, direction: Vector
 ) -> tuple[float, float]:
-    """Return the lowest and highest coordinate of a link's visuals along a unit direction, in
-    metres, in a frame.
+    """Return the lowest and highest coordinate of a link's visuals along a unit direction.
+
+    The coordinates are in metres, in a frame.
     """
     shapes = [placed(robot, link, visual, relative_to) for visual in visuals(robot, link)]
     spans = [shape.extent(direction) for shape in shapes]

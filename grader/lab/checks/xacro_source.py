@@ -1,5 +1,6 @@
-"""The check of the xacro that a robot is written in: its properties, its macros, the files that
-it includes.
+"""The check of the xacro that a robot is written in.
+
+It is about its properties, its macros, and the files that it includes.
 """
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
@@ -96,6 +97,11 @@ def xacro_uses(
             "and includes"
         )
     source.check_known(inventory)
+    return _fail_lacks(source, lacks)
+
+
+def _fail_lacks(source: "ExpandedSource", lacks: "Sequence[_Lack]") -> Outcome:
+    """Return the failure of a xacro that lacks things, at the place of the first."""
     message = "; ".join(lack.message for lack in lacks)
     detail = "".join(lack.detail for lack in lacks)
     places = [lack.location for lack in lacks if lack.location is not None]
@@ -144,22 +150,22 @@ def _other_file(submission: Submission, file: str) -> "ExpandedSource | Outcome"
     """Return the xacro in a file of the submission that the graded URDF does not include."""
     from grader.ros.xacro.expansion import ExpandedSource
 
-    found = [path for path in submission.tree.files if _ends_with(path, file)]
-    if len(found) > 1:
+    files = [path for path in submission.tree.files if _ends_with(path, file)]
+    if len(files) > 1:
         raise NotDecided(
-            f"several files are called {file}: {enumerated(found, MAX_NAMED)}",
+            f"several files are called {file}: {enumerated(files, MAX_NAMED)}",
             "several files have the name",
         )
-    if not found:
+    if not files:
         raise MissingElement("file", file, message=f"the submission has no file {quoted(file)}")
     try:
-        data = submission.tree.files[found[0]].read(URDF_LIMIT)
-        source = submission.surroundings(submission.budget).expanded(data, found[0])
+        data = submission.tree.files[files[0]].read(URDF_LIMIT)
+        source = submission.surroundings(submission.budget).expanded(data, files[0])
     except InputError as error:
         raise NotDecided(str(error), "a file cannot be read") from None
     if isinstance(source, ExpandedSource) and find_xacro(source.text) is not None:
         return source
-    return failed(f"{found[0]} has no expression and no tag of xacro", Location(found[0], 1, 1))
+    return failed(f"{files[0]} has no expression and no tag of xacro", Location(files[0], 1, 1))
 
 
 def _judge_expansion(submission: Submission) -> Outcome:
@@ -179,8 +185,9 @@ def _missing_uses(
     first_places: Mapping[str, Location],
     used: Collection[str],
 ) -> Iterator[_Lack]:
-    """Yield what is missing of definitions that are used: some of the named ones, or of a
-    number.
+    """Yield what is missing of definitions that are used.
+
+    These are some of the named ones, or of a number.
     """
     if isinstance(wanted, int):
         unused = [name for name in first_places if name not in used]

@@ -39,8 +39,9 @@ _COPIED = frozenset(
 
 
 class _FoundAnswer(NamedTuple):
-    """The result of a search for an answer: the passage, the documents that were read, and why
-    others were not.
+    """The result of a search for an answer.
+
+    It has the passage, the documents that were read, and why others were not.
     """
 
     passage: Passage | None
@@ -52,8 +53,9 @@ class _FoundAnswer(NamedTuple):
 def find_answer(
     documents: DocumentCollection, files: Sequence[str], places: Sequence[str], question: str = ""
 ) -> _FoundAnswer:
-    """Search for the passage about one of `places`, such as `task 1 step 15`, in the documents with
-    names like `files`.
+    """Search for the passage about one of `places` in documents.
+
+    A place is such as `task 1 step 15`. The documents have names like `files`.
 
     A passage with a text wins over a heading without one, a certain one over another, and then an
     earlier place over a later one.
@@ -83,8 +85,9 @@ class _Ordinal(NamedTuple):
 
 
 class _AnswerMatch(NamedTuple):
-    """The answers that belong to a question, by their index: exactly one, unless it is not
-    certain. `how` says why.
+    """The answers that belong to a question, by their index: exactly one, unless it is not certain.
+
+    `how` says why.
     """
 
     indices: tuple[int, ...]
@@ -93,31 +96,31 @@ class _AnswerMatch(NamedTuple):
 
 
 def _read_ordinal(place: str) -> _Ordinal | None:
-    """Return the place among all questions that "required question 1 of 2" names; None for other
-    texts.
+    """Return the place among all questions that "required question 1 of 2" names.
+
+    None for other texts.
     """
-    found = _ORDINAL.fullmatch(place.lower())
-    if found:
-        return _Ordinal(tuple(WORDS.findall(found[1])), int(found[2]), int(found[3]))
+    match = _ORDINAL.fullmatch(place.lower())
+    if match:
+        return _Ordinal(tuple(WORDS.findall(match[1])), int(match[2]), int(match[3]))
     return None
 
 
 def _match_answer(
     wanted: _Ordinal, task: int | None, answers: Sequence[Passage]
 ) -> _AnswerMatch | None:
-    """Return which of the answers in one document belongs to a question of a task; None if there is
-    none for it.
+    """Return which of the answers in one document belongs to a question of a task.
+
+    None if there is none for it.
 
     In this order: the only one below the heading of the task; the one with its number; the one at
     its place, if there are as many as questions. Anything else is not certain.
     """
     if not answers:
         return None
-    below = [index for index, answer in enumerate(answers) if answer.head.section == task]
-    all_have_task = all(answer.head.section is not None for answer in answers)
-    if task is not None and all_have_task and len(below) == 1:
-        how = f"the only {_answer_text(answers, below)} below the heading of task {task}"
-        return _AnswerMatch(tuple(below), True, how)
+    only_answer = _only_answer_of_task(task, answers)
+    if only_answer is not None:
+        return only_answer
     written = [index for index, answer in enumerate(answers) if not answer.is_empty]
     numbers = [answer.head.number for answer in answers if answer.head.number is not None]
     if len(numbers) == len(answers) and max(numbers) <= wanted.total:
@@ -135,6 +138,17 @@ def _match_answer(
     return _AnswerMatch(tuple(indices), False, how)
 
 
+def _only_answer_of_task(task: int | None, answers: Sequence[Passage]) -> _AnswerMatch | None:
+    """Return the only answer below the heading of a task, if all answers are below one."""
+    if task is None or any(answer.head.section is None for answer in answers):
+        return None
+    below = [index for index, answer in enumerate(answers) if answer.head.section == task]
+    if len(below) != 1:
+        return None
+    how = f"the only {_answer_text(answers, below)} below the heading of task {task}"
+    return _AnswerMatch(tuple(below), True, how)
+
+
 def _are_in_order(answers: Sequence[Passage], indices: Sequence[int]) -> bool:
     """Return whether each answer that has a number has that of its place."""
     return all(
@@ -145,8 +159,9 @@ def _are_in_order(answers: Sequence[Passage], indices: Sequence[int]) -> bool:
 def _answer_by_number(
     wanted: _Ordinal, task: int | None, answers: Sequence[Passage], written: Sequence[int]
 ) -> _AnswerMatch | None:
-    """Return the answer below the question's number; of several, as with a list of the
-    questions, that with text.
+    """Return the answer below the question's number.
+
+    Of several, as with a list of the questions, that with text.
     """
     hits = [index for index, answer in enumerate(answers) if answer.head.number == wanted.number]
     if len(hits) > 1:
@@ -204,8 +219,9 @@ class _AnswerSearch:
                 self._patterns.add(place.words)
 
     def passages(self) -> Iterator[list[Passage]]:
-        """Yield the passages for each place: the best one, then others that certainly answer the
-        question as well.
+        """Yield the passages for each place.
+
+        The best one comes first, then others that certainly answer the question as well.
         """
         for wanted in self._wanted:
             if isinstance(wanted, _Ordinal):
@@ -222,8 +238,9 @@ class _AnswerSearch:
         return self._documents.headings(document, self._patterns)
 
     def _passages_below(self, wanted: Label) -> list[Passage]:
-        """Return the passages whose heading, or whose file, is labelled so; items of lists and
-        mentions only first.
+        """Return the passages whose heading, or whose file, is labelled so.
+
+        Items of lists and mentions only first.
         """
         ranked: list[tuple[tuple[bool, ...], Passage]] = []
         for document in self._read:
@@ -279,8 +296,9 @@ class _AnswerSearch:
         return passage
 
     def _in_order(self, wanted: _Ordinal) -> list[Passage]:
-        """Return the passages below headings that questions share, or in files of that name, if
-        this is clear.
+        """Return the passages below headings that questions share.
+
+        Or those in files of that name, if this is clear.
         """
         groups = list[list[tuple[TextDocument, Heading]]]()
         for document in self._read:
@@ -320,8 +338,9 @@ class _AnswerSearch:
         )
 
     def _is_question_only(self, text: str) -> bool:
-        """Return whether a passage holds only the question's words; one that ends in "?", or a
-        whole passage in ":", may be worded differently.
+        """Return whether a passage holds only the question's words.
+
+        One that ends in "?", or a whole passage in ":", may be worded differently.
         """
         if "[picture]" in text or len(text) > _MAX_QUESTION:
             return False
@@ -349,9 +368,15 @@ def _heading_of_file(document: TextDocument, pattern: Pattern) -> Heading:
     """Return a heading for a whole document: its name may be that of a question."""
     name = stem(document.file.name)
     task = read_label(stem(document.file.path)).task
-    found, number = question_of(name.replace("_", " "), (pattern,))
+    matching, number = question_of(name.replace("_", " "), (pattern,))
     return Heading(
-        0, len(document.lines), name, read_label(name), section=task, pattern=found, number=number
+        0,
+        len(document.lines),
+        name,
+        read_label(name),
+        section=task,
+        pattern=matching,
+        number=number,
     )
 
 
@@ -366,8 +391,9 @@ def _joined_passage(match: _AnswerMatch, passages: list[Passage]) -> Passage:
 
 
 def _place_of(document: TextDocument, head: Heading, at: Location) -> str:
-    """Return where a passage is: its page, or its heading, or its line where editors count
-    lines.
+    """Return where a passage is.
+
+    This is its page, or its heading, or its line where editors count lines.
     """
     page = document.page(head.start)
     if page is not None:

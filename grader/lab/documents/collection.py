@@ -59,8 +59,9 @@ class TextDocument(NamedTuple):
         return bisect_right(self.pages, line) or None
 
     def has_picture(self, start: int = 0, end: int | None = None) -> bool:
-        """Return whether there is a picture between two lines; in a PDF, on the pages with these
-        lines.
+        """Return whether there is a picture between two lines.
+
+        In a PDF, on the pages with these lines.
         """
         if self.file.suffix == ".pdf" and end is not None:
             first, last = self.page(start) or 1, self.page(max(start, end - 1)) or 1
@@ -92,8 +93,9 @@ class _Unread(NamedTuple):
 
 
 class DocumentCollection:
-    """The documents of a submission. Each is read once; Word and PDF files share one budget of
-    time.
+    """The documents of a submission.
+
+    Each is read once; Word and PDF files share one budget of time.
 
     `converted` are the texts of Word and PDF files by path; those that are given are not read
     again.
@@ -111,8 +113,9 @@ class DocumentCollection:
     def headings(
         self, document: TextDocument, patterns: Collection[Pattern] = ()
     ) -> tuple[Heading, ...]:
-        """Return the headings of a document; `patterns` are the words of headings besides the
-        usual ones.
+        """Return the headings of a document.
+
+        `patterns` are the words of headings besides the usual ones.
         """
         key = (document.file.path, frozenset(patterns))
         if key not in self._headings:
@@ -125,12 +128,15 @@ class DocumentCollection:
     def read(self) -> tuple[str, ...]:
         """The paths of the documents that were read."""
         return tuple(
-            path for path, found in self._read_files.items() if isinstance(found, TextDocument)
+            path
+            for path, read_document in self._read_files.items()
+            if isinstance(read_document, TextDocument)
         )
 
     def named(self, patterns: Sequence[str]) -> tuple[list[TextDocument], list[_Unread]]:
-        """Return the documents whose names match one of the patterns, and what of them was not
-        read, and why.
+        """Return the documents whose names match one of the patterns.
+
+        And what of them was not read, and why.
         """
         key = tuple(patterns)
         if key not in self._named:
@@ -166,8 +172,9 @@ class DocumentCollection:
         return read, unread
 
     def document(self, file: File) -> TextDocument | _Unread | None:
-        """Return a document, the reason why it was not read, or None for a file that contains no
-        answers.
+        """Return a document, or the reason why it was not read.
+
+        None for a file that contains no answers.
         """
         if file.path not in self._read_files:
             self._read_files[file.path] = self._read_document(file)
@@ -206,8 +213,9 @@ class DocumentCollection:
             return data.decode("cp1252", "replace")
 
     def _convert(self, file: File) -> bytes:
-        """Return the text of a Word or PDF file, from a separate process within the remaining
-        time.
+        """Return the text of a Word or PDF file.
+
+        It comes from a separate process within the remaining time.
         """
         budget = f"the Word and PDF files take longer than {MAX_SECONDS:g} s in all"
         late = InputError(f"{file.path} was not read: {budget}; needs manual grading")
@@ -268,8 +276,9 @@ class DocumentCollection:
 
 
 def _time_of_converters() -> float:
-    """Return the processor time of the processes that have ended, in seconds; on Windows the time
-    of the clock.
+    """Return the processor time of the processes that have ended, in seconds.
+
+    On Windows it is the time of the clock.
     """
     times = os.times()
     if sys.platform == "win32":

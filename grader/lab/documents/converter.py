@@ -34,8 +34,9 @@ _PR_SET_PDEATHSIG = 1
 
 
 def main() -> int:
-    """Convert one document. Arguments: `docx` or `pdf`, seconds of processor time, process id of
-    the parent.
+    """Convert one document.
+
+    Arguments: `docx` or `pdf`, seconds of processor time, process id of the parent.
     """
     kind, seconds, parent = sys.argv[1], float(sys.argv[2]), int(sys.argv[3])
     _end_with_parent(parent, seconds)
@@ -54,15 +55,14 @@ def main() -> int:
 
 
 def is_out_of_time(code: int) -> bool:
-    """Return whether an exit code says that the converter has reached its limit of processor
-    time.
-    """
+    """Return whether an exit code says that the converter ran out of processor time."""
     return code < 0 and code == -getattr(signal, "SIGPROF", 0)
 
 
 def _end_with_parent(parent: int, seconds: float) -> None:
-    """End this process when its parent has ended: by the kernel on Linux, elsewhere after so many
-    seconds.
+    """End this process when its parent has ended.
+
+    By the kernel on Linux, elsewhere after so many seconds.
     """
     if sys.platform == "linux":
         import ctypes
@@ -97,15 +97,16 @@ class _TooLargeError(Exception):
 
 
 def _docx(data: bytes) -> bytes:
-    """Return a line for each paragraph or row of a table, with the page breaks that Word rendered
-    and pictures.
+    """Return a line for each paragraph or row of a table.
+
+    Lines also show pictures, and the page breaks that Word rendered.
     """
     lines: list[str] = []
     text, after = "", list[str]()
-    for name, own, is_in_row in _elements(data):
+    for name, paragraph, is_in_row in _elements(data):
         match name:
             case "t":
-                text += _without_marks(own)
+                text += _without_marks(paragraph)
             case "tab" | "tc":
                 text += "\t"
             case "br" | "cr":
@@ -121,8 +122,9 @@ def _docx(data: bytes) -> bytes:
 
 
 def _elements(data: bytes) -> Iterator[tuple[str, str, bool]]:
-    """Yield the name and text of each element of a Word file at its end, and whether it is in a row
-    of a table.
+    """Yield the name and text of each element of a Word file at its end.
+
+    And whether it is in a row of a table.
 
     Copies that Word adds for older versions are omitted. Raises _TooLargeError.
     """
@@ -182,8 +184,9 @@ def _pdf(data: bytes) -> bytes:
 
 
 def _page_text(page: Any) -> str:
-    """Return the text of a page; if most lines are one word (PDFs of Google Docs), the words are
-    joined by position.
+    """Return the text of a page.
+
+    If most lines are one word (PDFs of Google Docs), the words are joined by position.
     """
     text: str = page.extract_text()
     words = text.split()

@@ -1,5 +1,6 @@
-"""Pictures and other evidence in a submission: found by name or headings in documents, and
-described, never graded.
+"""Pictures and other evidence in a submission.
+
+They are found by name or headings in documents, and described, never graded.
 """
 
 import re
@@ -72,8 +73,9 @@ class FoundEvidence(NamedTuple):
 def find_evidence(
     files: Sequence[LabelledFile], names: Sequence[str], documents: DocumentCollection | None = None
 ) -> FoundEvidence:
-    """Return the evidence that one of these names labels: `task 1 step 8`, or plain words such as
-    `webcam`.
+    """Return the evidence that one of these names labels.
+
+    A name is `task 1 step 8`, or plain words such as `webcam`.
 
     Files with the label come first. Without one, headings of Word and PDF files with a picture
     below them count. Not certain are labels without a task, headings without a picture, documents
@@ -87,14 +89,7 @@ def find_evidence(
     certain = [file for file in labelled if not _PRELAB.search(file.file.path)]
     if certain:
         return FoundEvidence(as_evidence(certain))
-    below, pictures = list[EvidenceFile](), list[EvidenceFile]()
-    for document, head, label in (
-        _headings_about(documents, wanted) if documents is not None else ()
-    ):
-        evidence = _evidence_below(document, head)
-        below.append(evidence)
-        if _is_certain(label, document, head) and not _PRELAB.search(evidence.path):
-            pictures.append(evidence)
+    below, pictures = _evidence_in_documents(documents, wanted)
     if pictures:
         return FoundEvidence(tuple(pictures))
     steps = [label.steps for label in wanted if label.steps]
@@ -105,6 +100,24 @@ def find_evidence(
     ]
     unlisted = _unlisted_documents(documents, perhaps)
     return FoundEvidence((), (*as_evidence(perhaps), *below, *unlisted))
+
+
+def _evidence_in_documents(
+    documents: DocumentCollection | None, wanted: Sequence[Label]
+) -> tuple[list[EvidenceFile], list[EvidenceFile]]:
+    """Return what is below the headings with these labels, and the pictures among it.
+
+    Only pictures that are certain count.
+    """
+    below, pictures = list[EvidenceFile](), list[EvidenceFile]()
+    if documents is None:
+        return below, pictures
+    for document, head, label in _headings_about(documents, wanted):
+        evidence = _evidence_below(document, head)
+        below.append(evidence)
+        if _is_certain(label, document, head) and not _PRELAB.search(evidence.path):
+            pictures.append(evidence)
+    return below, pictures
 
 
 def _unlisted_documents(
@@ -137,8 +150,9 @@ def _headings_about(
 
 
 def _whole_documents(documents: DocumentCollection | None) -> list[File]:
-    """Return the documents that may hold any evidence: those not read, and those with pictures
-    without headings.
+    """Return the documents that may hold any evidence.
+
+    These are those not read, and those with pictures without headings.
 
     A pre-lab has none.
     """
@@ -168,8 +182,9 @@ def _step_headings(documents: DocumentCollection, document: TextDocument) -> lis
 
 
 def _is_certain(wanted: Label, document: TextDocument, head: Heading) -> bool:
-    """Return whether a picture is below a heading that names a step in words: "18." may be a line
-    of the handout.
+    """Return whether a picture is below a heading that names a step in words.
+
+    "18." may be a line of the handout.
     """
     names = read_label(head.text[:_MAX_SHOWN])
     is_named = (

@@ -1,5 +1,6 @@
-"""The headings of a document: lines that name a task, a step or a question, and where the passage
-below each ends.
+"""The headings of a document, and where the passage below each ends.
+
+A heading is a line that names a task, a step or a question.
 
 A label is the task and step that a heading or the name of a file names, in any spelling:
 Task1_Step8, task 1 step 8, T1S8, lab6_task1_q8.
@@ -72,8 +73,9 @@ _LABEL = re.compile(rf"(?<![^\W\d_])(?:{_TASK}|{_STEP})(?:{_FILLERS}(?:{_TASK}|{
 
 
 class Label(NamedTuple):
-    """The task and steps that a text names, and all of its words; None and empty where it names
-    none.
+    """The task and steps that a text names, and all of its words.
+
+    None and empty where it names none.
     """
 
     task: int | None
@@ -88,8 +90,9 @@ class Label(NamedTuple):
 
 @lru_cache(maxsize=1024)  # a rubric's names are read for each submission
 def read_label(text: str) -> Label:
-    """Return the label of a name or line. If it names several tasks, as a path may, the last one
-    counts.
+    """Return the label of a name or line.
+
+    If it names several tasks, as a path may, the last one counts.
     """
     text = text[-_MAX_LENGTH:].lower()
     task: int | None = None
@@ -103,18 +106,19 @@ def read_label(text: str) -> Label:
     return Label(task, frozenset(steps), tuple(WORDS.findall(text)))
 
 
-def matches(wanted: Label, found: Label, task: int | None = None) -> bool:
-    """Return whether a label matches the wanted one; `task` is the task of the headings around
-    it.
+def matches(wanted: Label, given: Label, task: int | None = None) -> bool:
+    """Return whether a label matches the wanted one.
+
+    `task` is the task of the headings around it.
     """
     if wanted.steps or wanted.task is not None:
-        own = found.task if found.task is not None else task
-        if wanted.task is not None and wanted.task != own:
+        own_task = given.task if given.task is not None else task
+        if wanted.task is not None and wanted.task != own_task:
             return False
         if wanted.steps:
-            return wanted.steps <= found.steps
-        return own == wanted.task
-    return bool(wanted.words) and _in_order(wanted.words, found.words)
+            return wanted.steps <= given.steps
+        return own_task == wanted.task
+    return bool(wanted.words) and _in_order(wanted.words, given.words)
 
 
 def stem(path: str) -> str:
@@ -138,12 +142,13 @@ def _numbers(words: list[str]) -> tuple[int | None, set[int]]:
     return task, steps
 
 
-def _in_order(wanted: tuple[str, ...], found: tuple[str, ...]) -> bool:
-    """Return whether the wanted words occur next to each other, each at least as a prefix: cam in
-    camera.
+def _in_order(wanted: tuple[str, ...], words_of_heading: tuple[str, ...]) -> bool:
+    """Return whether the wanted words occur next to each other.
+
+    Each may be a prefix of a word: cam in camera.
     """
-    for start in range(len(found) - len(wanted) + 1):
-        words = found[start : start + len(wanted)]
+    for start in range(len(words_of_heading) - len(wanted) + 1):
+        words = words_of_heading[start : start + len(wanted)]
         if all(map(str.startswith, words, wanted)):
             return True
     return False
@@ -182,7 +187,7 @@ def find_headings(
     `name` is that of the file, which may name a task. `patterns` are the words of further headings,
     besides those of questions.
     """
-    found: list[Heading] = []
+    headings: list[Heading] = []
     known = (*patterns, *_QUESTIONS)
     words = "|".join(
         sorted({re.escape(word) for pattern in known for word in pattern} | _QUESTION_WORDS)
@@ -194,19 +199,26 @@ def find_headings(
         is_fenced ^= _FENCE.match(line) is not None
         if not candidate.match(line, 0, _MAX_LINE):
             continue
-        above = found[-1] if found else None
+        above = headings[-1] if headings else None
         heading = _heading_of(line[:_MAX_LINE], index, known, above, is_marked=not is_fenced)
         if heading is None:
             continue
-        own = heading.label.task
-        if own is not None and not heading.is_mention:
+        own_task = heading.label.task
+        if own_task is not None and not heading.is_mention:
             if not heading.label.steps:
-                section = own
-            elif own != section:
+                section = own_task
+            elif own_task != section:
                 section = None
-            task = own
-        found.append(heading._replace(task=own if own is not None else task, section=section))
-    ending = [heading for heading in found if not heading.is_mention]
+            task = own_task
+        headings.append(
+            heading._replace(task=own_task if own_task is not None else task, section=section)
+        )
+    return _with_ends(headings, lines)
+
+
+def _with_ends(headings: Collection[Heading], lines: list[str]) -> tuple[Heading, ...]:
+    """Return headings with the ends of the passages below them."""
+    ending = [heading for heading in headings if not heading.is_mention]
     starts = [heading.start for heading in ending]
     return tuple(
         heading._replace(
@@ -214,13 +226,14 @@ def find_headings(
                 heading, islice(ending, bisect_right(starts, heading.start), None), lines
             )
         )
-        for heading in found
+        for heading in headings
     )
 
 
 def is_about(wanted: Label, head: Heading) -> bool:
-    """Return whether a heading has a label: plain words begin it, or are in one that is marked as a
-    heading.
+    """Return whether a heading has a label.
+
+    Plain words begin it, or are in one that is marked as a heading.
     """
     if not wanted.steps and wanted.task is None:
         is_pattern = bool(head.pattern) and head.pattern == wanted.words
@@ -243,21 +256,32 @@ def _heading_of(
     words = _first_words(plain)
     label = _label_in(words)
     pattern, number = question_of(plain, patterns)
-    is_bold = line.lstrip().startswith(("**", "__")) and line.rstrip(" :.").endswith(("**", "__"))
     level = len(marked[1]) if marked else 0
     heading = Heading(
-        index, index, text, label, level, pattern=pattern, number=number, is_bold=is_bold
+        index, index, text, label, level, pattern=pattern, number=number, is_bold=_is_bold(line)
     )
     if label.steps or label.task is not None:
-        begins = _label_in(words[:2])
-        is_short = len(words) <= _MAX_WORDS or begins.steps or begins.task is not None
-        return heading._replace(is_mention=not (is_short or marked or pattern))
+        is_heading = marked or pattern or _begins_with_label(words)
+        return heading._replace(is_mention=not is_heading)
     if pattern or (marked and _SPACED.match(line) and has_words(line)):
         return heading
     item = _ITEM.match(plain)
     if item and above is not None and not marked and (above.is_item or _is_task(above)):
         return heading._replace(label=read_label(f"step {item[1]}"), is_item=True)
     return None
+
+
+def _is_bold(line: str) -> bool:
+    """Return whether the whole line is bold, but for a colon or point at its end."""
+    return line.lstrip().startswith(("**", "__")) and line.rstrip(" :.").endswith(("**", "__"))
+
+
+def _begins_with_label(words: list[str]) -> bool:
+    """Return whether a line with a label is short, or its first two words have one."""
+    if len(words) <= _MAX_WORDS:
+        return True
+    begins = _label_in(words[:2])
+    return bool(begins.steps) or begins.task is not None
 
 
 def _is_task(heading: Heading) -> bool:
@@ -275,13 +299,14 @@ def _first_words(plain: str) -> list[str]:
 
 def _label_in(words: list[str]) -> Label:
     """Return the first label in the first words of a line."""
-    found = _LABEL.search(" ".join(words[:_MAX_WORDS]).lower())
-    return read_label(found[0] if found else "")
+    match = _LABEL.search(" ".join(words[:_MAX_WORDS]).lower())
+    return read_label(match[0] if match else "")
 
 
 def question_of(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int | None]:
-    """Return the pattern that a line or name begins with, words in any order, and the number after
-    or between.
+    """Return the pattern that a line or name begins with, and a number.
+
+    The pattern's words are in any order, the number after or between them.
     """
     words = [word for word in text.split(None, _MAX_SPLIT) if has_words(word)]
     tokens = _question_words(" ".join(words[: _MAX_WORDS + 2]))
@@ -301,8 +326,9 @@ def question_of(text: str, patterns: Collection[Pattern]) -> tuple[Pattern, int 
 
 
 def _question_words(text: str) -> list[str]:
-    """Return the words of a heading from the question on: "2. Task 1 - Answer to Q3" begins with
-    "question".
+    """Return the words of a heading from the question on.
+
+    "2. Task 1 - Answer to Q3" begins with "question".
     """
     tokens = WORDS.findall(text.lower())
     while tokens:

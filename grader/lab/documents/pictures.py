@@ -1,5 +1,6 @@
-"""Pictures and PDF files that a browser shows safely. Their type is that of their bytes, never of
-their names.
+"""Pictures and PDF files that a browser shows safely.
+
+Their type is that of their bytes, never of their names.
 """
 
 import re
@@ -45,8 +46,9 @@ _OTHER = "it is not a PNG, JPEG, GIF, WebP or BMP picture, nor a PDF: open it yo
 
 
 class EmbeddedPicture(NamedTuple):
-    """A picture or PDF of a submission: where it is, its type, and its bytes; `page` of a PDF is
-    shown first.
+    """A picture or PDF of a submission: where it is, its type, and its bytes.
+
+    `page` of a PDF is shown first.
     """
 
     where: str
@@ -90,8 +92,9 @@ def read_picture(file: File) -> EmbeddedPicture | NotShown:
 
 
 def pictures_in_word(file: File) -> Iterator[EmbeddedPicture | NotShown]:
-    """Yield the pictures of a Word file in the order of their names, which is that of their
-    insertion.
+    """Yield the pictures of a Word file in the order of their names.
+
+    This is the order of their insertion.
     """
     try:
         stored = TemporaryFile()  # noqa: SIM115  its tree closes it

@@ -1,5 +1,6 @@
-"""What a person reads for a criterion: the pictures and PDF files of its evidence, and of a written
-answer.
+"""What a person reads for a criterion.
+
+These are the pictures and PDF files of its evidence, and of a written answer.
 
 Also the documents that may hold an answer for which no heading was found.
 """
@@ -38,26 +39,32 @@ _DOCUMENTS = (
 
 
 def pictures_of(result: Result, submission: Submission) -> tuple[EmbeddedPicture | NotShown, ...]:
-    """Return the pictures and PDF files of a criterion that needs manual grading, and the files
-    that are not shown.
+    """Return the pictures and PDF files of a criterion that needs manual grading.
+
+    And the files that are not shown.
 
     Of a Word file these are all of its pictures; a PDF opens on the page of the evidence or the
     answer. If no file is named for the evidence, all files of evidence are searched; if no answer
     was found, all PDF files, and Word files.
     """
-    paths = _shown_files(result) or tuple(
-        labelled.file.path
-        for labelled in submission.labelled_files
-        if _is_evidence(result) or (_is_question(result) and labelled.file.suffix == ".pdf")
-    )
+    paths = _shown_files(result) or _searched_files(result, submission)
     loose, _ = _loose_documents(result, submission)
     paths += tuple(
         one.file.path for one in loose if one.file.suffix == ".docx" and one.has_picture()
     )
     return tuple(
         _limit_pictures(
-            found for path in paths for found in _read_pictures(path, result, submission)
+            picture for path in paths for picture in _read_pictures(path, result, submission)
         )
+    )
+
+
+def _searched_files(result: Result, submission: Submission) -> tuple[str, ...]:
+    """Return the files that are shown if none is named: of a question only the PDF files."""
+    return tuple(
+        labelled.file.path
+        for labelled in submission.labelled_files
+        if _is_evidence(result) or (_is_question(result) and labelled.file.suffix == ".pdf")
     )
 
 
@@ -70,8 +77,9 @@ def may_have_pictures(result: Result) -> bool:
 
 
 def is_empty(result: Result, report: Report) -> bool:
-    """Return whether there is nothing to read for a criterion: no answer, no document and no
-    picture that may be one.
+    """Return whether there is nothing to read for a criterion.
+
+    There is no answer, no document and no picture that may be one.
 
     Of evidence: no file that may be it.
     """
@@ -91,27 +99,31 @@ def is_empty(result: Result, report: Report) -> bool:
 
 
 def content_of(result: Result, report: Report) -> str:
-    """Return the written answer without empty lines, if it is all that there is to read; else an
-    empty text.
+    """Return the written answer without empty lines, if it is all that there is to read.
+
+    Else an empty text.
 
     Without an answer it is the text of the documents that may hold one.
     """
-    found, is_certain = result.outcome.measured, not result.outcome.problem
+    content, is_certain = result.outcome.measured, not result.outcome.problem
     if _has_no_answer(result):
         documents, unread = _loose_documents(result, report.submission)
-        found, is_certain = (
+        content, is_certain = (
             "\n".join(line for one in documents for line in _lines_of(one)),
             not unread,
         )
-    if not (_is_question(result) and isinstance(found, str) and is_certain) or _loose_files(report):
+    if not (_is_question(result) and isinstance(content, str) and is_certain) or _loose_files(
+        report
+    ):
         return ""
-    is_whole = not any(sign in found for sign in (_PICTURE, "![", "]("))
-    return "\n".join(filter(None, map(str.rstrip, found.splitlines()))) if is_whole else ""
+    is_whole = not any(sign in content for sign in (_PICTURE, "![", "]("))
+    return "\n".join(filter(None, map(str.rstrip, content.splitlines()))) if is_whole else ""
 
 
 def loose_lines(result: Result, submission: Submission, *, is_anonymous: bool = False) -> list[str]:
-    """Return the lines of the documents that may hold an answer for which no heading was found,
-    each below its path.
+    """Return the lines of the documents that may hold an answer, each below its path.
+
+    These are documents in which no heading was found for it.
     """
     documents, unread = _loose_documents(result, submission)
     lines = list[str]()
@@ -125,8 +137,9 @@ def loose_lines(result: Result, submission: Submission, *, is_anonymous: bool = 
 def _loose_documents(
     result: Result, submission: Submission
 ) -> tuple[list[TextDocument], Sequence[object]]:
-    """Return the documents that may hold an answer for which no heading was found, and those that
-    were not read.
+    """Return the documents that may hold an answer, and those that were not read.
+
+    No heading was found for the answer.
     """
     if not _has_no_answer(result):
         return [], ()
@@ -143,8 +156,9 @@ def _has_no_answer(result: Result) -> bool:
 
 
 def _loose_files(report: Report) -> tuple[EvidenceFile, ...]:
-    """Return the files that may hold a part of an answer: PDF files, and pictures that are no
-    evidence.
+    """Return the files that may hold a part of an answer.
+
+    These are PDF files, and pictures that are no evidence.
     """
     evidence = (
         result for result in report.results if _is_evidence(result) and not result.outcome.problem
@@ -180,8 +194,9 @@ def evidence_files(result: Result) -> tuple[str, ...]:
 
 
 def _shown_files(result: Result) -> tuple[str, ...]:
-    """Return the paths of the files of evidence, of the PDF of an answer, or of the document with
-    pictures in it.
+    """Return the paths of the files that are shown.
+
+    They are files of evidence, the PDF of an answer, or the document with pictures in it.
     """
     if files := evidence_files(result):
         return files
@@ -210,8 +225,9 @@ def _read_pictures(
 
 
 def _find_page(file: File, result: Result, documents: DocumentCollection | None) -> int:
-    """Return the page of a PDF with the answer, or with the heading that names the evidence; the
-    first without one.
+    """Return the page of a PDF with the answer, or with the heading that names the evidence.
+
+    The first page without one.
     """
     document = documents.document(file) if documents is not None else None
     if documents is None or not isinstance(document, TextDocument):
@@ -226,11 +242,11 @@ def _find_page(file: File, result: Result, documents: DocumentCollection | None)
 
 
 def _limit_pictures(
-    found: Iterable[EmbeddedPicture | NotShown],
+    pictures: Iterable[EmbeddedPicture | NotShown],
 ) -> Iterator[EmbeddedPicture | NotShown]:
     """Yield pictures up to the limits for one criterion, then a notice that there are more."""
     left = _MAX_BYTES
-    for count, one in enumerate(found):
+    for count, one in enumerate(pictures):
         left -= len(one.data) if isinstance(one, EmbeddedPicture) else 0
         if count >= _MAX_PICTURES or left < 0:
             yield NotShown(

@@ -30,13 +30,14 @@ _MAX_LISTED = 6
 
 
 def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> Iterator[Result]:
-    """Yield the results of criteria in the rubric's order; what a criterion requires counts if it
-    is wanted, too.
+    """Yield the results of criteria in the rubric's order.
+
+    What a criterion requires counts if it is wanted, too.
     """
     grading = _Grading(rubric, submission)
     left = {criterion.id for criterion in rubric.criteria if criterion.id in wanted}
     waiting: list[str] = []  # one that a criterion below may still excuse, and those after it
-    for criterion in (it for it in rubric.criteria if it.id in wanted):
+    for criterion in (asked for asked in rubric.criteria if asked.id in wanted):
         grading.decide(criterion)
         left.discard(criterion.id)
         waiting.append(criterion.id)
@@ -45,8 +46,9 @@ def decide(rubric: Rubric, submission: Submission, wanted: Collection[str]) -> I
 
 
 def _manual_subjects(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
-    """Return what a submission lacks, and why, whose criteria then need manual grading by the
-    rubric.
+    """Return what a submission lacks, and why.
+
+    Criteria about it then need manual grading by the rubric.
 
     Without a URDF, `without_urdf` decides for the package as well.
     """
@@ -91,13 +93,11 @@ class _Grading:
                 self.results[name] = self._carry_from_any(self.results[name])
 
     def may_be_excused(self, name: str, undecided: set[str]) -> bool:
-        """Return whether the mistake of a criterion that is not decided yet may be why this one is
-        lost.
-        """
+        """Return whether an undecided criterion's mistake may be why this one is lost."""
         result = self.results[name]
         if not result.criterion.carried or not result.is_lost:
             return False
-        return any(not undecided.isdisjoint(it.causes) for it in result.criterion.carried)
+        return any(not undecided.isdisjoint(carried.causes) for carried in result.criterion.carried)
 
     def _carry_from_any(self, result: Result) -> Result:
         for carried in result.criterion.carried:
@@ -110,16 +110,12 @@ class _Grading:
             required = self.results.get(name)
             if required is not None and required.is_lost:
                 return required.because or name
-        if self._subjects.robot is None and criterion.check.subject == "robot":
-            loading = (
-                result
-                for result in self.results.values()
-                if result.criterion.check.function is urdf_loads
-            )
-            return next(
-                (result.criterion.id for result in loading if result.outcome.status == "failed"),
-                None,
-            )
+        if self._subjects.robot is not None or criterion.check.subject != "robot":
+            return None
+        for result in self.results.values():
+            is_of_loading = result.criterion.check.function is urdf_loads
+            if is_of_loading and result.outcome.status == "failed":
+                return result.criterion.id
         return None
 
     def _decide_by_check(self, criterion: Criterion) -> Result:
@@ -140,8 +136,9 @@ class _Grading:
         return result._replace(outcome=self._with_place(outcome, criterion))
 
     def _with_place(self, outcome: Outcome, criterion: Criterion) -> Outcome:
-        """Return a failure of the robot with a place: without an own one that of the link that is
-        examined.
+        """Return a failure of the robot with a place.
+
+        Without an own one that of the link that is examined.
         """
         robot, link = self.submission.robot, criterion.arguments.get("link")
         if (
@@ -163,8 +160,9 @@ class _Grading:
         return explain(outcome, self._subjects.problems, self._subjects.source, looks_at, *thing)
 
     def _carry(self, result: Result, carried: Carried) -> Result:
-        """Return a failure, or a skip because of a cause, as carried if the fact that then counts
-        instead holds.
+        """Return a failure, or a skip because of a cause, as carried.
+
+        Only if the fact that then counts instead holds.
         """
         cause = self._cause_of(result, carried.causes)
         if cause is None:
@@ -188,19 +186,29 @@ class _Grading:
         if other.outcome.status == "passed":  # the place to look at is that of the mistake
             outcome = outcome._replace(location=cause.outcome.location)
             return Result(result.criterion, outcome, carried=cause.carried or name)
-        # What is skipped because of a failure is shown there, unless that is carried as well.
-        is_shown = result.outcome.location is not None or (
-            result.because and not self.results[result.because].carried
-        )
-        if is_shown and other.outcome.status != "errored":
+        if self._is_shown(result) and other.outcome.status != "errored":
             return result
         return self._with_reasons(other)
 
+    def _is_shown(self, result: Result) -> bool:
+        """Return whether a report shows why a criterion is lost."""
+        if result.outcome.location is not None:
+            return True
+        if not result.because:
+            return False
+        # What is skipped because of a failure is shown there, unless that is carried as well.
+        return not self.results[result.because].carried
+
     def _is_excused(self, criterion: Criterion, cause: str) -> bool:
-        """Return whether what counts instead passes, if another criterion is the cause of a
-        failure.
+        """Return whether what counts instead passes.
+
+        Only if another criterion is the cause of a failure.
         """
-        for carried in (it for it in criterion.carried if cause in it.causes):
+        for carried in (
+            carried_failure
+            for carried_failure in criterion.carried
+            if cause in carried_failure.causes
+        ):
             with suppress(MissingElement):
                 if (
                     self._run_check(
@@ -212,8 +220,9 @@ class _Grading:
         return False
 
     def _cause_of(self, result: Result, causes: Sequence[str]) -> Result | None:
-        """Return the failure that made the first of these criteria fail or be skipped, if it made
-        the result so, too.
+        """Return the failure that made the first of these criteria fail or be skipped.
+
+        Only if it made the result so, too.
 
         A skip because of a criterion that is itself carried from that failure counts, too.
         """
@@ -237,8 +246,9 @@ class _Grading:
     def _run_check(
         self, criterion: Criterion, check: Check, arguments: Mapping[str, Any]
     ) -> Result:
-        """Return the result of a check; raise MissingElement, or RubricError for a mistake of the
-        rubric.
+        """Return the result of a check.
+
+        Raise MissingElement, or RubricError for a mistake of the rubric.
         """
         try:
             subjects = self._subjects.under(criterion.args)
@@ -273,8 +283,9 @@ class _Grading:
             return Result(criterion, _fault_outcome(check, _text_of(error)), traceback=format_exc())
 
     def _fail_or_skip(self, criterion: Criterion, missing: MissingElement) -> Result:
-        """Return a failure for the first criterion that misses a thing; later ones would repeat it
-        and are skipped.
+        """Return a failure for the first criterion that misses a thing.
+
+        Later ones would repeat it and are skipped.
         """
         if missing.kind in self._manual:
             return Result(criterion, _by_evidence(self.submission, self._manual[missing.kind]))
@@ -320,8 +331,9 @@ class _Grading:
         return not near(name, others, "link")
 
     def _first_miss(self, criterion: Criterion, thing: tuple[str, str, str]) -> str:
-        """Return the first criterion that misses a thing, which may be this one; an adjusted one
-        excuses no other.
+        """Return the first criterion that misses a thing, which may be this one.
+
+        An adjusted one excuses no other.
 
         One that is carried from this one is skipped in its place, although it stands above.
         """
@@ -352,8 +364,9 @@ def _text_of(error: BaseException) -> str:
 
 
 def _fault_outcome(check: Check, fault: str) -> Outcome:
-    """Return the outcome of a faulty check; the message names the installed package that it comes
-    from.
+    """Return the outcome of a faulty check.
+
+    The message names the installed package that it comes from.
     """
     if check.distribution:
         return Outcome(
@@ -366,8 +379,9 @@ def _fault_outcome(check: Check, fault: str) -> Outcome:
 
 
 def another_robot(rubric: Rubric, robot: Robot | None, link: str = "") -> MissingElement | None:
-    """Return the error for a robot that is another one, and so has no `link`; None if it may be
-    that of the lab.
+    """Return the error for a robot that is another one, and so has no `link`.
+
+    None if it may be that of the lab.
     """
     if robot is None or not robot.is_foreign(rubric.links):
         return None
@@ -388,36 +402,38 @@ def _known_links_text(rubric: Rubric, robot: Robot) -> str:
 
 
 def _missing_work(rubric: Rubric, submission: Submission) -> Mapping[str, str]:
-    """Return what a submission with evidence lacks, the `URDF` or the `package` of this lab, and
-    why.
+    """Return what a submission with evidence lacks, and why.
+
+    This is the `URDF` or the `package` of this lab.
     """
-    found, robot = {}, submission.robot
+    missing, robot = {}, submission.robot
     if isinstance(submission.urdf, Absent):
-        found["URDF"] = "no URDF was submitted"
+        missing["URDF"] = "no URDF was submitted"
     elif robot is not None and robot.is_another(rubric.links):
         another = another_robot(rubric, robot)
         lacking = f"the robot has {_known_links_text(rubric, robot)}"
-        found["URDF"] = another.mistake if another is not None else lacking
+        missing["URDF"] = another.mistake if another is not None else lacking
     package = submission.package
     if package is None:
-        found["package"] = submission.no_package.message
+        missing["package"] = submission.no_package.message
     elif (
         package.name != rubric.package
         and submission.other_lab
         and package.folder.startswith(submission.other_lab)
     ):
-        found["package"] = (
+        missing["package"] = (
             f"no package was submitted for this lab; {package.name!r} is in the folder of "
             "another lab"
         )
-    if found and not submission.is_single and submission.evidence_files:
-        return found
+    if missing and not submission.is_single and submission.evidence_files:
+        return missing
     return {}
 
 
 def _by_evidence(submission: Submission, reason: str) -> Outcome:
-    """Return the outcome of a criterion of what a submission lacks, for this reason, where evidence
-    takes its place.
+    """Return the outcome of a criterion of what a submission lacks, for this reason.
+
+    It is for where evidence takes the place of the thing.
     """
     paths = tuple(file.path for file in submission.evidence_files[:_MAX_PICTURES])
     verb = "was" if len(paths) == 1 else "were"

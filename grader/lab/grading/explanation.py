@@ -51,8 +51,9 @@ def explain(
     part: str = "",
     link: str = "",
 ) -> Outcome:
-    """Return a failure with the problem that explains it: why ROS 2 drops a part of a link, or a
-    mistake at its place.
+    """Return a failure with the problem that explains it.
+
+    This is why ROS 2 drops a part of a link, or a mistake at its place.
 
     `source` is the file in which that place may be an element: a mistake inside it explains the
     failure, too, if it is about what the check `looks_at`. A `part` of a `link` may be missing.
@@ -60,7 +61,14 @@ def explain(
     if outcome.problem:  # the check has said it
         return outcome
     mistake, dropping = outcome.mistake or outcome.message, _DROPPING.get(part, ())
-    dropped = next((it for it in problems if it.kind in dropping and it.subject == link), None)
+    dropped = next(
+        (
+            reported
+            for reported in problems
+            if reported.kind in dropping and reported.subject == link
+        ),
+        None,
+    )
     if dropped is not None:
         inner = next(_inside(dropped.location, problems, source), dropped)  # because of this
         message = f"{outcome.message}: {inner.message}"
@@ -69,21 +77,15 @@ def explain(
         )
     place = outcome.location
     at_place = [
-        it
-        for it in problems
-        if it.location == place and _explains(it, outcome, is_part=part in _DROPPING)
+        reported
+        for reported in problems
+        if reported.location == place and _explains(reported, outcome, is_part=part in _DROPPING)
     ]
-    is_of_looks = "material" in looks_at
-    about = [
-        it
-        for it in problems
-        # A misspelt colour explains no shape.
-        if is_of_looks or it.kind is not urdf_problems.MISSPELT or it.subject not in _LOOKS
-    ]
+    inside: list[Problem] = []
     if part not in _OUTSIDE:
-        inside = [*_inside(place, about, source, is_of_link=is_of_looks)]
-    else:
-        inside = []
+        is_of_looks = "material" in looks_at
+        about = problems if is_of_looks else _without_looks(problems)
+        inside += _inside(place, about, source, is_of_link=is_of_looks)
     for problem in problems:
         if problem in at_place or problem in inside:
             message = f"{outcome.message} ({problem.code}: {problem.message})"
@@ -93,9 +95,19 @@ def explain(
     return outcome
 
 
+def _without_looks(problems: Sequence[Problem]) -> list[Problem]:
+    """Return the problems that may explain a shape: a misspelt colour explains none."""
+    return [
+        problem
+        for problem in problems
+        if problem.kind is not urdf_problems.MISSPELT or problem.subject not in _LOOKS
+    ]
+
+
 def _explains(problem: Problem, outcome: Outcome, *, is_part: bool) -> bool:
-    """Return whether a problem at the place of a failure explains it; of a missing part, only what
-    precedes ROS 2.
+    """Return whether a problem at the place of a failure explains it.
+
+    Of a missing part, only what precedes ROS 2.
     """
     if problem.kind.is_before_ros:
         return True
@@ -110,10 +122,13 @@ def _inside(
     *,
     is_of_link: bool = False,
 ) -> Iterator[Problem]:
-    """Yield the problems in the element at a place, or in the link that it is of, that explain what
-    is around them.
+    """Yield the problems around a place that explain what is around them.
+
+    They are in the element at the place, or in the link that it is of.
     """
-    candidates = [it for it in problems if it.kind in _INSIDE and it.location != place]
+    candidates = [
+        reported for reported in problems if reported.kind in _INSIDE and reported.location != place
+    ]
     if place is None or source is None or not candidates:
         return
     offsets = _element_offsets(place, source, is_of_link=is_of_link)
@@ -128,8 +143,9 @@ def _inside(
 
 
 def _element_offsets(place: Location, source: Source, *, is_of_link: bool = False) -> range:
-    """Return the offsets of the element at a place, or of its link; only of the tag if an attribute
-    is there.
+    """Return the offsets of the element at a place, or of its link.
+
+    Only of the tag if an attribute is there.
     """
     if place.path != source.path:
         return range(0)

@@ -1,5 +1,7 @@
-"""Grade a submission: the parts that are graded, the decided criteria, the evidence, and the notes
-of the report.
+"""Grade a submission.
+
+A grading has the parts that are graded, the decided criteria, the evidence, and the notes of the
+report.
 """
 
 from collections.abc import Sequence
@@ -47,8 +49,9 @@ def grade(
     is_one_of_class: bool = False,
     is_explained: bool = True,
 ) -> Report:
-    """Return the report on a submission for all parts of the rubric, or the named ones; raises
-    InputError for others.
+    """Return the report on a submission for all parts of the rubric, or the named ones.
+
+    Raises InputError for others.
 
     A single URDF is graded only on parts that need no more, unless it `is_one_of_class`: a class is
     graded on the same parts. Unless it `is_explained`, no note says what its failures have in
@@ -136,8 +139,9 @@ def _find_problems(
 def _choose_parts(
     rubric: Rubric, submission: Submission, named: Sequence[str], *, is_whole: bool
 ) -> tuple[tuple[str, ...], list[str]]:
-    """Return the graded parts, and notes for the report: what is not whole is graded only on parts
-    that need a URDF.
+    """Return the graded parts, and notes for the report.
+
+    What is not whole is graded only on parts that need a URDF.
     """
     for name in named:
         if rubric.part(name).needs != "urdf" and not is_whole:
@@ -147,25 +151,34 @@ def _choose_parts(
     parts = [part for part in rubric.parts if not named or part.id in named]
     chosen = tuple(part.id for part in parts if part.needs == "urdf" or is_whole)
     notes = [*submission.notes, *_notes_on_xacro(submission)]
-    package, path = submission.package, submission.path
-    if (
-        package is not None
-        and path is not None
-        and not path.startswith(f"{package.folder}/" if package.folder else "")
-    ):
+    if _is_outside_of_package(submission):
         notes.append(_ELSEWHERE)
     skipped = [part.id for part in parts if part.id not in chosen]
     if skipped:
-        only, verb = enumerated(chosen) or "nothing", "need" if len(skipped) > 1 else "needs"
-        notes.append(f"only {only} is graded: {enumerated(skipped)} {verb} the whole folder")
+        notes.append(_note_on_skipped(chosen, skipped))
     return chosen, notes
+
+
+def _note_on_skipped(chosen: Sequence[str], skipped: Sequence[str]) -> str:
+    """Return a note on parts that are not graded because they need more than a URDF."""
+    only, verb = enumerated(chosen) or "nothing", "need" if len(skipped) > 1 else "needs"
+    return f"only {only} is graded: {enumerated(skipped)} {verb} the whole folder"
+
+
+def _is_outside_of_package(submission: Submission) -> bool:
+    """Return whether the graded URDF is not in the folder of the graded package."""
+    package, path = submission.package, submission.path
+    if package is None or path is None:
+        return False
+    return not path.startswith(f"{package.folder}/" if package.folder else "")
 
 
 def _find_evidence(
     rubric: Rubric, submission: Submission, chosen: Sequence[str]
 ) -> "tuple[tuple[EvidenceResult, ...], tuple[EvidenceFile, ...]]":
-    """Return the evidence that the lab asks for, and the other pictures, which neither it nor a
-    criterion names.
+    """Return the evidence that the lab asks for, and the other pictures.
+
+    Neither the lab nor a criterion names these.
     """
     wanted = [evidence for evidence in rubric.evidence if evidence.part in chosen]
     criteria = [row for row in rubric.criteria if row.part in chosen]
@@ -194,8 +207,9 @@ def _find_evidence(
 
 
 def _names_in_criteria(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
-    """Return the names of the criteria about a piece of evidence: a file that counts for a
-    criterion is not missing.
+    """Return the names of the criteria about a piece of evidence.
+
+    A file that counts for a criterion is not missing.
     """
     shown = (
         row.arguments["names"] for row in rubric.criteria if row.check.function is evidence_shown
@@ -204,11 +218,12 @@ def _names_in_criteria(evidence: Evidence, rubric: Rubric) -> tuple[str, ...]:
 
 
 def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) -> str:
-    """Return a note on the documents that may have evidence, but were not read; empty if there are
-    none.
+    """Return a note on the documents that may have evidence, but were not read.
+
+    Empty if there are none.
     """
     if (
-        all(found.files for found in evidence)
+        all(result.files for result in evidence)
         or (documents := submission.readable_documents) is None
     ):
         return ""
@@ -223,8 +238,9 @@ def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) 
 def _explain_by_convention(
     rubric: Rubric, submission: Submission, results: Sequence[Result]
 ) -> tuple[str, frozenset[str]]:
-    """Return a note on frames of the whole robot that are rotated or moved alike, and the criteria
-    that it explains.
+    """Return a note on frames of the whole robot that are rotated or moved alike.
+
+    And the criteria that it explains.
 
     Both are empty if there is nothing to explain. The points stay: the lab says where its frames
     are. The note says that they are lost by one decision, not by many mistakes.

@@ -23,8 +23,9 @@ _NOTHING = Decimal(0)
 
 
 class ManualMark(NamedTuple):
-    """A manual mark or override: the points of a criterion, the name of the grader if given, and a
-    comment.
+    """A manual mark or override.
+
+    It has the points of a criterion, the name of the grader if given, and a comment.
     """
 
     points: Decimal
@@ -40,8 +41,9 @@ class ManualComment(NamedTuple):
 
 
 class Hint(NamedTuple):
-    """A change of the submission that was tried: with it the criteria in `gains` pass, and none
-    that passed fails.
+    """A change of the submission that was tried.
+
+    With it the criteria in `gains` pass, and none that passed fails.
     """
 
     message: str  # the change, in a sentence
@@ -75,8 +77,9 @@ class Result(NamedTuple):
     comment: ManualComment | None = None  # of a grader, without points
 
     def __repr__(self) -> str:
-        """Return the criterion, the status and the points, which is what one wants to see of a list
-        of results.
+        """Return the criterion, the status and the points.
+
+        This is what one wants to see of a list of results.
         """
         return (
             f"<Result {self.criterion.id}: {self.outcome.status}, "
@@ -97,8 +100,9 @@ class Result(NamedTuple):
 
     @property
     def why_given(self) -> str:
-        """Why the outcome does not decide the points: the adjustment, or an error carried forward;
-        empty if it does.
+        """Why the outcome does not decide the points: the adjustment, or an error carried forward.
+
+        Empty if it does.
         """
         if self.manual_mark is not None:
             return ""
@@ -110,8 +114,9 @@ class Result(NamedTuple):
 
     @property
     def is_adjusted(self) -> bool:
-        """Return whether the rubric adjusts the criterion: the outcome and manual marks do not
-        count.
+        """Return whether the rubric adjusts the criterion.
+
+        The outcome and manual marks then do not count.
         """
         return self.criterion.adjustment is not None
 
@@ -138,8 +143,9 @@ class PaidSlip(NamedTuple):
 
 
 class Meant(NamedTuple):
-    """A submission with the words that are meant, the results on it, and the slips that it
-    corrects.
+    """A submission with the words that are meant.
+
+    It has the results on it, and the slips that it corrects.
     """
 
     submission: Submission
@@ -156,8 +162,9 @@ class EvidenceResult(NamedTuple):
 
 
 class Grade(NamedTuple):
-    """A student's grade in a class: the points that count, None if excused, and the late penalty in
-    them (0 or less).
+    """A student's grade in a class.
+
+    It has the points that count, None if excused, and the late penalty in them (0 or less).
 
     `is_final` says that a final mark replaces the points of the criteria.
     """
@@ -212,7 +219,9 @@ class Report(NamedTuple):
 
     @property
     def all_notes(self) -> tuple[str, ...]:
-        """The notes, the first on a robot that looks like another one, the last on hints that are
+        """The notes of the report.
+
+        The first is on a robot that looks like another one, the last on hints that are
         missing.
         """
         notes = list(self.notes)
@@ -229,8 +238,9 @@ class Report(NamedTuple):
 
     @property
     def counting(self) -> Decimal | None:
-        """The points that count for the student: the grade, else the score; None for an excused
-        student.
+        """The points that count for the student: the grade, else the score.
+
+        None for an excused student.
         """
         if self.grade is not None:
             return self.grade.points
@@ -238,15 +248,17 @@ class Report(NamedTuple):
 
     @property
     def is_bare(self) -> bool:
-        """Whether the criteria say nothing: the student is excused, or the submission could not be
-        read.
+        """Whether the criteria say nothing.
+
+        The student is excused, or the submission could not be read.
         """
         return self.counting is None or bool(self.submission.unread and not self.submission.path)
 
     @property
     def open_points(self) -> Decimal:
-        """The points that need manual grading and can change what counts: none with a final mark or
-        an excuse.
+        """The points that need manual grading and can change what counts.
+
+        There are none with a final mark or an excuse.
         """
         is_decided = self.grade is not None and (self.grade.is_final or self.grade.points is None)
         return _NOTHING if is_decided else self.pending
@@ -266,8 +278,9 @@ class Report(NamedTuple):
 
     @property
     def pending_automatic(self) -> list[Result]:
-        """The automatic criteria that need manual grading here, because their subject could not be
-        read.
+        """The automatic criteria that need manual grading here.
+
+        Their subject could not be read.
         """
         return [
             result
@@ -297,8 +310,9 @@ class Report(NamedTuple):
 
     @property
     def fault(self) -> str:
-        """The message of the first failure of a check or the grader, except on adjusted criteria;
-        empty without one.
+        """The message of the first failure of a check or the grader, except on adjusted criteria.
+
+        Empty without one.
         """
         errored = (
             one for one in self.results if one.outcome.status == "errored" and not one.is_adjusted

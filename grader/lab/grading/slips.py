@@ -1,5 +1,6 @@
-"""Grade a submission as its words are meant: one criterion pays for each slip, and the others are
-judged on what the slip surely stands for.
+"""Grade a submission as its words are meant.
+
+One criterion pays for each slip, and the others are judged on what the slip surely stands for.
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -26,8 +27,9 @@ _Results = Mapping[str, Result]
 def judge_as_meant(
     rubric: Rubric, submission: Submission, slips: Sequence[Slip], written: tuple[Result, ...]
 ) -> tuple[tuple[Result, ...], Meant | None]:
-    """Return the results of criteria with each slip of a submission paid by one of them, and what
-    they were judged on. `written` are those on the words as they are written.
+    """Return the results of criteria with each slip of a submission paid by one of them.
+
+    And what they were judged on. `written` are those on the words as they are written.
 
     A slip in a file that ROS 2 loads counts only if no criterion fails with the meant word that
     passes with the written one: what ROS 2 ignores without harm is a comment.
@@ -92,8 +94,10 @@ class _Readings:
         return self._known[key]
 
     def _payer(self, slip: Slip, slips: Sequence[Slip]) -> str | None:
-        """Return the criterion that pays for a slip beside the others; None if it does not count:
-        it changes nothing, or a criterion fails with the word that is meant.
+        """Return the criterion that pays for a slip beside the others.
+
+        None if it does not count: it changes nothing, or a criterion fails with the word
+        that is meant.
         """
         others = [other for other in slips if other is not slip]
         before_submission, before = self._read(others)
@@ -101,18 +105,34 @@ class _Readings:
         changed = []
         for name, result in before.items():
             meant = after[name]
-            is_unpassed = meant.outcome.status != "passed" and not meant.carried
-            if result.outcome.status == "passed" and is_unpassed and not slip.is_refused:
-                return None
-            if result.criterion.check.about.is_of_writing and not slip.is_refused:
-                continue
+            if not slip.is_refused:
+                is_unpassed = meant.outcome.status != "passed" and not meant.carried
+                if result.outcome.status == "passed" and is_unpassed:
+                    return None
+                if result.criterion.check.about.is_of_writing:
+                    continue
             if (result.is_lost or result.is_open) and _is_changed(result, meant):
                 changed.append(result)
+        return self._choose_payer(before_submission, after_submission, before, changed)
+
+    def _choose_payer(
+        self,
+        before_submission: Submission,
+        after_submission: Submission,
+        before: Mapping[str, Result],
+        changed: Sequence[Result],
+    ) -> str | None:
+        """Return the criterion that pays for a slip which changes these results, if there is one.
+
+        The first choice is that the URDF loads, then come failures, then all other results.
+        """
         loading: list[Result] = []
         if _parts_of(before_submission) != _parts_of(after_submission):
-            loading = [it for it in before.values() if it.criterion.check.function is urdf_loads]
+            loading = [
+                payer for payer in before.values() if payer.criterion.check.function is urdf_loads
+            ]
         failed = [result for result in changed if result.outcome.status == "failed"]
-        return next((it.criterion.id for it in (*loading, *failed, *changed)), None)
+        return next((payer.criterion.id for payer in (*loading, *failed, *changed)), None)
 
     def _paid(self, name: str, paid: Sequence[Slip], slips: Sequence[Slip]) -> Result:
         """Return the failure of a criterion that pays for slips."""
@@ -145,8 +165,9 @@ def _correction_text(slips: Iterable[Slip]) -> str:
 
 
 def problems_as_meant(problems: Iterable[Problem], meant: Meant) -> Iterator[Problem]:
-    """Yield the problems of a URDF that are left with the words that are meant, those at these
-    words, and what is assumed about each.
+    """Yield the problems of a URDF that are left with the words that are meant.
+
+    And those at these words, and what is assumed about each.
     """
     urdf = meant.submission.urdf
     problems_left = urdf.problems if isinstance(urdf, Read) else ()

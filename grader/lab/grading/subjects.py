@@ -1,5 +1,6 @@
-"""The objects that checks examine: the URDF of a submission, its robot in a pose, its package,
-the reference.
+"""The objects that checks examine.
+
+They are the URDF of a submission, its robot in a pose, its package, and the reference.
 """
 
 from collections.abc import Mapping
@@ -24,15 +25,17 @@ _SLIDING, _TURNING = ("prismatic",), ("revolute", "continuous")
 
 
 class Subjects:
-    """What of a submission is examined. Raises InputError if a check needs a reference solution
-    that cannot be read.
+    """What of a submission is examined.
+
+    Raises InputError if a check needs a reference solution that cannot be read.
     """
 
     def __init__(
         self, rubric: Rubric, submission: Submission, arguments: Mapping[str, str] | None = None
     ) -> None:
-        """`arguments` are those of launch files, under which the submission and the reference
-        are examined.
+        """Take the arguments of launch files, `arguments`.
+
+        Under them the submission and the reference are examined.
         """
         solution = rubric.solution if rubric.compares_with_reference else None
         if arguments:
@@ -50,18 +53,24 @@ class Subjects:
         if solution is not None:
             self._known["reference"] = self._with_transforms(solution.robot, solution)
         if isinstance(submission.urdf, Read):
-            reading = submission.urdf.reading
-            self.source = reading.source
-            self.problems = reading.problems
-            if reading.is_meant:  # what ROS 2 rejects is corrected
-                remaining = [it for it in reading.problems if it.kind.effect != "rejects"]
-                self.problems = tuple(remaining)
-            if reading.robot is not None:
-                robot = Configuration(reading.robot, is_guarded=bool(reading.unresolved))
-                reading = reading._replace(robot=robot.robot)
-                self.robot = self._with_transforms(robot, submission)
-                self._known["robot"] = self.robot
-            self._known["urdf"] = submission.urdf.as_it_stands or reading
+            self._take_urdf(submission.urdf)
+
+    def _take_urdf(self, urdf: Read) -> None:
+        """Take the URDF of the submission and its robot."""
+        reading = urdf.reading
+        self.source = reading.source
+        self.problems = reading.problems
+        if reading.is_meant:  # what ROS 2 rejects is corrected
+            remaining = [
+                problem for problem in reading.problems if problem.kind.effect != "rejects"
+            ]
+            self.problems = tuple(remaining)
+        if reading.robot is not None:
+            robot = Configuration(reading.robot, is_guarded=bool(reading.unresolved))
+            reading = reading._replace(robot=robot.robot)
+            self.robot = self._with_transforms(robot, self.submission)
+            self._known["robot"] = self.robot
+        self._known["urdf"] = urdf.as_it_stands or reading
 
     def _with_transforms(
         self, robot: Configuration, owner: Submission | ReferenceSolution
@@ -90,8 +99,9 @@ class Subjects:
         return self._under[key]
 
     def of(self, check: Check, criterion: Criterion) -> list[object]:
-        """Return what a check examines for a criterion: its package, and the robot with the joints
-        at its positions.
+        """Return what a check examines for a criterion.
+
+        This is its package, and the robot with the joints at its positions.
 
         Raises MissingElement or NotDecided for what the submission does not have.
         """
@@ -109,26 +119,29 @@ class Subjects:
         return subjects
 
     def _with_package(self, name: str) -> Submission:
-        """Return the submission with another graded package: one for all criteria of the package,
-        so that its names are compared once.
+        """Return the submission with another graded package.
+
+        It is one for all criteria of the package, so that its names are compared once.
         """
         if name not in self._packaged:
             self._packaged[name] = self.submission.with_package(name)
         return self._packaged[name]
 
     def pose_text(self, at: Mapping[str, float]) -> str:
-        """Return the positions of joints that are there: 'joint_2' at 40 degrees and 'slide' at
-        0.1 m.
+        """Return the positions of joints that are there.
+
+        For example: 'joint_2' at 40 degrees and 'slide' at 0.1 m.
         """
         assert self.robot is not None
-        found = joints_at(self.robot, at)
+        joints = joints_at(self.robot, at)
         return enumerated(
-            [f"{quoted(joint.name)} at {point((value,))} {unit}" for joint, value, unit in found]
+            [f"{quoted(joint.name)} at {point((value,))} {unit}" for joint, value, unit in joints]
         )
 
     def named(self, check: Check, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the arguments of a check, which have selectors, with the names of the links that
-        they mean.
+        """Return the arguments of a check with the names of links.
+
+        They have selectors, which mean these links.
 
         A check that compares two robots looks for the links in each of them.
 
@@ -141,10 +154,10 @@ class Subjects:
     def _pose_robot(self, robot: Configuration, at: Mapping[str, float]) -> Configuration:
         key = tuple(at.items())
         if key not in self._posed:
-            found = [(_find_joint(robot, name), value) for name, value in key]
+            joints = [(_find_joint(robot, name), value) for name, value in key]
             positions = {
                 joint.name: radians(value) if joint.type in _TURNING else value
-                for joint, value in found
+                for joint, value in joints
             }
             for name in positions:
                 _check_name(robot, name)
@@ -152,8 +165,9 @@ class Subjects:
         return self._posed[key]
 
     def _needed_subject(self, name: Subject, known: Mapping[Subject, Any]) -> object:
-        """Return the package; raise MissingElement or NotDecided for any other subject that a
-        submission lacks.
+        """Return the package.
+
+        Raise MissingElement or NotDecided for any other subject that a submission lacks.
         """
         if name == "package":
             return known["submission"].needed_package()
@@ -164,8 +178,9 @@ class Subjects:
 
 
 def check_selectors(robot: Configuration, criterion: Criterion) -> None:
-    """Raise MissingElement or NotDecided if a criterion names a link by a place that no link
-    has, or several have.
+    """Raise MissingElement or NotDecided if a selector does not have one link.
+
+    A criterion names a link by a place that no link has, or several have.
     """
     carried = [dict(one.arguments) for one in criterion.carried]
     joints = [*criterion.at, *(name for one in criterion.carried for name in one.at)]
@@ -173,8 +188,9 @@ def check_selectors(robot: Configuration, criterion: Criterion) -> None:
 
 
 def joints_at(robot: Configuration, at: Mapping[str, float]) -> list[tuple[Joint, float, str]]:
-    """Return the joints that a criterion puts at positions, each with the position and its unit, m
-    or degrees.
+    """Return the joints that a criterion puts at positions.
+
+    Each has the position and its unit, m or degrees.
 
     Raises MissingElement or NotDecided for one that is not there.
     """
@@ -183,17 +199,18 @@ def joints_at(robot: Configuration, at: Mapping[str, float]) -> list[tuple[Joint
 
 
 def _find_joint(robot: Configuration, name: str) -> Joint:
-    """Return a joint that turns or slides, by its name or by a selector of the link that it
-    moves.
+    """Return a joint that turns or slides.
+
+    It is found by its name or by a selector of the link that it moves.
     """
     named = name
     if not robot.robot.has_joint(name):
         named = robot.selected_name(name)
     if named != name and not name.startswith(JOINT_OF):
-        found = robot.parent_joints.get(named)
-        if found is None:
+        joint_above = robot.parent_joints.get(named)
+        if joint_above is None:
             raise MissingElement("joint", name, message=f"no joint moves {name}")
-        return found
+        return joint_above
     joint = robot.joint(named)
     if joint.type not in (*_TURNING, *_SLIDING):
         at = joint.location and joint.location._replace(attribute="type")
@@ -217,14 +234,15 @@ def without_selectors(value: Any, robot: Configuration) -> Any:
 
 
 def _check_name(robot: Configuration, name: str) -> None:
-    """Raise MissingElement if several joints with this name turn or slide: positions are given by
-    the joint's name.
+    """Raise MissingElement if several joints with this name turn or slide.
+
+    Positions are given by the joint's name.
     """
-    found = [
+    joints = [
         joint
         for joint in robot.known.joints
         if joint.name == name and joint.type in (*_TURNING, *_SLIDING)
     ]
-    if len(found) > 1:
-        message = f"{len(found)} joints are called {quoted(name)}; each needs a name of its own"
-        raise MissingElement("own name", name, message=message, location=found[1].location)
+    if len(joints) > 1:
+        message = f"{len(joints)} joints are called {quoted(name)}; each needs a name of its own"
+        raise MissingElement("own name", name, message=message, location=joints[1].location)

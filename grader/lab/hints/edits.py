@@ -47,8 +47,9 @@ class Proposal(NamedTuple):
 
 
 class FoundHint(NamedTuple):
-    """What a hint says: an edit that gains points when it is graded, or words for a part that is
-    missing.
+    """What a hint says.
+
+    This is an edit that gains points when it is graded, or words for a part that is missing.
     """
 
     proposal: Proposal

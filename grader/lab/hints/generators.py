@@ -1,5 +1,6 @@
-"""The generators of hints: what may undo a mistake of a robot or a package, in the order in which
-it is tried.
+"""The generators of hints, in the order in which they are tried.
+
+They yield what may undo a mistake of a robot or a package.
 
 `STAGES` is the list. A stage gets the situation and the criteria that still lose points, and yields
 generators of proposals, each of one kind. The search grades all proposals of a stage before it
@@ -46,8 +47,9 @@ _MAX_SIMILAR = 2
 
 
 class Situation:
-    """A submission beside the reference solution; `draft` is its robot, and `difference` that to
-    the reference's.
+    """A submission beside the reference solution.
+
+    `draft` is its robot, and `difference` that to the reference's.
     """
 
     def __init__(
@@ -57,8 +59,9 @@ class Situation:
         reference: Draft | None,
         package: "Callable[[str], Package | None]",
     ) -> None:
-        """`wanted` are the links that the rubric names, `reference` and `package` give the robot
-        and packages of it.
+        """Take the robots, and the links that the rubric names, `wanted`.
+
+        `reference` and `package` give the robot and packages of the reference solution.
         """
         self.submission, self.reference_package = submission, package
         self.reading: Reading | None = None
@@ -79,8 +82,9 @@ class Situation:
 
     @cached_property
     def has_reversed(self) -> bool:
-        """Whether the parent and the child of a joint are exchanged: the poses around it are no
-        ones to correct.
+        """Whether the parent and the child of a joint are exchanged.
+
+        The poses around it are then none to correct.
         """
         return self.difference is not None and bool(reversed_joints(self.difference))
 
@@ -110,8 +114,9 @@ Stage = Callable[[Situation, _Lost], Iterator[Iterable[Proposal]]]
 
 
 def _reference_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Proposal]]:
-    """What undoes a slip, then what differs from the other side of the robot, and from the
-    reference.
+    """Yield what undoes a slip, then what differs from elsewhere.
+
+    First from the other side of the robot, then from the reference.
     """
     draft, difference = situation.draft, situation.difference
     subjects = {criterion.check.subject for criterion in lost}
@@ -122,11 +127,8 @@ def _reference_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Pro
         links = _links_of(lost, difference)
         yield draft.corrections([*difference.names, *JOINT_TYPES])
         yield _proposals(situation, situation.exchanges)
-        pieces = difference.pieces
-        if links is not None:
-            # Those of the links that criteria name come first: there may be more than can be tried.
-            order = {link: index for index, link in enumerate(links)}
-            pieces = sorted(pieces, key=lambda piece: order.get(piece.link, len(order)))
+        # Those of the links that criteria name come first: there may be more than can be tried.
+        pieces = _pieces_by_link(difference.pieces, links or [])
         yield _proposals(situation, pieces, links)
         # these rarely find a mistake
         yield _proposals(situation, in_another_unit(difference))
@@ -145,7 +147,10 @@ def _package_edits(situation: Situation, lost: _Lost) -> Iterator[Iterable[Propo
             # Late: a robot on its own needs none.
             from grader.lab.hints.package_edits import package_proposals
 
-            wanted = [(it.check.about.looks_at, it.arguments) for it in criteria]
+            wanted = [
+                (lost_criterion.check.about.looks_at, lost_criterion.arguments)
+                for lost_criterion in criteria
+            ]
             reference = situation.reference_package(name)
             yield from package_proposals(submission.package, reference, wanted)
         yield from _name_edits(situation, criteria)
@@ -201,6 +206,13 @@ STAGES: tuple[Stage, ...] = (
 )
 
 
+def _is_left_out(piece: Piece, situation: Situation, links: Collection[str] | None) -> bool:
+    """Return whether a piece is of another link that the robot has, or a pose that is right."""
+    if situation.has_reversed and piece.is_pose:
+        return True
+    return links is not None and piece.link not in links and situation.is_known(piece.link)
+
+
 def _proposals(
     situation: Situation, pieces: Iterable[Piece], links: Collection[str] | None = None
 ) -> Iterator[Proposal]:
@@ -208,9 +220,7 @@ def _proposals(
     draft = situation.draft
     assert draft is not None
     for piece in pieces:
-        if situation.has_reversed and piece.is_pose:
-            continue
-        if links is not None and piece.link not in links and situation.is_known(piece.link):
+        if _is_left_out(piece, situation, links):
             continue
         shared = draft.shared(piece.sets)
         for way, edits in enumerate(draft.ways(piece.sets)):
@@ -219,9 +229,16 @@ def _proposals(
                 yield Proposal(every, piece.cause, piece.link, piece.rank, way, shared)
 
 
+def _pieces_by_link(pieces: Iterable[Piece], links: Sequence[str]) -> list[Piece]:
+    """Return the pieces in the order of these links; those of other links are last."""
+    order = {link: index for index, link in enumerate(links)}
+    return sorted(pieces, key=lambda piece: order.get(piece.link, len(order)))
+
+
 def _links_of(criteria: Iterable[Criterion], difference: RobotDifference) -> list[str] | None:
-    """Return the links whose joints and shapes decide criteria, with all above them; None if all
-    may.
+    """Return the links whose joints and shapes decide criteria, with all above them.
+
+    None if all may.
     """
     links: dict[str, None] = {}
     robot, reference = difference.draft.robot, difference.reference.robot
@@ -229,11 +246,8 @@ def _links_of(criteria: Iterable[Criterion], difference: RobotDifference) -> lis
     for criterion in criteria:
         if criterion.check.subject not in ("urdf", "robot"):
             continue
-        named = []
-        for text in texts_in(criterion.arguments):
-            name = posed.selected_or_name(text)
-            if reference.has_link(name) or robot.has_link(name):
-                named.append(name)
+        in_arguments = map(posed.selected_or_name, texts_in(criterion.arguments))
+        named = [name for name in in_arguments if reference.has_link(name) or robot.has_link(name)]
         if not named:
             return None
         for name in named:
@@ -308,11 +322,15 @@ def _with_xacro(submission: Submission) -> Iterator[Proposal]:
 def leaves_others(
     shared: Collection[str], passing: Iterable[Criterion], lost: Collection[Criterion]
 ) -> bool:
-    """Return whether a criterion that passes for one call of a macro still fails for another
-    one.
+    """Return whether a criterion of one call of a macro fails for another one.
+
+    It passes for the first call.
     """
     functions = {criterion.check.function for criterion in passing} if shared else set()
-    return any(it.check.function in functions and it.arguments.get("link") in shared for it in lost)
+    return any(
+        criterion.check.function in functions and criterion.arguments.get("link") in shared
+        for criterion in lost
+    )
 
 
 def missing_hints(
@@ -321,28 +339,15 @@ def missing_hints(
     criteria: Mapping[str, Criterion],
     lost: Mapping[str, Decimal],
 ) -> dict[str, FoundHint]:
-    """Return a hint in words for each missing link with its joint, by the costliest criterion that
-    it costs.
+    """Return a hint in words for each missing link with its joint.
+
+    It is at the costliest criterion that the link costs.
 
     `difference` is that of the robot after all edits, `written` is the robot before them.
     """
     if difference is None or written is None or difference.draft is difference.reference:
         return {}
-    hints: dict[str, FoundHint] = {}
-    # links first, each with its joints
-    left = sorted(difference.missing, key=lambda part: part.tag, reverse=True)
-    while left:
-        link, is_link = left[0].link, left[0].tag == "link"
-        parts = [part for part in left if part.link == link or (is_link and part.parent == link)]
-        left = [part for part in left if part not in parts]
-        names = [
-            name for name in lost if name not in hints and criteria[name].check.subject == "robot"
-        ]
-        about_link = [name for name in names if criteria[name].arguments.get("link") == link]
-        if not about_link:
-            about_link = [name for name in names if link in texts_in(criteria[name].arguments)]
-        if about_link:
-            hints[max(about_link, key=lambda name: lost[name])] = _hint_of_parts(written, parts)
+    hints = _hints_of_links(difference, written, criteria, lost)
     loading = [name for name in lost if criteria[name].check.subject == "urdf"]
     joints = _missing_joints(difference)
     if not loading or not joints:
@@ -350,12 +355,48 @@ def missing_hints(
     if len(joints) == 1:
         # The URDF does not load without it: one criterion says so, no other one.
         hints = {name: hint for name, hint in hints.items() if hint.proposal.link != joints[0].link}
-        hints[loading[0]] = _hint_of_parts(written, joints)
-    else:
-        lacking = enumerated([repr(part.link) for part in joints], MAX_IN_HINT)
-        cause = f"the joints of {lacking} are missing"
-        hints[loading[0]] = FoundHint(Proposal((), cause), {}, words=f"add the joints of {lacking}")
+    hints[loading[0]] = _hint_of_joints(written, joints)
     return hints
+
+
+def _hints_of_links(
+    difference: RobotDifference,
+    written: Draft,
+    criteria: Mapping[str, Criterion],
+    lost: Mapping[str, Decimal],
+) -> dict[str, FoundHint]:
+    """Return a hint for each missing link with its joints, by the criterion that shows it."""
+    hints: dict[str, FoundHint] = {}
+    # links first, each with its joints
+    left = sorted(difference.missing, key=lambda part: part.tag, reverse=True)
+    while left:
+        link, is_link = left[0].link, left[0].tag == "link"
+        parts = [part for part in left if part.link == link or (is_link and part.parent == link)]
+        left = [part for part in left if part not in parts]
+        about_link = _criteria_about(link, [name for name in lost if name not in hints], criteria)
+        if about_link:
+            hints[max(about_link, key=lambda name: lost[name])] = _hint_of_parts(written, parts)
+    return hints
+
+
+def _criteria_about(
+    link: str, names: Sequence[str], criteria: Mapping[str, Criterion]
+) -> list[str]:
+    """Return the criteria of the robot that examine a link, else those that name it anywhere."""
+    of_robot = [name for name in names if criteria[name].check.subject == "robot"]
+    about_link = [name for name in of_robot if criteria[name].arguments.get("link") == link]
+    if about_link:
+        return about_link
+    return [name for name in of_robot if link in texts_in(criteria[name].arguments)]
+
+
+def _hint_of_joints(written: Draft, joints: list[MissingPart]) -> FoundHint:
+    """Return the hint on missing joints without which the URDF does not load."""
+    if len(joints) == 1:
+        return _hint_of_parts(written, joints)
+    lacking = enumerated([repr(part.link) for part in joints], MAX_IN_HINT)
+    cause = f"the joints of {lacking} are missing"
+    return FoundHint(Proposal((), cause), {}, words=f"add the joints of {lacking}")
 
 
 def _missing_joints(difference: RobotDifference) -> list[MissingPart]:

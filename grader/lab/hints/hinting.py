@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from functools import partial
-from itertools import takewhile
+from itertools import chain, takewhile
 from typing import TYPE_CHECKING, NamedTuple, cast
 
 from grader.base.errors import InputError
@@ -33,8 +33,9 @@ _MAX_TEXT = 240  # characters of a changed text
 
 
 class _HintedReport(NamedTuple):
-    """A report with hints, the edits of all that fit together, and the types of exceptions that
-    cost other hints.
+    """A report with hints, and the edits of all that fit together.
+
+    It also has the types of exceptions that cost other hints.
     """
 
     report: Report
@@ -43,8 +44,9 @@ class _HintedReport(NamedTuple):
 
 
 class FixedFiles(NamedTuple):
-    """The files of a submission that all proven edits change, None for one that is gone, and the
-    report on the result.
+    """The files of a submission that all proven edits change, and the report on the result.
+
+    A file that is gone is None.
 
     `why_nothing` says why there are none.
     """
@@ -55,8 +57,9 @@ class FixedFiles(NamedTuple):
 
 
 def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedReport:
-    """Return a report with proven hints for criteria that failed; without any where the search
-    would take long.
+    """Return a report with proven hints for criteria that failed.
+
+    Without any where the search would take long.
     """
     if submission.is_costly:
         return _HintedReport(report, (), [])
@@ -69,38 +72,54 @@ def hinted(report: Report, submission: Submission, level: HintLevel) -> _HintedR
     costs = costs_of(results)
     # Of several hints with which a criterion passes, it shows the first.
     shown: dict[str, FoundHint] = {}
-    for found in reversed(search.found):
-        shown |= dict.fromkeys(found.gains, found)
-    showing = [found for found in search.found if found.gains]
-    entries = {found.edits: _entry(found, shown, results, costs) for found in showing}
+    for found_hint in reversed(search.found):
+        shown |= dict.fromkeys(found_hint.gains, found_hint)
+    showing = [found_hint for found_hint in search.found if found_hint.gains]
+    entries = {
+        found_hint.edits: _entry(found_hint, shown, results, costs) for found_hint in showing
+    }
     hints: dict[str, Hint] = {}
-    for name, found in {**search.missing, **shown}.items():
-        if found in slips and found.words:
+    for name, found_hint in {**search.missing, **shown}.items():
+        if found_hint in slips and found_hint.words:
             continue  # the message says what is missing, and the student writes it
         with trials.isolated():
-            entry = entries.get(found.edits, name)
-            earlier = _entries_of(found.after, entries)
-            # A hint that is shown at a skipped criterion is not where a reader would look for it.
-            named = [it for it in earlier if results[it].outcome.status == "failed"]
-            in_order = _first_at(found, results[entry].outcome.location)
-            text = message(in_order, level, submission, named)
-            keeps_edits = level == "edit" and not found.words
-            if keeps_edits and any(map(_loses_expression, in_order.edits)):
-                # The student writes an expression, which no program has graded.
-                keeps_edits = False
-                in_order = in_order._replace(gains={})
-            hint = _hint(in_order, text, entry, results[name], keeps_edits=keeps_edits)
-            hints[name] = hint._replace(after=earlier)
+            hints[name] = _hint_for(name, found_hint, entries, results, level, submission)
     if level == "edit":
-        others = [name for name in costs if name not in hints and name not in entries.values()]
+        shown_at = {*hints, *entries.values()}
+        others = [results[name] for name in costs if name not in shown_at]
         with trials.isolated():
-            hints |= _hints_of_others([results[name] for name in others], search, entries)
+            hints |= _hints_of_others(others, search, entries)
     with_hints = [result._replace(hint=hints.get(result.criterion.id)) for result in report.results]
     report = report._replace(results=tuple(with_hints), hints_complete=search.is_complete)
-    edits: list[Edit] = []
-    for found in _written(search.found):
-        edits += found.edits
+    edits = chain.from_iterable(found_hint.edits for found_hint in _written(search.found))
     return _HintedReport(report, tuple(edits), trials.faults)
+
+
+def _hint_for(
+    name: str,
+    found_hint: FoundHint,
+    entries: Mapping[Edits, str],
+    results: Mapping[str, Result],
+    level: HintLevel,
+    submission: Submission,
+) -> Hint:
+    """Return the hint of a criterion in the words of a level.
+
+    `entries` are the criteria that show the hints with these edits.
+    """
+    entry = entries.get(found_hint.edits, name)
+    earlier = _entries_of(found_hint.after, entries)
+    # A hint that is shown at a skipped criterion is not where a reader would look for it.
+    named = [shown for shown in earlier if results[shown].outcome.status == "failed"]
+    in_order = _first_at(found_hint, results[entry].outcome.location)
+    text = message(in_order, level, submission, named)
+    keeps_edits = level == "edit" and not found_hint.words
+    if keeps_edits and any(map(_loses_expression, in_order.edits)):
+        # The student writes an expression, which no program has graded.
+        keeps_edits = False
+        in_order = in_order._replace(gains={})
+    hint = _hint(in_order, text, entry, results[name], keeps_edits=keeps_edits)
+    return hint._replace(after=earlier)
 
 
 def _hints_of_others(
@@ -123,13 +142,14 @@ def _entries_of(hints_edits: Iterable[Edits], entries: Mapping[Edits, str]) -> t
     return tuple(dict.fromkeys(entries[edits] for edits in hints_edits if edits in entries))
 
 
-def _written(found: Sequence[FoundHint]) -> list[FoundHint]:
-    """Return the hints whose edits may be written: none that is left to words, and none that
-    needs it.
+def _written(hints: Sequence[FoundHint]) -> list[FoundHint]:
+    """Return the hints whose edits may be written.
+
+    None of them is left to words, and none needs such a hint.
     """
     kept: list[FoundHint] = []
     cut: set[Edits] = set()
-    for one in found:
+    for one in hints:
         is_left_to_words = bool(one.words) or any(map(_loses_expression, one.edits))
         if is_left_to_words or not cut.isdisjoint(one.after):
             cut.add(one.edits)
@@ -139,24 +159,25 @@ def _written(found: Sequence[FoundHint]) -> list[FoundHint]:
 
 
 def _loses_expression(edit: Edit) -> bool:
-    """Return whether an edit writes a value in place of an expression of xacro: which one is
-    better, a person knows.
+    """Return whether an edit writes a value in place of an expression of xacro.
+
+    Which one is better, a person knows.
     """
     if not edit.new or not edit.path.endswith(ROBOT_ENDINGS):
         return False
     return edit.old.count("$") > edit.new.count("$")
 
 
-def fixed(found: _HintedReport, submission: Submission) -> FixedFiles:
+def fixed(hinted_report: _HintedReport, submission: Submission) -> FixedFiles:
     """Return the files with all proven edits that fit together, graded again."""
-    report, why_nothing = found.report, "no edit that was tried gains points"
+    report, why_nothing = hinted_report.report, "no edit that was tried gains points"
     if not report.hints_complete:
         why_nothing = "the search for edits ended at its limit before it found one"
-    if found.faults:
+    if hinted_report.faults:
         why_nothing = "the search for edits failed"
     if submission.is_costly:
         why_nothing = "the submission is too large to search for edits"
-    files = edited_files(submission, found.edits) or {}
+    files = edited_files(submission, hinted_report.edits) or {}
     after = with_files(submission, files) if files else submission
     return FixedFiles(
         files,
@@ -166,27 +187,28 @@ def fixed(found: _HintedReport, submission: Submission) -> FixedFiles:
 
 
 def _entry(
-    found: FoundHint,
+    hint: FoundHint,
     shown: Mapping[str, FoundHint],
     results: Mapping[str, Result],
     costs: Mapping[str, Decimal],
 ) -> str:
-    """Return the criterion that shows a hint in a report: the one at the line that is edited,
-    else the costliest.
+    """Return the criterion that shows a hint in a report.
+
+    This is the one at the line that is edited, else the costliest.
     """
 
     def rank(name: str) -> tuple[bool, bool, bool, Decimal]:
-        where, edit = results[name].outcome.location, found.edits[0]
+        where, edit = results[name].outcome.location, hint.edits[0]
         is_there = where is not None and (where.path, where.line) == (edit.path, edit.line)
         is_of_robot = results[name].criterion.check.subject != "urdf"
-        cost = costs.get(name, found.gains[name])
+        cost = costs.get(name, hint.gains[name])
         return name not in costs, not is_there, is_of_robot, -cost
 
-    showing = [name for name in found.gains if shown.get(name) is found]
-    return min(showing or found.gains, key=rank)
+    showing = [name for name in hint.gains if shown.get(name) is hint]
+    return min(showing or hint.gains, key=rank)
 
 
-def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
+def _first_at(hint: FoundHint, where: Location | None) -> FoundHint:
     """Return a hint with the edits in the line of the failure first, and imports last."""
     place = (where.path, where.line) if where is not None else None
 
@@ -195,20 +217,20 @@ def _first_at(found: FoundHint, where: Location | None) -> FoundHint:
         is_elsewhere = (edit.path, edit.line) != place
         return is_import, is_elsewhere, edit.path, edit.line, edit.column
 
-    edits = sorted(found.proposal.edits, key=rank)
-    return found._replace(proposal=found.proposal._replace(edits=tuple(edits)))
+    edits = sorted(hint.proposal.edits, key=rank)
+    return hint._replace(proposal=hint.proposal._replace(edits=tuple(edits)))
 
 
-def _hint(found: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:
+def _hint(hint: FoundHint, text: str, shown_by: str, result: Result, *, keeps_edits: bool) -> Hint:
     at = result.outcome.location or Location("", 1, 1)
-    if found.edits:  # of two alternatives, there are none
-        first, where = found.edits[0], result.outcome.location
+    if hint.edits:  # of two alternatives, there are none
+        first, where = hint.edits[0], result.outcome.location
         # A line that is missing has no place of its own.
         is_line = "\n" in first.new and not first.old and not first.path.endswith(ROBOT_ENDINGS)
         if not (is_line and where is not None and where.path == first.path):
             at = Location(first.path, first.line, first.column)
-    shown = (found.edits, found.proposal.cause) if keeps_edits else ((), "")
-    return Hint(text, at, found.gains, *shown, shown_by, found.certainty)
+    shown = (hint.edits, hint.proposal.cause) if keeps_edits else ((), "")
+    return Hint(text, at, hint.gains, *shown, shown_by, hint.certainty)
 
 
 def _draft(reference: ReferenceSolution | None) -> Draft | None:
@@ -221,8 +243,9 @@ def _draft(reference: ReferenceSolution | None) -> Draft | None:
 
 
 def _package(reference: ReferenceSolution | None, name: str) -> "Package | None":
-    """Return the package of the reference solution, or that of this name if the rubric has
-    several.
+    """Return the package of the reference solution.
+
+    If the rubric has several, the one of this name.
     """
     if reference is None:
         return None
@@ -234,34 +257,35 @@ def _package(reference: ReferenceSolution | None, name: str) -> "Package | None"
 
 
 def message(
-    found: FoundHint, level: HintLevel, submission: Submission, earlier: Sequence[str]
+    hint: FoundHint, level: HintLevel, submission: Submission, earlier: Sequence[str]
 ) -> str:
-    """Return the hint in a sentence, which need not name the URDF. `earlier` are criteria whose
-    hints come first.
+    """Return the hint in a sentence, which need not name the URDF.
+
+    `earlier` are criteria whose hints come first.
     """
-    text = _clause(found, level, submission)
+    text = _clause(hint, level, submission)
     if earlier:
         edits = "edits" if len(earlier) > 1 else "edit"
         return f"After the {edits} for {enumerated(earlier, MAX_IN_HINT)}, {text}."
     return f"{text[0].upper()}{text[1:]}."
 
 
-def _clause(found: FoundHint, level: HintLevel, submission: Submission) -> str:
-    if found.words:
-        words = {"edit": found.words, "cause": found.proposal.cause}
+def _clause(hint: FoundHint, level: HintLevel, submission: Submission) -> str:
+    if hint.words:
+        words = {"edit": hint.words, "cause": hint.proposal.cause}
         return words.get(level, "a part is missing")
-    if found.alternative is not None:
-        first = _clause(found._replace(alternative=None), level, submission)
-        other_found = found._replace(proposal=found.alternative, alternative=None)
+    if hint.alternative is not None:
+        first = _clause(hint._replace(alternative=None), level, submission)
+        other_found = hint._replace(proposal=hint.alternative, alternative=None)
         second = _clause(other_found, level, submission)
         if first == second:
             return first
         return f"{first}, or {second}: both work, so look which one is meant"
     if level == "edit":
-        return _changes(found.edits, submission)
+        return _changes(hint.edits, submission)
     if level == "cause":
-        return f"check {_places(found.edits, submission)}: {found.proposal.cause}"
-    return f"check {_texts_to_check(found.edits, submission)}"
+        return f"check {_places(hint.edits, submission)}: {hint.proposal.cause}"
+    return f"check {_texts_to_check(hint.edits, submission)}"
 
 
 def _changes(edits: Sequence[Edit], submission: Submission) -> str:
@@ -327,8 +351,9 @@ def _at(place: Location | Edit, main: str | None) -> str:
 
 
 def _moves(edits: Sequence[Edit], submission: Submission) -> list[str]:
-    """Return two changes in words if they exchange texts, or if a text is removed at one place and
-    added at another.
+    """Return two changes in words if they belong together.
+
+    They exchange texts, or a text is removed at one place and added at another.
     """
     if len(edits) != 2:
         return []
@@ -407,8 +432,9 @@ def _common_start(one: Sequence[str], other: Sequence[str]) -> int:
 
 
 def _is_whole(text: str) -> bool:
-    """Return whether a text has no line break, both brackets and both quotes of each pair, and no
-    comma before it.
+    """Return whether a text is a whole.
+
+    It has no line break, both brackets and both quotes of each pair, and no comma before it.
     """
     is_balanced = all(text.count(one) == text.count(other) for one, other in ("()", "[]", "{}"))
     is_quoted = text.count("'") % 2 == text.count('"') % 2 == 0
@@ -434,8 +460,9 @@ def _insertion(edit: Edit, submission: Submission) -> str:
 
 
 def _where(edit: Edit, submission: Submission) -> str:
-    """Return the line of an edit, and which of the texts in it is meant if it is there several
-    times.
+    """Return the line of an edit, and which text in it is meant.
+
+    The latter if the text is there several times.
     """
     line, place = _line(edit, submission), _at(edit, submission.path)
     number = line.count(edit.old) if edit.old else 0

@@ -1,5 +1,6 @@
-"""Edits of names that do not agree, where they are used or where they are defined, and of values of
-parameters.
+"""Edits of names that do not agree, and of values of parameters.
+
+Names are edited where they are used or where they are defined.
 """
 
 import re
@@ -30,8 +31,9 @@ _FROM_TO = re.compile(
 def name_proposals(
     submission: Submission, family: Family, reference: Package | None
 ) -> Iterator[Proposal]:
-    """Yield the edits with which the names of a family agree: one for all of them, else one for
-    each.
+    """Yield the edits with which the names of a family agree.
+
+    This is one for all of them, else one for each.
 
     Of two names the one is kept that more places write, in the submission or else in the reference;
     if as many do, both ways are proposed. A name that a file puts together from pieces has none.
@@ -45,7 +47,7 @@ def name_proposals(
     yield from chain.from_iterable(proposals)
     if family == "topics":
         yield from chain.from_iterable(map(_exchanged_remappings, name_fixes.sources))
-    best = [it for it in chain.from_iterable(proposals) if it.rank == 0]
+    best = [proposal for proposal in chain.from_iterable(proposals) if proposal.rank == 0]
     counts = range(2, len(proposals) + 1) if len(proposals) <= _MAX_WRONG else [len(proposals)]
     for count in counts:
         for chosen in combinations(best, count):
@@ -78,8 +80,9 @@ class _Spelling(NamedTuple):
     pattern: str  # {} stands for the name
 
     def preference(self, new: str, old: str) -> int:
-        """Return by how much more often one name is written than the other; 0 if neither text
-        tells.
+        """Return by how much more often one name is written than the other.
+
+        0 if neither text tells.
         """
         text, text_of_reference = self.texts
         count_of_new = self._count(new, text)
@@ -107,8 +110,9 @@ def _ways(fixes: Sequence[Fix], spelling: _Spelling) -> Iterator[Proposal]:
 
 
 def _exchanged_remappings(source: Source) -> Iterator[Proposal]:
-    """Yield the edits that exchange both names of a remapping in a launch file: it may be written
-    backward.
+    """Yield the edits that exchange both names of a remapping in a launch file.
+
+    It may be written backward.
     """
     pairs: list[re.Match[str]] = []
     for remappings in _REMAPPINGS.finditer(source.text):
@@ -120,8 +124,9 @@ def _exchanged_remappings(source: Source) -> Iterator[Proposal]:
 
 
 def value_proposals(submission: Submission, wanted: Mapping[str, Any]) -> Iterator[Proposal]:
-    """Yield the edit that gives a parameter the value that `parameter_is` asks for, where one is
-    written plainly.
+    """Yield the edit that gives a parameter the value that `parameter_is` asks for.
+
+    Only where a value is written plainly.
     """
     name, meant = wanted["parameter"], wanted.get("value")
     try:

@@ -74,8 +74,9 @@ def package_proposals(
     reference: Package | None,
     wanted: Iterable[tuple[tuple[str, ...], Mapping[str, Any]]],
 ) -> Iterator[Iterator[Proposal]]:
-    """Yield edits of a package for checks, by the kinds of files: what each check looks at, with
-    its arguments.
+    """Yield edits of a package for checks, by the kinds of files.
+
+    The kinds are what each check looks at, with its arguments.
     """
     kinds: dict[str, None] = {}
     given: set[str] = set()
@@ -90,8 +91,9 @@ def package_proposals(
 
 
 def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
-    """Yield the best proposals for a kind of files, each edit once: a later one says better what
-    changes.
+    """Yield the best proposals for a kind of files, each edit once.
+
+    A later one says better what changes.
     """
     proposals: dict[Edits, Proposal] = {}
     for proposal in islice(_proposals_of_kind(task, kind), _MAX_MADE):
@@ -102,8 +104,9 @@ def _best_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
 
 
 def _proposals_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
-    """Yield edits of the file of a kind, and those that rename or create one; without a kind, of
-    the package's name.
+    """Yield edits of the file of a kind, and those that rename or create one.
+
+    Without a kind, of the package's name.
     """
     if not kind:
         yield from package_names(task, task.package.wanted_name or task.package.share.split("/")[1])
@@ -122,8 +125,10 @@ def _proposals_of_kind(task: PackageTask, kind: str) -> Iterator[Proposal]:
 def _proposals_of_file(
     task: PackageTask, kind: str, source: Source, path: str, like: str | None
 ) -> Iterator[Proposal]:
-    """Yield the edits of a file: its difference to the reference, its syntax, its names, its
-    paths and its words.
+    """Yield the edits of a file.
+
+    They are about its difference to the reference, its syntax, its names, its paths and its
+    words.
     """
     what, wanted = WHAT.get(kind, kind), task.wanted(like) or ""
     removed = [span for conflict in find_conflicts(source.text) for span in conflict.removed]
@@ -204,8 +209,9 @@ def _replace_words(
 
 
 def _slip(word: str, known: Iterable[str]) -> str | None:
-    """Return the known word that a slip of the hand makes this one: a letter or two more, less,
-    other or swapped.
+    """Return the known word that a slip of the hand makes this one.
+
+    A slip is a letter or two more, less, other or swapped.
     """
     similar = [other for other in known if abs(len(other) - len(word)) <= _MAX_MORE]
     guess = closest(word, similar)
@@ -214,21 +220,22 @@ def _slip(word: str, known: Iterable[str]) -> str | None:
 
 
 def _reword(source: Source, file: PythonFile, wanted: str, what: str) -> Iterator[Proposal]:
-    """Yield edits that undo one difference each between a file and the text that it should have,
-    if there are few.
+    """Yield edits that undo one difference each between a file and its proper text.
+
+    Only if there are few.
     """
     start_of_text = int(source.text.startswith("\ufeff"))
-    own = _TOKEN.findall(source.text[start_of_text:])
+    own_tokens = _TOKEN.findall(source.text[start_of_text:])
     right = _TOKEN.findall(wanted)
-    if len(own) + len(right) > _MAX_TOKENS:
+    if len(own_tokens) + len(right) > _MAX_TOKENS:
         return
-    matcher = SequenceMatcher(None, own, right, autojunk=False)
+    matcher = SequenceMatcher(None, own_tokens, right, autojunk=False)
     changes = [opcode for opcode in matcher.get_opcodes() if opcode[0] != "equal"]
     if len(changes) > _MAX_DIFFERENCES:
         return
     for _, first, last, start, end in changes:
-        offset = start_of_text + len("".join(own[:first]))
-        old, new = "".join(own[first:last]), "".join(right[start:end])
+        offset = start_of_text + len("".join(own_tokens[:first]))
+        old, new = "".join(own_tokens[first:last]), "".join(right[start:end])
         edit = source.edit(offset, offset + len(old), new)
         written = in_backticks([old.strip(_AROUND_TEXTS)])
         yield change([edit], written or _missing_in_words(file, offset, new), what)
@@ -253,8 +260,9 @@ def _missing_in_words(file: PythonFile, offset: int, new: str) -> str:
 
 
 def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
-    """Yield edits that give a key of YAML, or an attribute of XML, a value that the reference
-    has for it.
+    """Yield edits that give a key or an attribute a value of the reference.
+
+    A key of YAML, or an attribute of XML.
     """
     known: dict[str, list[str]] = {}
     for setting in _SETTING.finditer(wanted):
@@ -269,8 +277,9 @@ def _other_values(source: Source, wanted: str, what: str) -> Iterator[Proposal]:
 
 
 def _undefined_names(file: PythonFile, what: str) -> Iterator[Proposal]:
-    """Yield edits that import or correct names that are undefined, or not as they are used; and
-    missing commas.
+    """Yield edits that import or correct names, and missing commas.
+
+    The names are undefined, or not as they are used.
     """
     if file.fault is not None:
         start = file.source.offset(file.fault.location.line, 1)
@@ -332,10 +341,18 @@ def _missing_calls(file: PythonFile, what: str) -> Iterator[Proposal]:
         elif isinstance(node, ast.Attribute):
             inside.add(node.value)
     attributes = [node for node in file.nodes if isinstance(node, ast.Attribute)]
-    read = [node for node in attributes if isinstance(node.ctx, ast.Load)]
-    for method in [node for node in read if node not in inside][:_MAX_WORDS]:
+    outside = [node for node in attributes if node not in inside and isinstance(node.ctx, ast.Load)]
+    for method in outside[:_MAX_WORDS]:
         edit = file.replaced(method, f"{file.segment(method)}()")
         yield change([edit], f"`{method.attr}` without ()", what)
+
+
+def _find_blank_line(lines: Sequence[str], first: int) -> int:
+    """Return the index of the next blank line, or the number of lines."""
+    at = first
+    while at < len(lines) and lines[at].strip():
+        at += 1
+    return at
 
 
 def _indentations(file: PythonFile, what: str) -> Iterator[Proposal]:
@@ -351,9 +368,7 @@ def _indentations(file: PythonFile, what: str) -> Iterator[Proposal]:
     for first in (stop, stop - 1):
         if not 0 <= first < len(lines) or not lines[first].strip():
             continue
-        end_of_block = first
-        while end_of_block < len(lines) and lines[end_of_block].strip():
-            end_of_block += 1
+        end_of_block = _find_blank_line(lines, first)
         indents = _indents_around(lines, first)
         for indent, end in product(indents, dict.fromkeys((first + 1, end_of_block))):
             rows = range(first, min(end, first + _MAX_AROUND))
@@ -381,8 +396,9 @@ def _indent_of(line: str) -> str:
 
 
 def _programs(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
-    """Yield edits that start the program which a check names in place of another one of its
-    package, or the reverse.
+    """Yield edits that start another program of a package.
+
+    The program that a check names takes the place of another one, or the reverse.
     """
     wanted = []
     for text in task.given:
@@ -424,7 +440,7 @@ def _setup_paths(task: PackageTask) -> Iterator[Proposal]:
         known, texts = [*files, *patterns], [path]
         if path in task.package.tree.folders:
             above = posixpath.dirname(path)
-            known = [it for it in patterns if posixpath.dirname(it) in (above, path)]
+            known = [pattern for pattern in patterns if posixpath.dirname(pattern) in (above, path)]
             texts.append(f"{above}/*")
         for actual in texts:
             for wanted in _similar(actual, known)[:_MAX_EDITS]:
@@ -436,18 +452,20 @@ def _similar(path: str, known: Iterable[str]) -> list[str]:
     """Return known paths, the most similar first."""
     return sorted(
         dict.fromkeys(known),
-        key=lambda it: -SequenceMatcher(None, it, path, autojunk=False).ratio(),
+        key=lambda known_path: -SequenceMatcher(None, known_path, path, autojunk=False).ratio(),
     )
 
 
 def _launch_paths(task: PackageTask, launch: Launch, source: Source) -> Iterator[Proposal]:
-    """Yield edits with which a launch file finds its files: of all together, then of one path
-    each.
+    """Yield edits with which a launch file finds its files.
+
+    First of all together, then of one path each.
     """
-    named = [it for it in launch.references[:_MAX_PATHS] if it.path is not None]
     ways = []
-    for reference in named:
-        path = posixpath.normpath(reference.path or "").removeprefix(f"{PREFIX}/")
+    for reference in launch.references[:_MAX_PATHS]:
+        if reference.path is None:
+            continue
+        path = posixpath.normpath(reference.path).removeprefix(f"{PREFIX}/")
         if path not in task.package.installed:
             edits_of_path = _edits_of_path(task, source, reference)[:_MAX_EDITS]
             if edits_of_path:
@@ -465,8 +483,9 @@ def _paths_changed(edits: Sequence[Edit]) -> Proposal:
 
 
 def _targets(task: PackageTask, purpose: str) -> list[str]:
-    """Return the paths in the package's share folder of the files that it installs for a
-    purpose.
+    """Return the paths of the files that a package installs for a purpose.
+
+    They are in the package's share folder.
     """
     share = f"share/{task.package.name}/"
     return [
@@ -488,8 +507,9 @@ def _edits_of_path(task: PackageTask, source: Source, named: NamedFile) -> list[
 
 
 def _share_edits(name: str, file: PythonFile, actual: str, target: str) -> Iterator[list[Edit]]:
-    """Yield the edits that replace a path of one machine, or relative to the working folder, by the
-    share folder.
+    """Yield the edits that put the share folder into a path.
+
+    It replaces a path of one machine, or relative to the working folder.
 
     The difference to the reference has no answer where the file is built in another way:
     launch-home-path, sensors-launch-home-path.
@@ -523,12 +543,13 @@ def _path_offsets(source: Source) -> Iterator[tuple[int, int]]:
     if not source.path.endswith(".py"):
         yield from (match.span() for match in _PIECE.finditer(source.text))
         return
-    yield from ((it.start, it.end) for it in PythonFile(source).literals)
+    yield from ((literal.start, literal.end) for literal in PythonFile(source).literals)
 
 
 def _moved(source: Source, actual: str, wanted: str, line: int = 1) -> list[Edit]:
-    """Return the edits of one text each with which a path becomes the wanted one; those nearest
-    to a line first.
+    """Return the edits of one text each with which a path becomes the wanted one.
+
+    Those nearest to a line first.
     """
     distances: dict[Edit, int] = {}  # in lines
     for start, end in islice(_path_offsets(source), _MAX_PIECES):
@@ -557,8 +578,9 @@ def _replacements(piece: str, actual: str, wanted: str) -> Iterator[str]:
 
 
 def _without(source: Source, start: int, end: int) -> Edit:
-    """Return the edit that removes a text, as an argument with its quotes and comma where it is
-    one.
+    """Return the edit that removes a text.
+
+    As an argument with its quotes and comma where it is one.
     """
     text = source.text
     quote = text[start - 1 : start]
@@ -571,38 +593,39 @@ def _without(source: Source, start: int, end: int) -> Edit:
     return source.edit(start, end, "")
 
 
-def _missing_entries(own: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
-    """Yield edits that add what the file makes and does not use, or entries of the reference's
-    list: one, or all.
+def _missing_entries(file: PythonFile, like: PythonFile, what: str) -> Iterator[Proposal]:
+    """Yield edits that add missing entries: one, or all.
+
+    These are what the file makes and does not use, or entries of the reference's list.
 
     A node of a package of which the file has one is not added: that one is wrong.
     """
-    unused = [name for name in own.made if name not in own.used]
+    unused = [name for name in file.made if name not in file.used]
     known: set[str] = set()
-    for item in _items(own):
-        known |= _codes_of_entry(own, item)
-    for call in own.calls("Node"):
-        known |= _package_of(own, call)
+    for item in _items(file):
+        known |= _codes_of_entry(file, item)
+    for call in file.calls("Node"):
+        known |= _package_of(file, call)
     missing = [
-        like.written(item, own.bound)
+        like.written(item, file.bound)
         for item in _items(like)
         if known.isdisjoint(_codes_of_entry(like, item) | _package_of(like, item))
     ]
     for codes_to_add in (unused, missing):
         for code in codes_to_add:
-            yield from _adding(own, [code], what)
+            yield from _adding(file, [code], what)
         if len(codes_to_add) > 1:
-            yield from _adding(own, codes_to_add, what)
+            yield from _adding(file, codes_to_add, what)
 
 
-def _adding(own: PythonFile, codes: Sequence[str], what: str) -> Iterator[Proposal]:
-    edit = _add(own, codes)
+def _adding(file: PythonFile, codes: Sequence[str], what: str) -> Iterator[Proposal]:
+    edit = _add(file, codes)
     if edit is not None:
         names: set[str] = set()
         for code in codes:
-            names |= own.names_in(code)
+            names |= file.names_in(code)
         cause = f"a missing part of `{'data_files' if what == SETUP else _DESCRIPTION}`"
-        yield change([edit, *own.with_imports(sorted(names))], cause, what)
+        yield change([edit, *file.with_imports(sorted(names))], cause, what)
 
 
 def _codes_of_entry(file: PythonFile, item: ast.expr) -> set[str]:
@@ -640,8 +663,9 @@ def _items(file: PythonFile) -> list[ast.expr]:
 
 
 def _add(file: PythonFile, codes: Sequence[str]) -> Edit | None:
-    """Return the edit that adds code after the last entry, in lines of their own if that has
-    one.
+    """Return the edit that adds code after the last entry.
+
+    The code is in lines of its own if that entry has one.
     """
     entries, actions = _list(file), file.calls("add_action")
     if isinstance(entries, ast.List) and not (actions and not entries.elts):

@@ -21,8 +21,9 @@ _MAX_LAUNCH_FILES = 3
 
 @dataclass(frozen=True)
 class PackageTask:
-    """A package, the one of the reference solution, if there is one, and the texts that are
-    given to checks.
+    """A package, and the texts that are given to checks.
+
+    It also has the one of the reference solution, if there is one.
     """
 
     package: Package
@@ -30,8 +31,9 @@ class PackageTask:
     given: frozenset[str] = field(default=frozenset())
 
     def source(self, path: str | None) -> Source | None:
-        """Return the text of a file of the package as it is; None where there is none that can
-        be read.
+        """Return the text of a file of the package as it is.
+
+        None where there is none that can be read.
         """
         text = _text(self.package, path) if path is not None else None
         if text is not None:
@@ -39,8 +41,9 @@ class PackageTask:
         return None
 
     def file(self, package: Package | None, kind: str) -> str | None:
-        """Return the path of the file of a kind in a package: the one that a check names, else
-        another one.
+        """Return the path of the file of a kind in a package.
+
+        This is the one that a check names, else another one.
         """
         if package is None or kind not in ("launch", "rviz"):
             return kind
@@ -63,8 +66,9 @@ class PackageTask:
         return self.named(text) if text is not None else None
 
     def named(self, text: str) -> str:
-        """Return a text of the reference, or a path in it, with the student's name of the
-        package.
+        """Return a text of the reference with the student's name of the package.
+
+        Or a path in it.
         """
         if self.reference is None or self.reference.name == self.package.name:
             return text
@@ -85,8 +89,9 @@ class PackageTask:
 
 
 def _kind_of(path: str) -> str:
-    """Return the kind of a file: launch, rviz, urdf, setup.py with the files that it needs, or
-    another file itself.
+    """Return the kind of a file.
+
+    This is launch, rviz, urdf, setup.py with the files that it needs, or another file itself.
     """
     if path.endswith((".rviz", ".urdf", ".xacro")):
         return "rviz" if path.endswith(".rviz") else "urdf"
@@ -103,8 +108,9 @@ def _text(package: Package, path: str) -> str | None:
 
 
 def change(edits: Iterable[Edit], cause: str, what: str = "") -> Proposal:
-    """Return a proposal; `what` is the file in which something is wrong, if the cause does not name
-    it.
+    """Return a proposal.
+
+    `what` is the file in which something is wrong, if the cause does not name it.
     """
     return Proposal(tuple(dict.fromkeys(edits)), f"{cause} in {what}" if what else cause)
 
@@ -118,15 +124,15 @@ def file_proposals(task: PackageTask, kind: str) -> Iterator[Proposal]:
     names = {posixpath.basename(path) for path in wanted} | task.given
     for path in dict.fromkeys(wanted):
         folder, name = posixpath.split(path)
-        if _kind_of(path) != kind or any(_is_named(it, name, kind) for it in task.files):
+        if _kind_of(path) != kind or any(_is_named(file, name, kind) for file in task.files):
             continue
-        own = [
-            it
-            for it in task.files
-            if kind in (_kind_of(it), posixpath.dirname(it)) or it.startswith(f"{folder}/")
+        same_kind = [
+            file
+            for file in task.files
+            if kind in (_kind_of(file), posixpath.dirname(file)) or file.startswith(f"{folder}/")
         ]
         yield from _rename(
-            task, kind, name, [it for it in own if posixpath.basename(it) not in names]
+            task, kind, name, [file for file in same_kind if posixpath.basename(file) not in names]
         )
 
 
@@ -135,13 +141,14 @@ def _is_named(path: str, name: str, kind: str) -> bool:
 
 
 def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> Iterator[Proposal]:
-    """Yield edits that give one of these files a name: the one with the most similar name first;
-    xacro stays xacro.
+    """Yield edits that give one of these files a name: the one with the most similar name first.
+
+    Xacro stays xacro.
     """
     spare = {
-        posixpath.basename(it): it
-        for it in files
-        if it.endswith(".xacro") <= name.endswith(".xacro")
+        posixpath.basename(file): file
+        for file in files
+        if file.endswith(".xacro") <= name.endswith(".xacro")
     }
     others = [*spare][:_MAX_NAMES]
     nearest = closest(name, spare)
@@ -153,16 +160,11 @@ def _rename(task: PackageTask, kind: str, name: str, files: Sequence[str]) -> It
 
 
 def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
-    """Yield edits that give the package one name in all its files, for a package that has another
-    or several.
+    """Yield edits that give the package one name in all its files.
+
+    For a package that has another or several.
     """
-    manifest, setup = task.package.manifest, task.package.installation
-    if manifest is None or manifest.name is None:
-        return
-    shares = [path.split("/")[1] for path in task.package.installed if path.startswith("share/")]
-    own = [manifest.name, setup.name if setup is not None else None]
-    similar = [name for name in shares if closest(name, [new])]
-    names = [name for name in dict.fromkeys([*own, *similar]) if name and name != new]
+    names = _other_names(task, new)
     if not names:
         return
     word = re.compile(rf"(?<![\w.])({'|'.join(map(re.escape, names))})(?![\w.])")
@@ -170,8 +172,23 @@ def package_names(task: PackageTask, new: str) -> Iterator[Proposal]:
     for path in (MANIFEST, SETUP, "setup.cfg", *task.package.launch_files[:_MAX_LAUNCH_FILES]):
         source = task.source(path)
         if source is not None:
-            edits += [source.edit(*it.span(), new) for it in word.finditer(source.text)]
+            edits += [source.edit(*match.span(), new) for match in word.finditer(source.text)]
     if f"resource/{new}" not in task.files:
         moved = [name for name in names if f"resource/{name}" in task.files]
         edits += [task.renamed(f"resource/{name}", f"resource/{new}") for name in moved]
     yield change(edits, "the name of the package")
+
+
+def _other_names(task: PackageTask, new: str) -> list[str]:
+    """Return the names of the package in its files that differ from the new one.
+
+    They are those of its manifest and setup.py, and names like the new one in paths of its share
+    folder. None if the manifest has no name.
+    """
+    manifest, setup = task.package.manifest, task.package.installation
+    if manifest is None or manifest.name is None:
+        return []
+    shares = [path.split("/")[1] for path in task.package.installed if path.startswith("share/")]
+    own_names = [manifest.name, setup.name if setup is not None else None]
+    similar = [name for name in shares if closest(name, [new])]
+    return [name for name in dict.fromkeys([*own_names, *similar]) if name and name != new]

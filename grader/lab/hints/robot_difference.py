@@ -1,5 +1,6 @@
-"""The difference between a robot and the reference's, cut into pieces: each is an edit that may
-undo a mistake.
+"""The difference between a robot and the reference's, cut into pieces.
+
+Each is an edit that may undo a mistake.
 """
 
 from collections import Counter
@@ -30,8 +31,9 @@ SIBLING, REFERENCE, OWN, STRUCTURE = range(4)
 
 
 class Piece(NamedTuple):
-    """An edit that may undo a mistake: values to set, edits of the text, or both; what is wrong,
-    and the link.
+    """An edit that may undo a mistake.
+
+    It has values to set, edits of the text, or both; what is wrong, and the link.
 
     The `rank` orders pieces that gain as much. `around` is the element that changes.
     """
@@ -60,8 +62,9 @@ class MissingPart(NamedTuple):
 
 
 class RobotDifference:
-    """A robot beside the reference's: the pieces that lead from one to the other, and what is
-    missing.
+    """A robot beside the reference's.
+
+    It has the pieces that lead from one to the other, and what is missing.
 
     Only `known` names are shown, because the reference has them.
     """
@@ -85,16 +88,16 @@ class RobotDifference:
     @cached_property
     def missing(self) -> list[MissingPart]:
         """The links and joints of the reference that the robot does not have."""
-        found: list[MissingPart] = []
+        parts: list[MissingPart] = []
         for step in self._steps:
-            if step.verb == "add" and step.own.tag == "robot" and step.like is not None:
+            if step.verb == "add" and step.own_node.tag == "robot" and step.like is not None:
                 like: Element = step.like.of
                 if like.tag == "link":
-                    found.append(MissingPart("link", like.get("name") or ""))
+                    parts.append(MissingPart("link", like.get("name") or ""))
                 elif like.tag == "joint":
                     ends = (end_of(like, "child"), like.get("type") or "", end_of(like, "parent"))
-                    found.append(MissingPart("joint", *ends))
-        return found
+                    parts.append(MissingPart("joint", *ends))
+        return parts
 
     @cached_property
     def _steps(self) -> list[Step]:
@@ -111,8 +114,9 @@ class RobotDifference:
         link: str = "",
         tag: str = "",
     ) -> Piece:
-        """Return a piece that changes an element, or its child with a tag; {} in the cause stands
-        for its name.
+        """Return a piece that changes an element, or its child with a tag.
+
+        {} in the cause stands for its name.
         """
         cause = cause.replace("{}", self.draft.describe(element, tag, self.known))
         around = element if element.getparent() is self.draft.root else element.getparent()
@@ -141,32 +145,40 @@ class RobotDifference:
         return self.piece(element, cause, edits)._replace(around=parent)
 
     def _materials(self) -> Iterator[Piece]:
-        """Name a material as links use it, or give what a link shows the reference's colour if no
-        material has it.
+        """Name a material as links use it, or give a link the reference's colour.
+
+        The latter for what a link shows if no material has the colour.
         """
-        own = {it.get("name") or "": it for it in self.draft.root.iterchildren("material")}
-        uses = Counter(it.get("name") or "" for it in self.draft.root.iterfind("link//material"))
-        undefined = [name for name, count in uses.items() if count > 1 and name not in own]
-        for name in sorted(own.keys() - uses.keys()):
+        own_materials = {
+            material.get("name", ""): material
+            for material in self.draft.root.iterchildren("material")
+        }
+        uses = Counter(
+            material.get("name", "") for material in self.draft.root.iterfind("link//material")
+        )
+        undefined = [
+            name for name, count in uses.items() if count > 1 and name not in own_materials
+        ]
+        for name in sorted(own_materials.keys() - uses.keys()):
             meant = near(name, undefined, "material")
             if meant is not None:
-                sets = (Set(own[name], "", "name", meant),)
-                yield self.piece(own[name], "the name of {}", sets=sets)
+                sets = (Set(own_materials[name], "", "name", meant),)
+                yield self.piece(own_materials[name], "the name of {}", sets=sets)
         for used in self.draft.root.iter("material"):
-            yield from self._material(used, own)
+            yield from self._material(used, own_materials)
 
-    def _material(self, used: Element, own: Collection[str]) -> Iterator[Piece]:
+    def _material(self, used: Element, own_names: Collection[str]) -> Iterator[Piece]:
         link = self.reference.link(self.draft.link_of(used))
         shown = next(link.iter("material"), None) if link is not None else None
         if shown is None:
             return
-        name = shown.get("name") or ""
+        name = shown.get("name", "")
         like = self.reference.material(name)
         colour = child_of(like, "color") if like is not None else None
         if like is None or colour is None:
             return
-        if (used.get("name") or "") not in own:
-            yield self.piece_of_sets([Set(used, "color", "rgba", colour.get("rgba") or "")])
+        if used.get("name", "") not in own_names:
+            yield self.piece_of_sets([Set(used, "color", "rgba", colour.get("rgba", ""))])
             return
         own_name = self._names["material"].get(name, "")
         if self.draft.material(name) is None and self.draft.material(own_name) is None:
@@ -177,9 +189,14 @@ class RobotDifference:
         """Rename joints as in the reference, also where they are mimicked."""
         every: list[Set] = []
         for new, old in self._names["joint"].items():
-            joint = next(it for it in self.draft.joints() if it.get("name") == old)
-            mimics = (it for it in self.draft.root.iter("mimic") if it.get("joint") == old)
-            sets = (Set(joint, "", "name", new), *(Set(it, "", "joint", new) for it in mimics))
+            joint = next(
+                candidate for candidate in self.draft.joints() if candidate.get("name") == old
+            )
+            mimics = (mimic for mimic in self.draft.root.iter("mimic") if mimic.get("joint") == old)
+            sets = (
+                Set(joint, "", "name", new),
+                *(Set(mimic, "", "joint", new) for mimic in mimics),
+            )
             every += sets
             yield self.piece(joint, f"the name {quoted(old)} of a joint", sets=sets, rank=STRUCTURE)
         if len(every) > 1:
@@ -197,33 +214,33 @@ class RobotDifference:
             values["version"] = version
         return Node("robot", (), values, nodes, draft.root)
 
-    def _pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
-        for values in _values_of_one(found):
+    def _pieces(self, steps_of_one: Sequence[Step]) -> Iterator[Piece]:
+        for values in _values_of_one(steps_of_one):
             yield from self._value_pieces(values)
-        for step in found:
-            own, like = step.own, step.like
-            aliases = TAGS[own.tag].aliases if own.tag in TAGS else {}
+        for step in steps_of_one:
+            own_node, like = step.own_node, step.like
+            aliases = TAGS[own_node.tag].aliases if own_node.tag in TAGS else {}
             match step.verb:
                 case "rename" | "unset" if new := step.other or aliases.get(step.name):
                     edits: Edits = ()
-                    if new not in own.values:
-                        edits = self.draft.rename_attribute(own.of, step.name, new)
+                    if new not in own_node.values:
+                        edits = self.draft.rename_attribute(own_node.of, step.name, new)
                     cause = f"the name of the attribute {new} of {{}}"
-                    yield self.piece(own.of, cause, edits, rank=SIBLING)
+                    yield self.piece(own_node.of, cause, edits, rank=SIBLING)
                 case "retag" if like is not None:
-                    edits = self.draft.rename_tag(own.of, like.tag)
-                    yield self.piece(own.of, f"the name of the tag <{like.tag}>", edits)
+                    edits = self.draft.rename_tag(own_node.of, like.tag)
+                    yield self.piece(own_node.of, f"the name of the tag <{like.tag}>", edits)
                 case "move" if step.parent is not None and like is not None:
-                    yield self.moved(own.of, step.parent.of)
-                case "add" if like is not None and own.tag != "robot":
-                    yield from self._inner(own.of, like.of)
+                    yield self.moved(own_node.of, step.parent.of)
+                case "add" if like is not None and own_node.tag != "robot":
+                    yield from self._inner(own_node.of, like.of)
                 case "remove":
-                    yield from self._remove(own)
+                    yield from self._remove(own_node)
 
-    def _value_pieces(self, found: Sequence[Step]) -> Iterator[Piece]:
+    def _value_pieces(self, steps_of_one: Sequence[Step]) -> Iterator[Piece]:
         """Yield the values of one element: each alone, and all together."""
-        element: Element = found[0].own.of
-        wanted = {step.name: _wanted_value(step) for step in found}
+        element: Element = steps_of_one[0].own_node.of
+        wanted = {step.name: _wanted_value(step) for step in steps_of_one}
         values = {name: value for name, value in wanted.items() if value is not None}
         if element.tag in ("link", "joint", "material", "visual", "collision") and "name" in values:
             yield from self._rename(element, values.pop("name"))
@@ -234,8 +251,9 @@ class RobotDifference:
             yield from self.each([Set(element, "", name, value) for name, value in values.items()])
 
     def _is_loose(self, element: Element) -> bool:
-        """Return whether an element names a parent of the student's own that no joint holds yet:
-        that is what lacks.
+        """Return whether an element names a parent that no joint holds yet.
+
+        The parent is the student's own, and is what lacks.
         """
         name = element.get("link") or ""
         if element.tag != "parent" or name in self.known or self.draft.link(name) is None:
@@ -243,10 +261,12 @@ class RobotDifference:
         return self.draft.joint_of(name) is None
 
     def _rename(self, element: Element, name: str) -> Iterator[Piece]:
-        """Rename a link with all that names it, or alone; a joint; a material where it is used or
+        """Rename an element.
+
+        A link with all that names it, or alone; a joint; a material where it is used or
         defined.
         """
-        tag, old = str(element.tag), element.get("name") or ""
+        tag, old = str(element.tag), element.get("name", "")
         is_begun = 2 * sum(map(self.draft.robot.has_link, self.names)) >= len(self.names)
         if tag == "link" and not is_begun and old and near(old, [name], "link") is None:
             return  # nothing shows that it is this one
@@ -272,7 +292,7 @@ class RobotDifference:
         elif around is not None and around.tag != "geometry":  # there the shape is replaced
             cause = f"an extra <{tag}>: {{}}"
             if tag in ("link", "joint"):
-                cause = f"an extra {tag} {quoted(element.get('name') or '')}"
+                cause = f"an extra {tag} {quoted(element.get('name', ''))}"
             yield self.piece(element, cause, self.draft.remove(element), rank=STRUCTURE)
 
     @cached_property
@@ -283,16 +303,17 @@ class RobotDifference:
         )
 
     def _inner(self, parent: Element, element: Element) -> Iterator[Piece]:
-        """Add an element to another one: values of an origin or axis, another shape, or the element
-        as it is.
+        """Add an element to another one.
+
+        These are values of an origin or axis, another shape, or the element as it is.
         """
         tag = str(element.tag)
         if tag in ("origin", "axis"):  # one with default values only does not count
-            own = child_of(parent, tag)
+            inner = child_of(parent, tag)
             sets = []
             for key, text in element.attrib.items():
                 name, wanted = str(key), normal(tag, str(key), str(text))
-                written = own.get(name) if own is not None else None
+                written = inner.get(name) if inner is not None else None
                 if normal(tag, name, written) != wanted:
                     sets.append(Set(parent, tag, name, wanted))
             yield from self.each(sets)
@@ -307,25 +328,27 @@ class RobotDifference:
             yield self.piece(parent, "the shape of {}", self.draft.replace(shape, text))
 
     def _text(self, element: Element) -> str:
-        """Return an element of the reference with the robot's names, an undefined material with its
-        colour.
+        """Return an element of the reference with the robot's names.
+
+        An undefined material has its colour.
         """
-        own = self._names["material" if element.tag == "material" else "joint"]
+        renamed = self._names["material" if element.tag == "material" else "joint"]
         text = self.reference.text(element)
         if element.tag in ("material", "mimic"):
-            for old, new in own.items():
+            for old, new in renamed.items():
                 text = text.replace(f'"{old}"', f'"{escaped(new)}"')
         if element.tag == "material":
             name = element.get("name") or ""
             defined = self.reference.material(name)
-            if defined is not None and self.draft.material(own.get(name, name)) is None:
+            if defined is not None and self.draft.material(renamed.get(name, name)) is None:
                 return self.reference.text(defined)
         return text
 
 
 def _identities(element: Element) -> list[tuple[str, str, str]]:
-    """Return what no other child of the robot with this tag may have: its name, and the link that
-    it moves.
+    """Return what no other child of the robot with this tag may have.
+
+    This is its name, and the link that it moves.
     """
     texts = (("name", element.get("name") or ""), ("child", end_of(element, "child")))
     return [(str(element.tag), what, text) for what, text in texts if text]
@@ -357,15 +380,16 @@ def _cause(sets: Sequence[Set]) -> str:
 
 def _unique(pieces: Iterable[Piece]) -> list[Piece]:
     """Return the pieces that change something, each once."""
-    found: dict[object, Piece] = {}
+    unique: dict[object, Piece] = {}
     for piece in pieces:
-        found.setdefault((piece.sets, piece.edits), piece)
-    return [piece for piece in found.values() if piece.sets or piece.edits]
+        unique.setdefault((piece.sets, piece.edits), piece)
+    return [piece for piece in unique.values() if piece.sets or piece.edits]
 
 
 def normal(tag: str, attribute: str, text: str | None) -> str:
-    """Return a value as it is compared: numbers without needless digits, the default where there is
-    none.
+    """Return a value as it is compared.
+
+    Numbers have no needless digits, and the default stands where there is none.
     """
     known = TAGS[tag].attributes.get(attribute) if tag in TAGS else None
     if text is None:
@@ -378,12 +402,13 @@ def normal(tag: str, attribute: str, text: str | None) -> str:
 
 
 def _wanted_value(step: Step) -> str | None:
-    """Return the value that a step sets: that of the reference, else the default; None if there is
-    none.
+    """Return the value that a step sets: that of the reference, else the default.
+
+    None if there is none.
     """
     if step.verb == "set" and step.like is not None:
         return step.like.values[step.name]
-    known = TAGS[step.own.tag].attributes.get(step.name) if step.own.tag in TAGS else None
+    known = TAGS[step.own_node.tag].attributes.get(step.name) if step.own_node.tag in TAGS else None
     return known.default or None if known is not None else None
 
 
@@ -434,12 +459,12 @@ def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
     known = {joint.name for joint in reference.robot.joints}
     written = {joint.get("name") for joint in draft.joints()}
     for joint in reference.joints():
-        own = draft.joint_of(end_of(joint, "child"))
-        own_name = own.get("name") if own is not None else None
+        own_joint = draft.joint_of(end_of(joint, "child"))
+        own_name = own_joint.get("name") if own_joint is not None else None
         if own_name and own_name not in known and joint.get("name") not in written:
             joints[joint.get("name") or ""] = own_name
-    own_materials = [_node_of(it, {}) for it in draft.root.iterchildren("material")]
-    materials = [_node_of(it, {}) for it in reference.root.iterchildren("material")]
+    own_materials = [_node_of(material, {}) for material in draft.root.iterchildren("material")]
+    materials = [_node_of(material, {}) for material in reference.root.iterchildren("material")]
     called: dict[str, str] = {}
     for node, like in paired(own_materials, materials).both:
         called[like.values.get("name", "")] = node.values.get("name", "")
@@ -447,12 +472,12 @@ def _translation(draft: Draft, reference: Draft) -> dict[str, dict[str, str]]:
     return {"joint": joints, "material": named}
 
 
-def _values_of_one(found: Iterable[Step]) -> Iterator[list[Step]]:
+def _values_of_one(steps_in_order: Iterable[Step]) -> Iterator[list[Step]]:
     """Yield the steps that set values, those of one node that follow each other together."""
     together: list[Step] = []
-    for step in found:
+    for step in steps_in_order:
         is_value = step.verb in ("set", "unset")
-        if together and not (is_value and together[0].own is step.own):
+        if together and not (is_value and together[0].own_node is step.own_node):
             yield together
             together = []
         if is_value:
@@ -462,13 +487,17 @@ def _values_of_one(found: Iterable[Step]) -> Iterator[list[Step]]:
 
 
 def _rename_link(draft: Draft, old: str, new: str) -> tuple[Set, ...]:
-    """Return what gives a link another name, also where joints name it; nothing where several have
-    the old one.
+    """Return what gives a link another name, also where joints name it.
+
+    Nothing where several have the old one.
     """
-    own = [link for link in draft.links() if link.get("name") == old]
-    if len(own) != 1:
+    links = [link for link in draft.links() if link.get("name") == old]
+    if len(links) != 1:
         return ()
     ends = [
         (joint, role) for joint in draft.joints() for role in _ENDS if end_of(joint, role) == old
     ]
-    return (Set(own[0], "", "name", new), *(Set(joint, role, "link", new) for joint, role in ends))
+    return (
+        Set(links[0], "", "name", new),
+        *(Set(joint, role, "link", new) for joint, role in ends),
+    )

@@ -38,8 +38,9 @@ _COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
 
 
 class Set(NamedTuple):
-    """A new value of an attribute: of an element, or, with a tag, of its child of this tag,
-    which may be missing.
+    """A new value of an attribute of an element.
+
+    Or, with a tag, of its child of this tag, which may be missing.
     """
 
     owner: Element
@@ -56,8 +57,9 @@ class Set(NamedTuple):
 
 
 class Draft:
-    """A robot that is being edited: its elements, what they are called, and the edits of their
-    text.
+    """A robot that is being edited.
+
+    It has its elements, what they are called, and the edits of their text.
     """
 
     def __init__(self, root: Element, robot: Robot, source: Source) -> None:
@@ -74,9 +76,9 @@ class Draft:
         """Return the draft of a robot that could be read."""
         if reading.elements is None or reading.robot is None:
             return None
-        found = cls(reading.elements, reading.robot, reading.source)
-        found.is_broken = reading.root is None
-        return found
+        draft = cls(reading.elements, reading.robot, reading.source)
+        draft.is_broken = reading.root is None
+        return draft
 
     def links(self) -> Iterator[Element]:
         """Yield the links."""
@@ -106,34 +108,37 @@ class Draft:
         return {end_of(joint, "child"): joint for joint in reversed(list(self.joints()))}
 
     def material(self, name: str) -> Element | None:
-        """Return the first definition of a material that counts: under the robot, else in a
-        visual.
+        """Return the first definition of a material that counts.
+
+        It is under the robot, else in a visual.
         """
         return self._materials.get(name)
 
     @cached_property
     def _materials(self) -> dict[str, Element]:
-        own = list(self.root.iterchildren("material"))
+        own_materials = list(self.root.iterchildren("material"))
         materials: dict[str, Element] = {}
         # One without content only names another one.
-        for material in (*own, *self.root.iter("material")):
+        for material in (*own_materials, *self.root.iter("material")):
             if len(material):
                 materials.setdefault(material.get("name") or "", material)
-        for material in own:
+        for material in own_materials:
             materials.setdefault(material.get("name") or "", material)
         return materials
 
     def owner(self, element: Element) -> Element:
-        """Return the child of the root that an element is or is in; the root itself for the
-        root.
+        """Return the child of the root that an element is or is in.
+
+        The root itself for the root.
         """
         while (parent := element.getparent()) is not None and parent is not self.root:
             element = parent
         return element
 
     def link_of(self, element: Element) -> str:
-        """Return the link that an element belongs to: of a joint its child; empty for a
-        material.
+        """Return the link that an element belongs to: of a joint its child.
+
+        Empty for a material.
         """
         owner = self.owner(element)
         if owner.tag == "joint":
@@ -143,8 +148,9 @@ class Draft:
         return ""
 
     def describe(self, element: Element, tag: str = "", known: Collection[str] = ()) -> str:
-        """Return what an element, or its child with a tag, is called: the visual origin of
-        'lidar', if `known`.
+        """Return what an element, or its child with a tag, is called.
+
+        An example is the visual origin of 'lidar', if `known`.
         """
         owner, path = self.owner(element), [tag] if tag else []
         inner = element
@@ -158,8 +164,8 @@ class Draft:
         name = self.link_of(owner) if owner.tag in ("link", "joint") else owner.get("name") or ""
         what = path[0] if len(path) == 1 else f"{path[0]} {path[-1]}"
         if name not in known:
-            own = owner.get("name") if what == "joint" else None
-            return f"the {what} {own!r}" if own else f"the {what}"
+            own_name = owner.get("name") if what == "joint" else None
+            return f"the {what} {own_name!r}" if own_name else f"the {what}"
         if what == "link":
             return f"the link {name!r}"
         return f"the {what} of {name!r}"
@@ -175,8 +181,9 @@ class Draft:
 
     @cached_property
     def _expanded(self) -> "ExpandedEdits | None":
-        """The edits of the source if xacro expanded it: an element is not written there as it is
-        read.
+        """The edits of the source if xacro expanded it.
+
+        An element is not written there as it is read.
         """
         if not self.source.is_expanded:
             return None
@@ -192,7 +199,7 @@ class Draft:
     def corrections(self, names: Sequence[str]) -> list[Proposal]:
         """Return edits that may correct what xacro refuses; `names` are those that may be meant."""
         if self._expanded is not None:
-            return [Proposal(*it) for it in self._expanded.corrections(names)]
+            return [Proposal(*correction) for correction in self._expanded.corrections(names)]
         return []
 
     def numbers(self, element: Element, attribute: str) -> "list[NumberDefinition]":
@@ -216,9 +223,7 @@ class Draft:
         return values
 
     def shared(self, sets: Iterable[Set]) -> frozenset[str]:
-        """Return the links whose elements come from the same text of xacro as those that are
-        set.
-        """
+        """Return the links whose elements share a text of xacro with those that are set."""
         if self._expanded is None:
             return frozenset()
         links: set[str] = set()
@@ -290,8 +295,9 @@ class Draft:
     def _ways_of(
         self, element: Element, attribute: str, value: str, others: Mapping[Element, str]
     ) -> list[Edits]:
-        """Return the ways to give an attribute another text, and elements that come from the same
-        text others.
+        """Return the ways to give an attribute another text.
+
+        And elements that come from the same text others.
         """
         tag = self._tags[element]
         wanted = {tag: (element.get(attribute) or "", escaped(value))}
@@ -306,8 +312,9 @@ class Draft:
         return [(with_attribute(source, start, attribute, escaped(value)),)]
 
     def exchange(self, *elements: Element, attribute: str) -> Edits:
-        """Return the edits with which two elements have the text of an attribute of each other, as
-        it is written.
+        """Return the edits with which two elements exchange the text of an attribute.
+
+        The text stays as it is written.
         """
         places = [self.source.element(self._tags[element]) for element in elements]
         texts = []
@@ -323,8 +330,9 @@ class Draft:
         )
 
     def write_text(self, element: Element, text: str) -> Edits:
-        """Return the edit that gives an element another text; none where it has children, or xacro
-        evaluates it.
+        """Return the edit that gives an element another text.
+
+        None where it has children, or xacro evaluates it.
         """
         tag = self._tags[element]
         wanted = {tag: ((element.text or "").strip(), escaped(text))}
@@ -383,17 +391,17 @@ class Draft:
 
 def _attribute_text(source: Source, start: int, name: str) -> str | None:
     """Return the text of an attribute of the start tag at an offset, as it is written."""
-    found = markup.attribute(source.text, start, name)
-    if found is None:
+    span = markup.attribute(source.text, start, name)
+    if span is None:
         return None
-    return source.text[found.value_start : found.value_end]
+    return source.text[span.value_start : span.value_end]
 
 
 def end_of(joint: Element, role: str) -> str:
     """Return the name of the link that is the parent or child of a joint."""
-    found = child_of(joint, role)
-    if found is not None:
-        return found.get("link") or ""
+    end_element = child_of(joint, role)
+    if end_element is not None:
+        return end_element.get("link") or ""
     return ""
 
 

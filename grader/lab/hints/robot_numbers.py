@@ -1,5 +1,6 @@
-"""Numbers that a person may have meant, and what is wrong with those that are written: a sign, a
-unit, the order.
+"""Numbers that a person may have meant, and what is wrong with the written ones.
+
+The mistake is in a sign, a unit, or the order.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -17,8 +18,9 @@ _SAME = 1e-6
 
 
 class _NumberMistake(NamedTuple):
-    """What a person does to numbers: the units, the size from which it is likely, how to undo it,
-    and the cause.
+    """What a person does to numbers.
+
+    It has the units, the size from which it is likely, how to undo it, and the cause.
     """
 
     units: tuple[str, ...]
@@ -71,8 +73,9 @@ def mistake_in(parts: Sequence[str], unit: str, old: Values, new: Values) -> str
 
 
 def plausible(unit: str, old: Values) -> Iterator[Values]:
-    """Yield numbers that a person may have meant: another sign, another unit, twice or half of it,
-    another order.
+    """Yield numbers that a person may have meant.
+
+    They have another sign, another unit, twice or half of it, or another order.
     """
     largest = max(map(abs, old), default=0.0)
     for mistake in _MISTAKES:

@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, combinations
 from math import inf
+from typing import TYPE_CHECKING
 
 from grader.base.element_edits import format_number, format_numbers
 from grader.base.errors import MissingElement, NotDecided
@@ -28,6 +29,9 @@ from grader.ros.urdf.shapes import UnknownShape
 from grader.ros.urdf.standing_robot import StandingRobot
 from grader.ros.xml.parsing import Element
 from grader.ros.xml.urdf_format import TAGS
+
+if TYPE_CHECKING:  # most robots are no xacro
+    from grader.ros.xacro.rewriting import NumberDefinition
 
 _SIDES = {
     "left": "right",
@@ -69,15 +73,16 @@ def _parts(draft: Draft, link: str) -> Iterator[tuple[str, Element]]:
 
 def _first_parts(draft: Draft, link: str) -> dict[str, Element]:
     """Return the first element at each path."""
-    found: dict[str, Element] = {}
+    parts: dict[str, Element] = {}
     for path, element in _parts(draft, link):
-        found.setdefault(path, element)
-    return found
+        parts.setdefault(path, element)
+    return parts
 
 
 def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[Piece]:
-    """Yield the numbers of the link at the other side, mirrored, where the student builds both
-    unlike the reference.
+    """Yield the numbers of the link at the other side, mirrored.
+
+    Only where the student builds both unlike the reference.
     """
     for link in links:
         other_link = _other_side(link)
@@ -98,8 +103,9 @@ def of_siblings(difference: RobotDifference, links: Iterable[str]) -> Iterator[P
 def _mirror_numbers(
     difference: RobotDifference, other: Element, like: Element | None, known: Sequence[Element]
 ) -> Iterator[Piece]:
-    """Yield the mirrored numbers of another element that are not `known`: those of its own
-    element, which is first.
+    """Yield the mirrored numbers of another element that are not `known`.
+
+    Those of its own element, which is first.
     """
     tag = str(other.tag)
     for name, attribute in TAGS[tag].attributes.items():
@@ -163,14 +169,17 @@ def _exchange_of_two(difference: RobotDifference, element: Element) -> Iterator[
 
 
 def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> Iterator[Piece]:
-    """Yield the numbers that an attribute may be meant to have, where it is written, else those
-    that xacro computes it from.
+    """Yield the numbers that an attribute may be meant to have, where it is written.
+
+    Else those that xacro computes it from.
     """
     unit = TAGS[str(element.tag)].attributes[name].unit
     least = 0.0 if unit == "m" and element.tag != "origin" else -inf  # of a size
     written = values_of(element.get(name))
     # A number like 1e400 has no values.
-    definitions = [it for it in difference.draft.numbers(element, name) if values_of(it.text)]
+    definitions = [
+        number for number in difference.draft.numbers(element, name) if values_of(number.text)
+    ]
     if not definitions:
         for values in plausible(unit, written):
             if min(values) > least:
@@ -180,24 +189,43 @@ def _meant_numbers(difference: RobotDifference, element: Element, name: str) -> 
     coordinates = written if element.tag == "origin" else ()
     cause = f"a number from which the {name} of {{}} is computed"
     for definition in definitions:
-        (old,) = values_of(definition.text)
-        for (new,) in plausible(unit, (old,)):
-            if new > least and _may_be_meant(old, new, coordinates):
-                edits = definition.edits_with(format_number(new))
-                if edits:
-                    yield difference.piece(element, cause, edits, rank=OWN)
-    lengths = [it for it in definitions if abs(values_of(it.text)[0]) != 1.0]
+        for edits in _meant_definitions(definition, unit, least, coordinates):
+            yield difference.piece(element, cause, edits, rank=OWN)
+    yield from _exchanged_lengths(difference, element, name, definitions)
+
+
+def _meant_definitions(
+    definition: "NumberDefinition", unit: str, least: float, coordinates: tuple[float, ...]
+) -> Iterator[Edits]:
+    """Yield the edits that give a number of xacro another value, above `least`."""
+    (old,) = values_of(definition.text)
+    for (new,) in plausible(unit, (old,)):
+        if new > least and _may_be_meant(old, new, coordinates):
+            edits = definition.edits_with(format_number(new))
+            if edits:
+                yield edits
+
+
+def _exchanged_lengths(
+    difference: RobotDifference,
+    element: Element,
+    name: str,
+    definitions: "Sequence[NumberDefinition]",
+) -> Iterator[Piece]:
+    """Yield the edits that exchange two of the lengths that an attribute is computed from."""
+    lengths = [number for number in definitions if abs(values_of(number.text)[0]) != 1.0]
     cause = f"the numbers from which the {name} of {{}} is computed"
     for one, other in combinations(lengths, 2):
-        edits = ()
+        edits: Edits = ()
         if one.text != other.text:
             edits = (*one.edits_with(other.text), *other.edits_with(one.text))
         yield difference.piece(element, cause, edits, rank=OWN)
 
 
 def _may_be_meant(old: float, new: float, coordinates: Values) -> bool:
-    """Return whether a number of xacro may be another one: 1 and -1 are the sides, and a length
-    stays positive.
+    """Return whether a number of xacro may be another one.
+
+    1 and -1 are the sides, and a length stays positive.
     """
     if abs(old) == 1.0:
         return new == -old
@@ -205,8 +233,9 @@ def _may_be_meant(old: float, new: float, coordinates: Values) -> bool:
 
 
 def reversed_joints(difference: RobotDifference) -> list[Element]:
-    """Return the joints whose parent should be below their child: in the reference, the child is
-    above the parent.
+    """Return the joints whose parent should be below their child.
+
+    In the reference, the child is above the parent.
     """
     parents: dict[str, str] = {}
     for joint in difference.reference.joints():
@@ -226,8 +255,9 @@ def reversed_joints(difference: RobotDifference) -> list[Element]:
 
 
 def exchanges(difference: RobotDifference) -> list[Piece]:
-    """Return what exchanges parent and child of reversed joints, and the children of two joints
-    of both sides.
+    """Return what exchanges the ends of joints.
+
+    Parent and child of reversed joints, and the children of two joints of both sides.
     """
     pieces: list[Piece] = []
     for joint in reversed_joints(difference):
@@ -248,7 +278,9 @@ def exchanges(difference: RobotDifference) -> list[Piece]:
 
 def _exchange_ends(draft: Draft, *ends: tuple[Element, str]) -> Edits:
     elements = [child_of(joint, role) for joint, role in ends]
-    return draft.exchange(*[it for it in elements if it is not None], attribute="link")
+    return draft.exchange(
+        *[element for element in elements if element is not None], attribute="link"
+    )
 
 
 def _other_side(link: str) -> str:
@@ -259,8 +291,9 @@ def _other_side(link: str) -> str:
 def leveled_supports(
     difference: RobotDifference, links: Sequence[str], base: str
 ) -> Iterator[Piece]:
-    """Yield the height at which the support that is above or below the others is level with
-    them.
+    """Yield the height at which a support is level with the others.
+
+    It is above or below them.
     """
     robot = Configuration(difference.draft.robot)
     try:
@@ -280,20 +313,12 @@ def leveled_supports(
 
 
 def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
-    """Yield all lengths in metres, for a robot of which they are all in centimetres or
-    millimetres.
+    """Yield all lengths in metres.
+
+    For a robot of which they are all in centimetres or millimetres.
     """
-    lengths: list[tuple[Element, str, Values]] = []
-    is_large = False
-    for element in difference.draft.root.iter():
-        if element.tag not in TAGS:
-            continue
-        for name, attribute in TAGS[str(element.tag)].attributes.items():
-            values = values_of(element.get(name)) if attribute.unit == "m" else ()
-            if any(values):
-                lengths.append((element, name, values))
-                is_large |= element.tag != "origin" and max(values) >= LARGE
-    if not is_large:
+    lengths = [*_lengths_of(difference.draft)]
+    if not any(element.tag != "origin" and max(values) >= LARGE for element, _, values in lengths):
         return
     for factor, unit in ((100.0, "centimetres"), (1000.0, "millimetres")):
         sets = []
@@ -303,9 +328,21 @@ def in_another_unit(difference: RobotDifference) -> Iterator[Piece]:
         yield Piece(f"the unit of all lengths: {unit}, not metres", "", tuple(sets), (), OWN)
 
 
+def _lengths_of(draft: Draft) -> Iterator[tuple[Element, str, Values]]:
+    """Yield the attributes of a robot that are lengths, with their numbers, if one is not 0."""
+    for element in draft.root.iter():
+        if element.tag not in TAGS:
+            continue
+        for name, attribute in TAGS[str(element.tag)].attributes.items():
+            values = values_of(element.get(name)) if attribute.unit == "m" else ()
+            if any(values):
+                yield element, name, values
+
+
 def whole_links(difference: RobotDifference) -> Iterator[Piece]:
-    """Yield where each link and what it shows are, also with what it carries; and all its
-    values.
+    """Yield where each link and what it shows are, and all its values.
+
+    Where they are, also with what it carries.
     """
     links: dict[str, list[Set]] = {}
     for piece in difference.pieces:
@@ -346,8 +383,9 @@ def _group(difference: RobotDifference, link: str, sets: list[Set], what: str) -
 
 
 def whole_elements(difference: RobotDifference) -> Iterator[Piece]:
-    """Yield the changes in one element together, and in one child of the robot; of links and joints
-    no values.
+    """Yield the changes in one element together, and in one child of the robot.
+
+    Of links and joints no values.
     """
     draft = difference.draft
     for is_owner in (False, True):

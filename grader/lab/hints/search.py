@@ -1,5 +1,6 @@
-"""Search the edits that make failed criteria pass: each is graded alone, and with those that were
-found before it.
+"""Search the edits that make failed criteria pass.
+
+Each is graded alone, and with those that were found before it.
 
 A `Piece` is what one mistake needs, with its words; a `Proposal` is one way to write it into the
 files; what grading proves becomes a `FoundHint`, and in a report a `Hint`. All of them together are
@@ -50,8 +51,9 @@ class _NoTrialsLeft(Exception):
 
 
 class Trials:
-    """Grades edited submissions. The budget counts gradings, so that it is the same on every
-    machine.
+    """Grades edited submissions.
+
+    The budget counts gradings, so that it is the same on every machine.
     """
 
     def __init__(self, rubric: Rubric, submission: Submission, results: _Results) -> None:
@@ -69,8 +71,9 @@ class Trials:
 
     @contextmanager
     def isolated(self) -> Iterator[None]:
-        """Record a fault of the grader in one generator or one step: it must not cost the hints
-        of the others.
+        """Record a fault of the grader in one generator or one step.
+
+        It must not cost the hints of the others.
         """
         try:
             yield
@@ -82,8 +85,9 @@ class Trials:
     def graded(
         self, edits: Edits, wanted: Collection[str] | _Results, *, whole: bool = False
     ) -> _Results:
-        """Return the results of criteria with edits, none where these do not fit, or ROS 2 would
-        reject or drop more.
+        """Return the results of criteria with edits.
+
+        None where these do not fit, or ROS 2 would reject or drop more.
 
         With the results that criteria had, there are none where one is worse now.
         `whole` reads the submission from scratch. Raises NoTrialsLeft.
@@ -97,17 +101,18 @@ class Trials:
         if _has_new_build_errors(self.submission, edited):
             return {}
         self.is_assumed = _is_assumed(edited) and not _is_assumed(self.submission)
-        found: dict[str, Result] = {}
+        results: dict[str, Result] = {}
         for result in decide(self.rubric, edited, wanted):
             name = result.criterion.id
             if isinstance(wanted, Mapping) and is_worse(wanted[name], result):
                 return {}  # at once: a shape in another one takes long to measure
-            found[name] = result
-        return found
+            results[name] = result
+        return results
 
     def is_of_reference(self, path: str) -> bool:
-        """Return whether a file of the robot is the same in the reference, so that the mistake
-        is in another one.
+        """Return whether a file of the robot is the same in the reference.
+
+        The mistake then is in another one.
         """
         if not path.endswith(ROBOT_ENDINGS):
             return False
@@ -123,8 +128,9 @@ class Trials:
         return self._is_of_reference[path]
 
     def edited(self, edits: Edits, *, whole: bool = False) -> Submission | None:
-        """Return the submission with edits; None where they do not fit. What was tried is proven
-        next: it is kept.
+        """Return the submission with edits; None where they do not fit.
+
+        What was tried is proven next: it is kept.
         """
         key = edits, whole
         if key not in self._edited:
@@ -148,8 +154,9 @@ class Trials:
 
 
 def _has_new_problems(before: Submission, after: Submission) -> bool:
-    """Return whether ROS 2 loads the URDF, with a kind of problem that it had not before: no
-    edit may make it worse.
+    """Return whether ROS 2 loads the URDF with a new kind of problem.
+
+    It did not have it before: no edit may make it worse.
     """
     if not isinstance(before.urdf, Read) or not isinstance(after.urdf, Read):
         return False
@@ -157,7 +164,11 @@ def _has_new_problems(before: Submission, after: Submission) -> bool:
         return True  # a macro that is called twice makes two links of one name
     if before.urdf.loaded.verdict == "rejected":
         return False
-    harmful = (it.kind for it in before.urdf.loaded.problems if it.kind.effect in _HARMFUL)
+    harmful = (
+        known_problem.kind
+        for known_problem in before.urdf.loaded.problems
+        if known_problem.kind.effect in _HARMFUL
+    )
     known = set(harmful)
     for problem in after.urdf.loaded.problems:
         if problem.kind.effect in _HARMFUL and problem.kind not in known:
@@ -166,8 +177,9 @@ def _has_new_problems(before: Submission, after: Submission) -> bool:
 
 
 def _has_new_build_errors(before: Submission, after: Submission) -> bool:
-    """Return whether a build of the package stops for another reason than before, also where it
-    fails in both: an edit of a name must not leave the folder of its module.
+    """Return whether a build of the package stops for another reason than before.
+
+    Also where it fails in both: an edit of a name must not leave the folder of its module.
     """
     if before.package is None or after.package is None:
         return False
@@ -191,24 +203,27 @@ def _repeated(urdf: Read) -> set[tuple[str, str]]:
 
 
 def _is_assumed(submission: Submission) -> bool:
-    """Return whether ROS 2 rejects the URDF, and it is read with words undone: criteria may pass
-    by them.
+    """Return whether ROS 2 rejects the URDF, and it is read with words undone.
+
+    Criteria may pass by them.
     """
     reading = submission.urdf.loaded if isinstance(submission.urdf, Read) else None
     return reading is not None and reading.verdict == "rejected" and reading.is_meant
 
 
 def _is_of_robot(path: str, submission: Submission) -> bool:
-    """Return whether a file is the URDF or one that its xacro reads, and not one that the
-    package's checks read.
+    """Return whether a file is the URDF or one that its xacro reads.
+
+    It is not one that the package's checks read.
     """
     is_robot = path.lower().endswith((".urdf", ".xacro")) and path in submission.whole_tree.files
     return is_robot or path == submission.path
 
 
 def is_worse(before: Result, after: Result) -> bool:
-    """Return whether a criterion no longer passes, has fewer points, or is undecided now; never
-    an adjusted one.
+    """Return whether a criterion no longer passes, has fewer points, or is undecided now.
+
+    Never an adjusted one.
     """
     was, status = before.outcome.status, after.outcome.status
     if after.is_adjusted:
@@ -248,8 +263,9 @@ def judged_results(report: Report) -> dict[str, Result]:
 
 
 def hints_on_slips(meant: Meant | None) -> list[FoundHint]:
-    """Return the hints that correct slips: each gives its criterion the points, unless that fails
-    all the same.
+    """Return the hints that correct slips.
+
+    Each gives its criterion the points, unless that fails all the same.
     """
     if meant is None:
         return []
@@ -278,8 +294,9 @@ class _Tried(NamedTuple):
 
 
 class _Proof(NamedTuple):
-    """What a proposal gains, as a hint says it, and together with all edits before it; and the
-    results then.
+    """What a proposal gains, and the results then.
+
+    As a hint says it, and together with all edits before it.
     """
 
     proposal: Proposal
@@ -296,8 +313,9 @@ def _is_reverse(one: Proposal, other: Proposal) -> bool:
 
 
 def _leave_out(groups: Sequence[Edits], is_enough: Callable[[Edits], bool]) -> tuple[Edits, ...]:
-    """Return the groups of edits without those that are not needed: the last ones are dropped
-    first, because the first gain most. Without trials, the rest stay.
+    """Return the groups of edits without those that are not needed.
+
+    The last ones are dropped first, because the first gain most. Without trials, the rest stay.
     """
     kept = tuple(groups)
     with suppress(_NoTrialsLeft):
@@ -309,8 +327,9 @@ def _leave_out(groups: Sequence[Edits], is_enough: Callable[[Edits], bool]) -> t
 
 
 class HintSearch:
-    """The search for one submission: `found` are proven edits that fit together, `edits` are
-    those of all.
+    """The search for one submission.
+
+    `found` are proven edits that fit together, `edits` are those of all.
     """
 
     def __init__(
@@ -321,8 +340,9 @@ class HintSearch:
         told: Collection[str] = (),
         slips: Sequence[FoundHint] = (),
     ) -> None:
-        """`reference` is the robot of the rubric's solution, `package` returns its package of a
-        name.
+        """Take the robot of the rubric's solution, `reference`.
+
+        `package` returns its package of a name.
 
         No edit is searched for the criteria that are `told`. The results of the trials are those
         with the edits of `slips`, which are found already.
@@ -349,7 +369,7 @@ class HintSearch:
     @property
     def edits(self) -> Edits:
         """The edits of all hints."""
-        return tuple(edit for found in self.found for edit in found.edits)
+        return tuple(edit for hint in self.found for edit in hint.edits)
 
     def run(self) -> "HintSearch":
         """Search until nothing more is found, or the budget is spent."""
@@ -365,7 +385,7 @@ class HintSearch:
         with self.trials.isolated():
             self._name_needed_hints()
         with self.trials.isolated():
-            explained = {name for found in self.found for name in found.gains}
+            explained = {name for hint in self.found for name in hint.gains}
             explained |= self.missing.keys()
             lost = costs_of(self.trials.results)
             for name in explained:
@@ -391,13 +411,15 @@ class HintSearch:
     def _name_needed_hints(self) -> None:
         """Drop from each late hint the earlier hints that it does not need."""
         corrected = tuple(edit for slip in self._slips for edit in slip.edits)
-        for index, found in enumerate(self.found):
+        for index, hint in enumerate(self.found):
 
-            def still_gains(before: Edits, found: FoundHint = found) -> bool:
-                gains, _ = self._gains((*corrected, *before), found.edits, self.trials.results)
-                return found.gains.keys() <= gains.keys()
+            def still_gains(before: Edits, needed_hint: FoundHint = hint) -> bool:
+                gains, _ = self._gains(
+                    (*corrected, *before), needed_hint.edits, self.trials.results
+                )
+                return needed_hint.gains.keys() <= gains.keys()
 
-            self.found[index] = found._replace(after=_leave_out(found.after, still_gains))
+            self.found[index] = hint._replace(after=_leave_out(hint.after, still_gains))
 
     def edits_needed_for(self, name: str) -> tuple[Edits, ...]:
         """Return the edits of hints that a criterion without a hint of its own needs to pass."""
@@ -406,7 +428,7 @@ class HintSearch:
             results = self.trials.graded(edits, [name])
             return name in results and not results[name].is_lost
 
-        return _leave_out([found.edits for found in self.found], passes)
+        return _leave_out([hint.edits for hint in self.found], passes)
 
     @property
     def _lost(self) -> list[str]:
@@ -471,8 +493,12 @@ class HintSearch:
 
     def _best(self, tried: Iterable[_Tried]) -> _Tried | None:
         lost = set(self._lost)
-        left = (it for it in tried if it.passes & lost and it.proposal.edits not in self._refused)
-        return min(left, key=lambda it: self._order(it, lost), default=None)
+        left = (
+            trial
+            for trial in tried
+            if trial.passes & lost and trial.proposal.edits not in self._refused
+        )
+        return min(left, key=lambda trial: self._order(trial, lost), default=None)
 
     def _order(self, one: _Tried, lost: Collection[str]) -> tuple[bool, Decimal, int, int, int]:
         gain = sum((self._criteria[name].points for name in one.passes if name in lost), Decimal(0))
@@ -488,7 +514,9 @@ class HintSearch:
         equal = self._equal_to(best, proof.together, wanted, tried)
         is_of_robot = all(edit.path.endswith((".urdf", ".xacro")) for edit in proof.proposal.edits)
         if equal is not None and (is_of_robot or _is_reverse(proof.proposal, equal.proposal)):
-            name = max((it for it in self._criteria if it in wanted), key=self._weight)
+            name = max(
+                (criterion for criterion in self._criteria if criterion in wanted), key=self._weight
+            )
             self.missing[name] = FoundHint(
                 proof.proposal, {}, "one of several", alternative=equal.proposal
             )
@@ -497,15 +525,16 @@ class HintSearch:
         certainty: Certainty = "preferred" if equal is None else "one of several"
         after: tuple[Edits, ...] = ()
         if proof.is_late:
-            after = tuple(found.edits for found in self.found if found not in self._slips)
+            after = tuple(hint.edits for hint in self.found if hint not in self._slips)
         self.found.append(FoundHint(proof.proposal, proof.gains, certainty, after))
         self.results = proof.results
         self._refused = set()
         return True
 
     def _weight(self, name: str) -> tuple[bool, bool, Decimal]:
-        """Return how well a criterion shows a hint: one that is not skipped, that the URDF
-        loads, the costliest.
+        """Return how well a criterion shows a hint.
+
+        Best is one that is not skipped, that the URDF loads, and the costliest.
         """
         criterion = self._criteria[name]
         return (
@@ -515,8 +544,9 @@ class HintSearch:
         )
 
     def _proof_of(self, proposal: Proposal, wanted: frozenset[str]) -> _Proof | None:
-        """Return what edits gain alone, or else after the edits before them; None if they lose
-        anything.
+        """Return what edits gain alone, or else after the edits before them.
+
+        None if they lose anything.
         """
         edits = tuple(edit for edit in proposal.edits if edit not in self.edits)
         together, after = self._gains(self.edits, edits, self.results)
@@ -534,18 +564,23 @@ class HintSearch:
             return None
         if any(after[name].outcome.status != "passed" for name in gains):
             return None
-        known = {name for found in self.found for name in found.gains}
-        new_gains = {name: points for name, points in gains.items() if name not in known}
-        return _Proof(proposal._replace(edits=edits), new_gains or gains, together, after, is_late)
+        new_gains = self._without_known(gains) or gains
+        return _Proof(proposal._replace(edits=edits), new_gains, together, after, is_late)
+
+    def _without_known(self, gains: Mapping[str, Decimal]) -> dict[str, Decimal]:
+        """Return what edits gain that no hint gains which was found before."""
+        known = {name for hint in self.found for name in hint.gains}
+        return {name: points for name, points in gains.items() if name not in known}
 
     def _needed(
         self, edits: Edits, gains: dict[str, Decimal], after: _Results
     ) -> tuple[Edits, dict[str, Decimal], _Results]:
-        """Leave out changes of values without which the others gain as much; return the rest
-        with what it gains.
+        """Leave out changes of values without which the others gain as much.
+
+        Return the rest with what it gains.
         """
-        for edit in [it for it in edits if it.old and it.new]:
-            rest = tuple(it for it in edits if it is not edit)
+        for edit in [named_edit for named_edit in edits if named_edit.old and named_edit.new]:
+            rest = tuple(other for other in edits if other is not edit)
             if not rest:
                 break
             left, results = self._gains(self.edits, rest, self.results)
@@ -592,8 +627,9 @@ class HintSearch:
         return None
 
     def _is_half(self, best: _Tried, after: _Results) -> bool:
-        """Return whether an edit leaves what it should correct as well: in another call of a
-        macro, or of its link.
+        """Return whether an edit leaves what it should correct as well.
+
+        It is left in another call of a macro, or of its link.
         """
         lost = [self._criteria[name] for name, result in after.items() if result.is_lost]
         passing = [self._criteria[name] for name in best.passes]
@@ -609,8 +645,9 @@ class HintSearch:
     def _gains(
         self, before: Edits, edits: Edits, against: _Results
     ) -> tuple[dict[str, Decimal], _Results]:
-        """Return what edits gain, with the results; nothing where a criterion is worse with
-        them.
+        """Return what edits gain, with the results.
+
+        Nothing where a criterion is worse with them.
         """
         after = self.trials.graded((*before, *edits), against)
         return gains_of(against, after), after

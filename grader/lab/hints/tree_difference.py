@@ -13,8 +13,10 @@ _ORDER = {"add": 1, "remove": 2}  # of the steps, after all that set values
 
 
 class Node(NamedTuple):
-    """A node of a tree: its tag, what it is recognised by (the most reliable first), its values,
-    and its children.
+    """A node of a tree.
+
+    It has its tag, what it is recognised by (the most reliable first), its values, and its
+    children.
 
     `of` is what the node is made from: an element, or a place in a file.
     """
@@ -33,16 +35,17 @@ class Node(NamedTuple):
 
 
 class Step(NamedTuple):
-    """One step from a tree to another: what happens to `own`, a node of the first tree, as in
-    `like` of the other one.
+    """One step from a tree to another.
+
+    What happens to `own_node`, a node of the first tree, as in `like` of the other one.
 
     set: the value `name` becomes that of `like`. unset: it goes. rename: it is called `other`.
-    retag: the node gets the tag of `like`. add: `like` is added to `own`. remove: `own` goes. move:
-    `own` becomes a child of `parent`.
+    retag: the node gets the tag of `like`. add: `like` is added to `own_node`. remove: `own_node`
+    goes. move: `own_node` becomes a child of `parent`.
     """
 
     verb: Literal["set", "unset", "rename", "retag", "add", "remove", "move"]
-    own: Node
+    own_node: Node
     like: Node | None = None
     name: str = ""
     other: str = ""
@@ -50,8 +53,9 @@ class Step(NamedTuple):
 
 
 class _Pairs(NamedTuple):
-    """Two lists of nodes: those that belong together, those of the first alone, and those of the
-    second alone.
+    """Two lists of nodes, paired.
+
+    Those that belong together, those of the first alone, and those of the second alone.
     """
 
     both: list[tuple[Node, Node]]
@@ -59,12 +63,13 @@ class _Pairs(NamedTuple):
     missing: list[Node]
 
 
-def steps(own: Node, like: Node) -> list[Step]:
-    """Return the steps from a tree to another: what is to move, the values, then what is to be
-    added and removed.
+def steps(own_node: Node, like: Node) -> list[Step]:
+    """Return the steps from a tree to another.
+
+    What is to move, the values, then what is to be added and removed.
     """
-    every_step = [*_steps(own, like)]
-    spare = [step.own for step in every_step if step.verb == "remove"]
+    every_step = [*_steps(own_node, like)]
+    spare = [step.own_node for step in every_step if step.verb == "remove"]
     moved: list[Step] = []
     left: list[Step] = []
     for step in every_step:
@@ -74,48 +79,55 @@ def steps(own: Node, like: Node) -> list[Step]:
         if other is None or alike is None:
             left.append(step)
         else:
-            moved.append(Step("move", alike, other, parent=step.own))
+            moved.append(Step("move", alike, other, parent=step.own_node))
             moved += _steps(alike, other)
             spare = [node for node in spare if node is not alike]
-    kept: list[Step] = []
-    for step in left:
-        was_moved = not any(node is step.own for node in spare)
-        if step.verb != "remove" or not was_moved:
-            kept.append(step)
+    kept = _without_removals(left, spare)
     return moved + sorted(kept, key=lambda step: _ORDER.get(step.verb, 0))
 
 
-def _steps(own: Node, like: Node) -> Iterator[Step]:
-    if own.tag != like.tag:
-        yield Step("retag", own, like)
-    yield from _values(own, like)
-    pairs = paired(own.children, like.children)
+def _without_removals(steps_left: Sequence[Step], spare: Sequence[Node]) -> list[Step]:
+    """Return the steps without the removal of nodes that are moved: those that are not `spare`."""
+    kept: list[Step] = []
+    for step in steps_left:
+        was_moved = not any(node is step.own_node for node in spare)
+        if step.verb != "remove" or not was_moved:
+            kept.append(step)
+    return kept
+
+
+def _steps(own_node: Node, like: Node) -> Iterator[Step]:
+    if own_node.tag != like.tag:
+        yield Step("retag", own_node, like)
+    yield from _values(own_node, like)
+    pairs = paired(own_node.children, like.children)
     for pair in pairs.both:
         yield from _steps(*pair)
-    yield from (Step("add", own, node) for node in pairs.missing)
+    yield from (Step("add", own_node, node) for node in pairs.missing)
     yield from (Step("remove", node) for node in pairs.extra)
 
 
-def _values(own: Node, like: Node) -> Iterator[Step]:
-    missing = [name for name in like.values if name not in own.values]
-    for name, value in own.values.items():
+def _values(own_node: Node, like: Node) -> Iterator[Step]:
+    missing = [name for name in like.values if name not in own_node.values]
+    for name, value in own_node.values.items():
         if name in like.values:
             if value != like.values[name]:
-                yield Step("set", own, like, name)
+                yield Step("set", own_node, like, name)
             continue
         meant = closest(name, missing)
         if meant:
-            yield Step("rename", own, like, name, meant)
-        yield Step("unset", own, like, name)
-    yield from (Step("set", own, like, name) for name in missing)
+            yield Step("rename", own_node, like, name, meant)
+        yield Step("unset", own_node, like, name)
+    yield from (Step("set", own_node, like, name) for name in missing)
 
 
-def paired(own: Sequence[Node], like: Sequence[Node]) -> _Pairs:
-    """Pair nodes: by tag and all keys, then by each key, then by tag and likeness, then by similar
-    tags.
+def paired(own_nodes: Sequence[Node], like: Sequence[Node]) -> _Pairs:
+    """Pair nodes.
+
+    By tag and all keys, then by each key, then by tag and likeness, then by similar tags.
     """
-    pairing = _Pairing(own, like)
-    depth = max((len(node.keys) for node in (*own, *like)), default=0)
+    pairing = _Pairing(own_nodes, like)
+    depth = max((len(node.keys) for node in (*own_nodes, *like)), default=0)
     parts = [slice(0, depth), *(slice(index, index + 1) for index in range(depth))]
     for part in parts:
         pairing.pair_by_keys(part)
@@ -136,9 +148,9 @@ def paired(own: Sequence[Node], like: Sequence[Node]) -> _Pairs:
 class _Pairing:
     """The nodes of two lists that are being paired."""
 
-    def __init__(self, own: Sequence[Node], like: Sequence[Node]) -> None:
-        self.own = own
-        self.extra, self.missing = [*own], [*like]
+    def __init__(self, own_nodes: Sequence[Node], like: Sequence[Node]) -> None:
+        self.own_nodes = own_nodes
+        self.extra, self.missing = [*own_nodes], [*like]
         self.both: list[tuple[Node, Node]] = []
 
     def pair(self, node: Node, other: Node) -> None:
@@ -158,12 +170,13 @@ class _Pairing:
 
     def in_order(self) -> list[tuple[Node, Node]]:
         """Return the pairs in the order of the first list."""
-        return [pair for node in self.own for pair in self.both if pair[0] is node]
+        return [pair for node in self.own_nodes for pair in self.both if pair[0] is node]
 
 
 def _likeness(one: Node, other: Node) -> float:
-    """Return how alike two nodes are: the share of their values and of the tags in them that both
-    have.
+    """Return how alike two nodes are.
+
+    This is the share of their values and of the tags in them that both have.
     """
     mine, its = _content(one), _content(other)
     return len(mine & its) / max(len(mine | its), 1)

@@ -1,5 +1,6 @@
-"""The rows of a rubric: criteria with what they are worth, parts, evidence, the late penalty,
-ignored mutants.
+"""The rows of a rubric.
+
+They are criteria with what they are worth, parts, evidence, the late penalty, and ignored mutants.
 """
 
 from collections.abc import Iterable, Mapping
@@ -17,8 +18,9 @@ DEADLINE = "deadline"  # likewise: a deadline of the student
 
 
 class Carried(NamedTuple):
-    """Error carried forward: points are kept where one of `causes` failed and the check, another
-    fact, passes.
+    """Error carried forward.
+
+    Points are kept where one of `causes` failed and the check, another fact, passes.
     """
 
     causes: tuple[str, ...]
@@ -129,8 +131,9 @@ def worth(criteria: Iterable[Criterion]) -> _Worth:
 
 
 class Part(NamedTuple):
-    """A task of the lab. `needs` is the required input: a urdf, a package, or all files of the
-    submission.
+    """A task of the lab.
+
+    `needs` is the required input: a urdf, a package, or all files of the submission.
     """
 
     id: str
@@ -139,8 +142,9 @@ class Part(NamedTuple):
 
 
 class Evidence(NamedTuple):
-    """Evidence that the lab asks for. `names` are labels in the name of its file, in any spelling:
-    "task 1 step 8".
+    """Evidence that the lab asks for.
+
+    `names` are labels in the name of its file, in any spelling: "task 1 step 8".
     """
 
     id: str
@@ -150,8 +154,9 @@ class Evidence(NamedTuple):
 
 
 class Late(NamedTuple):
-    """The late penalty, in percent of the maximum for each day begun after the deadline and the
-    grace period.
+    """The late penalty, in percent of the maximum for each day.
+
+    A day counts that has begun after the deadline and the grace period.
 
     The penalty lowers no grade below `floor_percent` of the maximum, and does not change lower
     grades. `due` has a time zone.

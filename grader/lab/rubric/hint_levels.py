@@ -1,5 +1,6 @@
-"""How much a hint tells. It is a module of its own because the command line needs it before
-anything is read.
+"""How much a hint tells.
+
+It is a module of its own because the command line needs it before anything is read.
 """
 
 from typing import Literal, get_args

@@ -1,5 +1,6 @@
-"""The keys of a rubric, each declared once: the loader, its messages, the JSON Schema and a page
-use these tables.
+"""The keys of a rubric, each declared once.
+
+The loader, its messages, the JSON Schema and a page use these tables.
 
 The JSON Schema, for editors, also has the arguments of every installed check.
 """
@@ -59,8 +60,9 @@ def _is_list(value: Any, kind: type) -> bool:
 
 
 def _is_below(path: str) -> bool:
-    """Return whether a path names a TOML file in the rubric's folder or below, on every
-    operating system.
+    """Return whether a path names a TOML file in the rubric's folder or below.
+
+    On every operating system.
     """
     return (
         path.endswith(".toml")
@@ -148,7 +150,7 @@ _FEEDBACK = simple_type(
     {"type": ["string", "object"], "additionalProperties": _TEXT.schema},
     lambda value: (
         isinstance(value, str)
-        or (isinstance(value, dict) and all(isinstance(it, str) for it in value.values()))
+        or (isinstance(value, dict) and all(isinstance(text, str) for text in value.values()))
     ),
     lambda value: {"": value} if isinstance(value, str) else value,
 )
@@ -162,10 +164,11 @@ _LAUNCH_ARGUMENTS = simple_type(
     lambda value: (
         isinstance(value, dict)
         and value != {}
-        and all(isinstance(it, _ARGUMENT) for it in value.values())
+        and all(isinstance(argument, _ARGUMENT) for argument in value.values())
     ),
     lambda table: {
-        name: str(it).lower() if isinstance(it, bool) else str(it) for name, it in table.items()
+        name: str(argument).lower() if isinstance(argument, bool) else str(argument)
+        for name, argument in table.items()
     },
 )
 _FALLBACK = toml_type(Literal["failed", "manual"])
@@ -406,8 +409,9 @@ _Schema = dict[str, Any]
 
 
 def rubric_schema() -> _Schema:
-    """Return the JSON Schema of a rubric, with the arguments of every check, also of installed
-    plug-ins.
+    """Return the JSON Schema of a rubric.
+
+    It has the arguments of every check, also of installed plug-ins.
     """
     checks = {name: usable_check(name) for name in check_names()}
     facts = [check.documentation.fact if check is not None else "" for check in checks.values()]
@@ -444,8 +448,9 @@ def rubric_schema() -> _Schema:
 
 
 def _argument_type(check: Check, name: str) -> TomlType:
-    """Return the type of an argument with its meaning, and its default if a rubric can give
-    that.
+    """Return the type of an argument with its meaning.
+
+    And its default if a rubric can give that.
     """
     import json  # late: only the schema needs it
 

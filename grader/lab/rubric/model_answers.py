@@ -1,5 +1,6 @@
-"""Model answers: those in a rubric, and those in a separate file, so that students can have the
-rubric.
+"""Model answers: those in a rubric, and those in a separate file.
+
+With a separate file students can have the rubric.
 """
 
 from collections.abc import Mapping
@@ -28,11 +29,11 @@ def load_with_answers(name: str, file: Path | None = None) -> Rubric:
         return _read_answers(rubric, file)
     if not rubric.answers or missing_answers(rubric):
         return rubric
-    own = _answers_file(rubric)
-    if not own.resolve().is_relative_to(path.parent.resolve()):
-        message = f"the answers file {printable_path(own)} must be in the rubric's folder"
+    own_answers = _answers_file(rubric)
+    if not own_answers.resolve().is_relative_to(path.parent.resolve()):
+        message = f"the answers file {printable_path(own_answers)} must be in the rubric's folder"
         raise RubricError((f"{rubric.place_of(('answers',))}: {message}",))
-    return _read_answers(rubric, own)
+    return _read_answers(rubric, own_answers)
 
 
 def _read_answers(rubric: Rubric, file: Path) -> Rubric:
@@ -61,8 +62,9 @@ def missing_answers(rubric: Rubric) -> str:
 
 
 def _with_answers(rubric: Rubric, answers: Mapping[str, str]) -> Rubric:
-    """Return the rubric with these model answers, by the ids of their criteria, in addition to its
-    own.
+    """Return the rubric with these model answers in addition to its own.
+
+    They are given by the ids of their criteria.
     """
     criteria = (row._replace(answer=answers.get(row.id, row.answer)) for row in rubric.criteria)
     return replace(rubric, criteria=tuple(criteria))

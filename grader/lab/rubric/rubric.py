@@ -1,5 +1,6 @@
-"""A rubric: the facts that are checked, and their points. It is loaded strictly: all mistakes are
-reported at once.
+"""A rubric: the facts that are checked, and their points.
+
+It is loaded strictly: all mistakes are reported at once.
 """
 
 from collections import Counter
@@ -50,8 +51,9 @@ _LIST = "(`grader rubric list` lists the rubrics that come with the grader)"
 
 
 class ReferenceSolution:
-    """A rubric's own solution; no more is read than is needed. Properties raise InputError where it
-    cannot be read.
+    """A rubric's own solution; no more is read than is needed.
+
+    Properties raise InputError where it cannot be read.
     """
 
     def __init__(self, path: Path, lab: Lab, error: Callable[[str], InputError]) -> None:
@@ -165,7 +167,7 @@ class Rubric:
         names = (
             name for row in self.criteria for name in texts_in(row.arguments.get("relative_to", ()))
         )
-        return max(sorted(Counter(names).items()), key=lambda it: it[1], default=("", 0))[0]
+        return max(sorted(Counter(names).items()), key=lambda pair: pair[1], default=("", 0))[0]
 
     @property
     def sha256(self) -> str:
@@ -280,8 +282,9 @@ def load_rubric(name: str | Path) -> Rubric:
 
 
 def read_rubric(data: bytes, path: Path, *, answers: bool = False) -> Rubric:
-    """Return the rubric in the bytes of a file, with or without the model answers in it; raise
-    RubricError.
+    """Return the rubric in the bytes of a file, with or without the model answers in it.
+
+    Raise RubricError.
     """
     valid = _validate(data, path)
     return _made_rubric(valid, data, path, range(len(valid.criteria)), answers=answers)
@@ -341,14 +344,16 @@ def _validate(data: bytes, path: Path) -> Validation:
 
 
 def unknown_causes(rubric: Rubric) -> list[tuple[TomlPath, str]]:
-    """Return the places of `carried` tables that name criteria which do not exist, and the names:
-    they are ignored.
+    """Return the places of `carried` tables that name unknown criteria, and the names.
+
+    They are ignored.
     """
     return Validation(read_toml(rubric.data, rubric.path)[1]).unknown_causes
 
 
 def read_correct_rows(data: bytes, path: Path) -> Rubric | None:
-    """Return a rubric without the criteria in which there are mistakes, and without its totals;
+    """Return a rubric without the criteria in which there are mistakes, and without its totals.
+
     None if there are other mistakes in it.
     """
     table = read_toml(data, path)[1]
@@ -368,7 +373,7 @@ def read_correct_rows(data: bytes, path: Path) -> Rubric | None:
             return _made_rubric(valid, data, path, positions, answers=False)
         if not wrong or any(place[:1] != ("criterion",) for place, _ in valid.complaints):
             return None
-        positions = [it for index, it in enumerate(positions) if index not in wrong]
+        positions = [position for index, position in enumerate(positions) if index not in wrong]
     return None
 
 
@@ -425,16 +430,16 @@ def _make_criterion(
     check, arguments = bound[0], dict(bound[1])
     # Nothing that lists or passes on a criterion's arguments may see the model answer.
     answer = arguments.pop("answer", "") if check.function is answered else ""
-    own = {key: value for key, value in row.items() if key not in ("check", "with", "carried")}
-    own |= {
+    fields = {key: value for key, value in row.items() if key not in ("check", "with", "carried")}
+    fields |= {
         "check": check,
         "arguments": arguments,
         "position": position,
         "answer": answer if answers else "",
     }
     texts = texts_in((arguments, *(given for _, _, given, _ in carried)))
-    own["has_selectors"] = any(map(is_selector, texts))
-    return Criterion(**own, carried=tuple(Carried(*one) for one in carried))
+    fields["has_selectors"] = any(map(is_selector, texts))
+    return Criterion(**fields, carried=tuple(Carried(*one) for one in carried))
 
 
 def _adjust(criterion: Criterion, adjustments: Mapping[str, Adjustment]) -> Criterion:

@@ -13,32 +13,34 @@ DEFAULT_RUBRIC = "lab6"  # of the command line
 
 
 def files_of(name: str, answers: Path | None = None) -> list[Path]:
-    """Return the files and folders that a rubric is read from: its own file, its model answers, its
-    reference.
+    """Return the files and folders that a rubric is read from.
+
+    Its own file, its model answers, its reference.
 
     It is only its own file if there is a mistake in it. Of a reference in the rubric's own folder
     it is only the URDF.
     """
     from grader.lab.rubric.rubric import find_rubric, load_rubric  # late: the default needs none
 
-    found = [answers] if answers is not None else []
+    files = [answers] if answers is not None else []
     with suppress(GraderError):
         file = find_rubric(name)
-        found.append(file)
+        files.append(file)
         rubric = load_rubric(name)
         if rubric.answers:
-            found.append(file.parent / rubric.answers)
+            files.append(file.parent / rubric.answers)
         if rubric.reference:
             place = file.parent / rubric.reference
-            found.append(
+            files.append(
                 place / rubric.urdf if place.resolve() in file.resolve().parents else place
             )
-    return found
+    return files
 
 
 def load_named(name: str, answers: Path | None = None) -> "Rubric":
-    """Return a rubric, with model answers if their file is named. Raises RubricError or
-    InputError.
+    """Return a rubric, with model answers if their file is named.
+
+    Raises RubricError or InputError.
     """
     if answers is None:
         from grader.lab.rubric.rubric import load_rubric

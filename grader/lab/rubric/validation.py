@@ -1,6 +1,6 @@
 """Validate a rubric's TOML: every mistake is collected, with the path of the key that it is in."""
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from decimal import Decimal
 from functools import cache
 from typing import Any
@@ -25,8 +25,9 @@ BoundCarried = tuple[
 
 
 class Validation:
-    """One pass over a parsed rubric. Where `complaints` is empty, the rows contain the converted
-    values of a rubric.
+    """One pass over a parsed rubric.
+
+    Where `complaints` is empty, the rows contain the converted values of a rubric.
 
     `bound` has the check of each criterion with its arguments, in the order of the rows, `carried`
     what its `carried` says.
@@ -123,8 +124,9 @@ class Validation:
         ]
 
     def _read_defaults(self) -> None:
-        """Read the values that criteria have unless they give others, and the default arguments
-        of checks.
+        """Read the default values of criteria, and the default arguments of checks.
+
+        Criteria have them unless they give others.
         """
         defaults = self._row(("defaults",), self.rubric.get("defaults", {}), keys.DEFAULTS)
         for name, given in defaults.pop("with", {}).items():
@@ -142,8 +144,9 @@ class Validation:
         self._defaults = defaults
 
     def _check_subject(self, where: TomlPath, row: TomlRow, check: Check) -> None:
-        """Complain of a pose for a check that examines no robot, and of a comparison without a
-        reference.
+        """Complain of a pose or a comparison that a check cannot have.
+
+        A pose for a check that examines no robot, and a comparison without a reference.
         """
         if "at" in row and "robot" not in check.examined:
             self._complain(
@@ -183,8 +186,9 @@ class Validation:
                 self._complain((*where, cause), message)
 
     def _find_positions(self, key: str) -> dict[str, int]:
-        """Return the position of the first row with each id, and complain of later ones with the
-        same id.
+        """Return the position of the first row with each id.
+
+        Complain of later ones with the same id.
         """
         positions: dict[str, int] = {}
         for index, row in enumerate(self.rubric.get(key, ())):
@@ -203,8 +207,9 @@ class Validation:
             self._complain((*where, "part"), f"there is no part {part!r}{hint}")
 
     def _check_order(self, where: TomlPath, row: TomlRow, positions: Mapping[str, int]) -> None:
-        """Complain of ids in `requires` that are not those of criteria above it, and of `carried`
-        from the criterion itself.
+        """Complain of ids in `requires` that are not those of criteria above it.
+
+        And of `carried` from the criterion itself.
         """
         given: Any = self.rubric  # also of a list with other mistakes in it
         for key in where:
@@ -258,8 +263,9 @@ class Validation:
         }
 
     def _bind_check(self, where: TomlPath, row: TomlRow) -> BoundCheck | None:
-        """Return the check of a row with its converted arguments; None if there is no such
-        check.
+        """Return the check of a row with its converted arguments.
+
+        None if there is no such check.
         """
         name, given = row.get("check"), row.get("with", {})
         check = self._look_up_check((*where, "check"), name) if name is not None else None
@@ -313,20 +319,21 @@ class Validation:
             self._complain(where, f"there is no check {name!r}{hint}")
         return check
 
+    def _owners_of_totals(self) -> Iterator[tuple[TomlPath, TomlRow, str, list[TomlRow]]]:
+        """Yield the rubric and its parts, each with its place before, its name and its criteria."""
+        yield (), self.rubric, "the rubric", self.criteria
+        by_part: dict[str, list[TomlRow]] = {}
+        for row in self.criteria:
+            by_part.setdefault(row.get("part", ""), []).append(row)
+        for index, part in enumerate(self.parts):
+            name = part.get("id", "")
+            yield ("part", index), part, f"part {name!r}", by_part.get(name, [])
+
     def _check_totals(self) -> None:
         """Compare declared totals with the sums, where all points are valid."""
         if any("points" not in row for row in self.criteria):
             return
-        by_part: dict[str, list[TomlRow]] = {}
-        for row in self.criteria:
-            by_part.setdefault(row.get("part", ""), []).append(row)
-        declared: list[tuple[TomlPath, TomlRow, str, list[TomlRow]]] = [
-            ((), self.rubric, "the rubric", self.criteria)
-        ]
-        for index, part in enumerate(self.parts):
-            name = part.get("id", "")
-            declared.append((("part", index), part, f"part {name!r}", by_part.get(name, [])))
-        for where, owner, name, rows in declared:
+        for where, owner, name, rows in self._owners_of_totals():
             actual = sum((row["points"] for row in rows if not row.get("bonus")), Decimal(0))
             if owner.get("points", actual) != actual:
                 without = " without extra credit" if any(row.get("bonus") for row in rows) else ""

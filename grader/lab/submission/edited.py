@@ -1,5 +1,6 @@
-"""A submission with edits: the changed texts of its files, and the submission read again with
-them.
+"""A submission with edits.
+
+It has the changed texts of its files, and the submission read again with them.
 """
 
 from collections.abc import Iterable, Mapping
@@ -18,13 +19,18 @@ _Files = Mapping[
 ]  # the new content of files by path; None for one that is no longer there
 
 
-def edited_files(submission: Submission, edits: Iterable[Edit]) -> _Files | None:
-    """Return the files of a submission that edits change; None where the edits do not fit."""
+def _group_by_file(edits: Iterable[Edit]) -> dict[str, list[Edit]]:
+    """Return the edits of each file, by its path."""
     by_path: dict[str, list[Edit]] = {}
     for edit in edits:
         by_path.setdefault(edit.path, []).append(edit)
+    return by_path
+
+
+def edited_files(submission: Submission, edits: Iterable[Edit]) -> _Files | None:
+    """Return the files of a submission that edits change; None where the edits do not fit."""
     files: dict[str, bytes | None] = {}
-    for path, of_file in by_path.items():
+    for path, of_file in _group_by_file(edits).items():
         before = content(submission, path)
         text = (before or b"").decode("utf-8", "surrogateescape")
         renamed = next((edit.renamed for edit in of_file if edit.renamed), "")
@@ -45,8 +51,9 @@ def content(submission: Submission, path: str) -> bytes | None:
 
 
 def with_urdf(submission: Submission, files: _Files) -> Submission:
-    """Return a submission with only the URDF read again: for edits of the URDF and of xacro that it
-    includes.
+    """Return a submission with only the URDF read again.
+
+    For edits of the URDF and of xacro that it includes.
     """
     urdf = submission.urdf
     assert isinstance(urdf, Read)

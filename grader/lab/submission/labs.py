@@ -106,7 +106,9 @@ class LabFolders:
 
     def __init__(self, names: Sequence[str], paths: Iterable[str] = ()) -> None:
         self._own = {_join_words(lab_words(name)) for name in names}
-        self._shapes = {_NUMBER.sub("#", own) for own in self._own if _NUMBER.search(own)}
+        self._shapes = {
+            _NUMBER.sub("#", own_lab) for own_lab in self._own if _NUMBER.search(own_lab)
+        }
         self._known: dict[str, Belonging] = {}
         self._packages: set[str] = set()
         self._folders: set[str] = set()
@@ -142,27 +144,32 @@ class LabFolders:
     @cached_property
     def _labs_by_folder(self) -> Mapping[str, Sequence[str]]:
         """The folders and archives that name a lab, by the folder that they are in."""
-        found: dict[str, list[str]] = defaultdict(list)
+        folders: dict[str, list[str]] = defaultdict(list)
         for folder in {above for path in self._folders for above in (path, *parents(path))}:
             if folder and self._own_belonging(folder) is not Belonging.NO_LAB:
-                found[folder.rpartition("/")[0]].append(folder)
-        return found
+                folders[folder.rpartition("/")[0]].append(folder)
+        return folders
 
     def is_beside_archive(self, path: str) -> bool:
-        """Return whether a file of no lab, or a folder around it, is beside an archive of this lab
-        and no other lab.
+        """Return whether a file of no lab is beside an archive of this lab and no other.
+
+        Or a folder around it.
         """
         if self.belonging(path) is not Belonging.NO_LAB:
             return False
         labs = next(
-            (self._labs_by_folder[it] for it in (*parents(path), "") if it in self._labs_by_folder),
+            (
+                self._labs_by_folder[parent]
+                for parent in (*parents(path), "")
+                if parent in self._labs_by_folder
+            ),
             (),
         )
-        own = (
-            self._own_belonging(it) is Belonging.THIS_LAB and it.endswith(ARCHIVES)
-            for it in map(str.lower, labs)
+        are_of_lab = (
+            self._own_belonging(lab) is Belonging.THIS_LAB and lab.endswith(ARCHIVES)
+            for lab in map(str.lower, labs)
         )
-        return bool(labs) and all(own)
+        return bool(labs) and all(are_of_lab)
 
     def around(self, path: str) -> str:
         """Return the outermost folder around a file that names a lab; empty if there is none."""
@@ -179,10 +186,10 @@ class LabFolders:
         if not folder:
             return Belonging.NO_LAB
         if folder not in self._known:
-            own = self._own_belonging(folder)
+            own_belonging = self._own_belonging(folder)
             self._known[folder] = (
-                own
-                if own is not Belonging.NO_LAB
+                own_belonging
+                if own_belonging is not Belonging.NO_LAB
                 else self._belonging_of_folder(folder.rpartition("/")[0])
             )
         return self._known[folder]
@@ -206,7 +213,7 @@ class LabFolders:
         spans = {
             _join_words(words[i:j]) for i in range(len(words)) for j in range(i + 1, len(words) + 1)
         }
-        if any(_NUMBER.search(own) for own in spans & self._own):
+        if any(_NUMBER.search(span) for span in spans & self._own):
             return Belonging.NO_LAB if self._has_exact else Belonging.THIS_LAB
         is_other = any(
             _NUMBER.sub("#", span) in self._shapes or _FINAL.fullmatch(span) for span in spans
@@ -223,8 +230,9 @@ def lab_words(name: str) -> tuple[str, ...]:
 
 
 def is_part(name: str, lab: Collection[str] = ()) -> bool:
-    """Return whether a folder's name is that of a part or version of a submission. `lab` are words
-    to ignore.
+    """Return whether a folder's name is that of a part or version of a submission.
+
+    `lab` are words to ignore.
     """
     words = [word for word in lab_words(name) if word not in lab]
     return (
@@ -235,8 +243,9 @@ def is_part(name: str, lab: Collection[str] = ()) -> bool:
 
 
 def _join_words(words: Sequence[str]) -> str:
-    """Return words without spaces, but a point between numbers: lab6, and lab6.2 of Lab6 (2), which
-    is not lab 62.
+    """Return words without spaces, but a point between numbers.
+
+    For example lab6, and lab6.2 of Lab6 (2), which is not lab 62.
     """
     return _NUMBER_BORDER.sub(".", " ".join(words)).replace(" ", "")
 

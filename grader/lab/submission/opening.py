@@ -37,8 +37,9 @@ _MAX_BLANK = 4000  # bytes of a file without a robot
 def read_submission(
     data: bytes, *, identity: str, path: str, lab: Lab = _NO_LAB, opening: Opening = DEFAULTS
 ) -> Submission:
-    """Return the submission that consists of the bytes of one URDF; a URDF without content is
-    none.
+    """Return the submission that consists of the bytes of one URDF.
+
+    A URDF without content is none.
     """
     if _is_blank(data):
         return Submission(identity, Absent(path), opening=opening)
@@ -100,6 +101,7 @@ def open_submission(
 
 def open_with_packages(path: str) -> Submission:
     """Return a submission in which all of its packages are graded, the one with the URDF first.
+
     Raises InputError.
     """
     from grader.ros.package.finding import is_backup, package_around  # late: many have no package
@@ -111,7 +113,9 @@ def open_with_packages(path: str) -> Submission:
         submission = open_submission(path, _NO_LAB._replace(distro=distro))
     main = package_around(submission.packages, submission.path) or submission.package
     packages = [
-        it.name for it in submission.packages if it is not main and not is_backup(it.folder)
+        package.name
+        for package in submission.packages
+        if package is not main and not is_backup(package.folder)
     ]
     if main is None or not packages:
         return submission
@@ -138,8 +142,9 @@ def _is_lab(lab: Lab, name: str) -> bool:
 def submission_of(
     tree: Tree, identity: str, lab: Lab, opening: Opening = DEFAULTS, *, shown: str = ""
 ) -> Submission:
-    """Return the submission that a file tree makes; raises InputError, which names it `shown`, if
-    it has no files.
+    """Return the submission that a file tree makes.
+
+    Raises InputError, which names it `shown`, if it has no files.
     """
     refuse_empty(tree, shown or identity)
     # Late: a URDF on its own needs no search.

@@ -36,8 +36,9 @@ def with_preferred(packages: Sequence[Package], preferred: Package) -> tuple[Pac
 def why_none(
     packages: tuple[Package, ...], elsewhere: tuple[Package, ...], name: str
 ) -> tuple[str, str]:
-    """Return why none of these packages has this name, nor one `elsewhere`, outside of the lab; and
-    which there are.
+    """Return why none of these packages has this name, and which there are.
+
+    Nor has one `elsewhere`, outside of the lab.
     """
     names = [
         f"{quoted(package.name)} in {package.folder or 'the submission'}"

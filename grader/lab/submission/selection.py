@@ -1,5 +1,6 @@
-"""What of a submission is graded: where its lab is searched, and which URDF and package of these
-files, and why.
+"""What of a submission is graded.
+
+Where its lab is searched, and which URDF and package of these files, and why.
 """
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -43,8 +44,9 @@ _ELSEWHERE = {
 
 
 class UrdfChoice(NamedTuple):
-    """The path of the URDF that is graded, if there is one, the other candidates, and which of
-    these fit as well.
+    """The path of the URDF that is graded, if there is one.
+
+    And the other candidates, and which of these fit as well.
     """
 
     path: str | None
@@ -53,8 +55,9 @@ class UrdfChoice(NamedTuple):
     reading: "_ReadCandidate | None" = None  # among several candidates
 
     def read_in(self, surroundings: Surroundings) -> tuple[Read, Budget] | None:
-        """Return the URDF as it was read among several candidates, if it is read alike in these
-        surroundings.
+        """Return the URDF as it was read among several candidates.
+
+        Only if it is read alike in these surroundings.
         """
         if self.reading is None or self.reading.read is None:
             return None
@@ -69,8 +72,9 @@ class UrdfChoice(NamedTuple):
 
 
 class _ReadCandidate(NamedTuple):
-    """A candidate as it was read. Its links are those that the lab names; all if it `is_another` or
-    there are none.
+    """A candidate as it was read.
+
+    Its links are those that the lab names; all if it `is_another` or there are none.
     """
 
     surroundings: Surroundings
@@ -116,14 +120,7 @@ def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
         if package not in lab_packages.values():
             reason = why_not(graded, package, lab.urdf)
             unused_packages.append(OtherCandidate(package.path(MANIFEST), reason))
-    several = ""
-    fitting = selection.choice.fitting
-    if fitting:
-        which = f"{urdf} was graded, not {enumerated(fitting, MAX_NAMED)}"
-        several = (
-            f"{len(fitting) + 1} robots fit this lab: {which}; to grade another one, name its "
-            "file or folder"
-        )
+    several = _note_on_several(selection.choice)
     notes = (several, _note_on_folders(selection))
     return selection._replace(
         packages=packages,
@@ -135,11 +132,23 @@ def select(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
     )
 
 
+def _note_on_several(choice: UrdfChoice) -> str:
+    """Return a note on other robots that fit the lab as well; empty if there are none."""
+    if not choice.fitting:
+        return ""
+    which = f"{choice.path} was graded, not {enumerated(choice.fitting, MAX_NAMED)}"
+    return (
+        f"{len(choice.fitting) + 1} robots fit this lab: {which}; to grade another one, name its "
+        "file or folder"
+    )
+
+
 def _only_package(
     packages: tuple[Package, ...], lab: Lab, around_urdf: Package | None
 ) -> Package | None:
-    """Return the package of a lab that names one, or none: that around the URDF, unless another
-    one has the name.
+    """Return the package of a lab that names one, or none.
+
+    This is that around the URDF, unless another one has the name.
     """
     named = best_named(packages, lab.package)
     if around_urdf is None:
@@ -152,14 +161,15 @@ def _only_package(
 def _several_packages(
     packages: Sequence[Package], lab: Lab, around: Package | None
 ) -> dict[str, Package]:
-    """Return the packages of a lab that names several, by these names; that of the robot counts for
-    a missing one.
+    """Return the packages of a lab that names several, by these names.
+
+    That of the robot counts for a missing one.
     """
-    found = packages_named(packages, lab.packages)
-    missing = [name for name in lab.packages if name not in found]
-    if missing and around is not None and around not in found.values():
-        found[missing[0]] = around
-    return found
+    named = packages_named(packages, lab.packages)
+    missing = [name for name in lab.packages if name not in named]
+    if missing and around is not None and around not in named.values():
+        named[missing[0]] = around
+    return named
 
 
 def _main_package(packages: Mapping[str, Package], lab: Lab, around: Package | None) -> str:
@@ -205,8 +215,9 @@ class _SearchedPlaces(NamedTuple):
         return _part_of(tree, lambda path: self.place_of(path) in places)
 
     def own(self, tree: Tree) -> Tree:
-        """Return the files in the folders of this lab, and those beside its archives: documents may
-        be there.
+        """Return the files in the folders of this lab, and those beside its archives.
+
+        Documents may be there.
         """
         return _part_of(
             tree,
@@ -223,8 +234,9 @@ def _part_of(tree: Tree, belongs: Callable[[str], bool]) -> Tree:
 
 
 def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
-    """Return where a lab is searched in the files of a submission, and which of its robots is
-    graded.
+    """Return where a lab is searched in a submission, and which robot is graded.
+
+    It is searched in the files, and the robot is one of them.
 
     Another lab's folder is searched only if its robot is graded, or if there is nothing else. Where
     the lab's folder exists, no robot of a final project is graded.
@@ -250,32 +262,35 @@ def _search(tree: Tree, lab: Lab, opening: Opening) -> _Selection:
 
     # The packages are those of the best place that has any: all others are elsewhere.
     package_place = places.best_of(package_files)
-    files_elsewhere = [
-        path
-        for path in package_files
-        if package_place is None or places.place_of(path) is not package_place
-    ]
     packages: tuple[Package, ...] = ()
+    files_elsewhere = package_files
     if package_place is not None:
         package_tree = places.only(tree, (package_place,))
         is_whole = package_tree is tree
         packages = every_package if is_whole else _packages_in(package_tree, lab)
-    paths_elsewhere = sorted(project_robots)
-    paths_elsewhere += [path for path in files_elsewhere if path.rpartition("/")[2] == MANIFEST]
-    others = [
-        OtherCandidate(path, _ELSEWHERE[labs.belonging(path)])
-        for path in paths_elsewhere[:_MAX_ELSEWHERE]
-    ]
+        files_elsewhere = [
+            path for path in package_files if places.place_of(path) is not package_place
+        ]
+    packages_elsewhere = every_package if files_elsewhere else ()
     return _Selection(
         choice,
         tree=own_tree,
         packages=packages,
-        no_package=_why_no_package(
-            packages, every_package if files_elsewhere else (), lab, searched_tree
-        ),
-        others=tuple(others),
+        no_package=_why_no_package(packages, packages_elsewhere, lab, searched_tree),
+        others=_list_elsewhere(labs, project_robots, files_elsewhere),
         own_folder=next(map(labs.around, own_tree.files), "") if has_own_folder else "",
         other_lab=other_lab,
+    )
+
+
+def _list_elsewhere(
+    labs: LabFolders, project_robots: Collection[str], package_files: Sequence[str]
+) -> tuple[OtherCandidate, ...]:
+    """Return the robots and packages outside of the searched places, with the reason."""
+    paths = sorted(project_robots)
+    paths += [path for path in package_files if path.rpartition("/")[2] == MANIFEST]
+    return tuple(
+        OtherCandidate(path, _ELSEWHERE[labs.belonging(path)]) for path in paths[:_MAX_ELSEWHERE]
     )
 
 
@@ -328,8 +343,9 @@ def _why_no_package(
 
 
 def _other_lab(tree: Tree, labs: LabFolders, urdf: str | None, roots: Sequence[str]) -> str:
-    """Return the folder of another lab that is searched: that of the URDF; without one, if there is
-    nothing else.
+    """Return the folder of another lab that is searched: that of the URDF.
+
+    Without one, if there is nothing else.
     """
     if urdf is not None:
         if labs.belonging(urdf) is Belonging.OTHER_LAB:
@@ -343,8 +359,9 @@ def _other_lab(tree: Tree, labs: LabFolders, urdf: str | None, roots: Sequence[s
 
 
 class _Tier(IntEnum):
-    """How well a file matches the path that a rubric gives, such as urdf/my_robot.urdf; the best
-    first.
+    """How well a file matches the path that a rubric gives.
+
+    Such a path is urdf/my_robot.urdf. The best comes first.
     """
 
     EXACT = 0  # a/urdf/my_robot.urdf
@@ -399,8 +416,9 @@ class UrdfSearch(NamedTuple):
     packages: tuple[Package, ...]
 
     def choose(self, robots: Sequence[RobotFile]) -> UrdfChoice:
-        """Return which of the robots is graded. Only if there are several, they and launch files
-        are read.
+        """Return which of the robots is graded.
+
+        Only if there are several, they and launch files are read.
         """
         copies = []
         for path in self.tree.generated:
@@ -472,12 +490,13 @@ class UrdfSearch(NamedTuple):
         )
 
     def _readings(self, robots: Sequence[RobotFile]) -> dict[str, _ReadCandidate]:
-        """Return each robot as it is read, expanded by xacro, by its path; of very many only the
-        first are read.
+        """Return each robot as it is read, expanded by xacro, by its path.
+
+        Of very many only the first are read.
         """
         lab, opening = self.lab, self.opening
         bytes_left, parts_left = _MAX_READ, READING
-        found: dict[str, _ReadCandidate] = {}
+        readings: dict[str, _ReadCandidate] = {}
         for robot in robots:
             bytes_left -= min(robot.size, opening.max_size) + _COST_OF_FILE
             around = package_around(self.packages, robot.path)
@@ -490,17 +509,17 @@ class UrdfSearch(NamedTuple):
                 releases=lab.releases,
             )
             if bytes_left < 0:
-                found[robot.path] = _ReadCandidate(surroundings, is_another=bool(lab.links))
+                readings[robot.path] = _ReadCandidate(surroundings, is_another=bool(lab.links))
                 continue
             try:
                 read = read_as_ros(
                     self.tree.files[robot.path].read(opening.max_size), robot.path, surroundings
                 )
-                found[robot.path] = _count_links(read, surroundings, robot.robot, lab)
+                readings[robot.path] = _count_links(read, surroundings, robot.robot, lab)
             except (InputError, NotDecided):  # it may be the robot of the lab
-                found[robot.path] = _ReadCandidate(surroundings)
+                readings[robot.path] = _ReadCandidate(surroundings)
             parts_left = surroundings.budget.left
-        return found
+        return readings
 
 
 def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) -> _ReadCandidate:
@@ -518,8 +537,9 @@ def _count_links(read: Read, surroundings: Surroundings, name: str, lab: Lab) ->
 
 
 def _may_be_meant(best: _Candidate, other: _Candidate, lab: Lab) -> bool:
-    """Return whether another robot may be meant as well: one in another package, or loose, perhaps
-    of a teammate.
+    """Return whether another robot may be meant as well.
+
+    It is in another package, or loose, perhaps of a teammate.
     """
     if other.is_another or other.is_fragment or other.is_part or other.is_backup:
         return False
@@ -552,7 +572,7 @@ def _tier_of(robot: RobotFile, urdf: str) -> _Tier:
 def _reason_against(best: _Candidate, other: _Candidate, lab: Lab) -> str:
     """Return why a file is not graded: the first field in which it differs from the best."""
     pairs = zip(_Candidate._fields, best, other, strict=True)
-    field = next(name for name, wanted, found in pairs if wanted != found)
+    field = next(name for name, wanted, given in pairs if wanted != given)
     if field == "place":
         return _ELSEWHERE[other.place]
     return _REASONS[field].format(urdf=lab.urdf)

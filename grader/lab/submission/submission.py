@@ -79,8 +79,9 @@ DEFAULTS = Opening()
 
 
 class NoPackage(NamedTuple):
-    """Why there is no package, and which there are; of several packages, the name of the one that
-    is missing.
+    """Why there is no package, and which there are.
+
+    Of several packages, the name of the one that is missing.
     """
 
     message: str = NO_PACKAGE
@@ -172,17 +173,20 @@ class Submission(OpenedWorkspace):
 
     @cached_property
     def sha256(self) -> str | None:
-        """The hash of the URDF's bytes; of a URDF on its own that includes others, of a list of the
-        hashes of all.
+        """The hash of the URDF's bytes.
+
+        Of a URDF on its own that includes others, of a list of the hashes of all.
         """
-        own = sha256_of(self.urdf.data) if isinstance(self.urdf, Read) else None
-        if own is None or not self.besides:
-            return own
+        own_hash = sha256_of(self.urdf.data) if isinstance(self.urdf, Read) else None
+        if own_hash is None or not self.besides:
+            return own_hash
         hashes = [
             sha256_of(self.whole_tree.files[path].read(MAX_FILE_SIZE)) for path in self.besides
         ]
-        lines = [f"{found} {path}\n" for found, path in zip(hashes, self.besides, strict=True)]
-        return sha256_of("".join([f"{own}\n", *lines]).encode())
+        lines = [
+            f"{file_hash} {path}\n" for file_hash, path in zip(hashes, self.besides, strict=True)
+        ]
+        return sha256_of("".join([f"{own_hash}\n", *lines]).encode())
 
     @property
     def cost(self) -> int:
@@ -227,8 +231,9 @@ class Submission(OpenedWorkspace):
         return tuple(map(str, self.tree.ignored))
 
     def needed_package(self) -> Package:
-        """Return the graded package; raises MissingElement without one, NotDecided if an archive is
-        unopened.
+        """Return the graded package.
+
+        Raises MissingElement without one, NotDecided if an archive is unopened.
         """
         if self.package is not None:
             return self.package
@@ -253,8 +258,9 @@ class Submission(OpenedWorkspace):
         return replace(self, package=package)
 
     def needed_urdf(self) -> Reading:
-        """Return the graded URDF; raises MissingElement without one, NotDecided if it cannot be
-        read statically.
+        """Return the graded URDF.
+
+        Raises MissingElement without one, NotDecided if it cannot be read statically.
         """
         match self.urdf:
             case Read(reading=reading):
@@ -283,8 +289,9 @@ class Submission(OpenedWorkspace):
         )
 
     def under(self, arguments: Mapping[str, str]) -> "Submission":
-        """Return the submission with its launch files, and its robot if it is xacro, under launch
-        arguments.
+        """Return the submission under launch arguments.
+
+        They apply to its launch files, and to its robot if it is xacro.
         """
         known = {
             package: package.under(arguments) for package in (*self.packages, *self.neighbours)

@@ -18,8 +18,9 @@ _SUBJECTS = ("link", "links", "wheels")  # the arguments of a check that name wh
 
 
 def picture_of(report: Report) -> Picture | None:
-    """Return the picture of a graded robot; None if there is no robot, or if it can no longer be
-    read.
+    """Return the picture of a graded robot.
+
+    None if there is no robot, or if it can no longer be read.
     """
     if report.submission.robot is None or not report.submission.robot.links:
         return None
@@ -92,8 +93,9 @@ def _find_driving(rubric: Rubric, robot: Configuration, wheels: Sequence[str]) -
 
 
 def _is_marked(result: Result) -> bool:
-    """Return whether a picture marks a criterion: it failed on the robot, and its points are
-    lost.
+    """Return whether a picture marks a criterion.
+
+    It failed on the robot, and its points are lost.
     """
     is_about_robot = result.criterion.check.subject in ("urdf", "robot")
     return (
@@ -107,14 +109,15 @@ def _is_marked(result: Result) -> bool:
 def _by_link(
     lost: Sequence[Result], robot: Configuration, solution: Configuration | None
 ) -> dict[str, list[Result]]:
-    """Return the criteria by the link that they are about, in the rubric's order; by "" for several
-    links, or none.
+    """Return the criteria by the link that they are about, in the rubric's order.
+
+    The key is "" for several links, or none.
     """
-    found: dict[str, list[Result]] = {}
+    results_by_link: dict[str, list[Result]] = {}
     for result in lost:
         links = [*_links(result.criterion, robot, solution)]
-        found.setdefault(links[0] if len(links) == 1 else "", []).append(result)
-    return found
+        results_by_link.setdefault(links[0] if len(links) == 1 else "", []).append(result)
+    return results_by_link
 
 
 def _links(

@@ -34,8 +34,9 @@ class MeshStore:
         self._data: dict[str, bytes] = {}
 
     def data(self, address: str) -> bytes | None:
-        """Return the triangles of a mesh, as `Triangles.packed` has them; None if no mesh has the
-        address.
+        """Return the triangles of a mesh, as `Triangles.packed` has them.
+
+        None if no mesh has the address.
         """
         return self._data.get(address)
 
@@ -51,8 +52,9 @@ class MeshStore:
         meshes.kept = self._read
 
     def pack(self, scene: Scene, meshes: "MeshLoader") -> tuple[Mapping[Mesh, str], list[str]]:
-        """Return the addresses of the meshes of a scene, and sentences on those that are shown with
-        fewer triangles. A mesh without an address is shown as its box.
+        """Return the addresses of the meshes of a scene, and sentences on simplified ones.
+
+        These are shown with fewer triangles. A mesh without an address is shown as its box.
         """
         addresses: dict[Mesh, str] = {}
         sentences: dict[str, None] = {}

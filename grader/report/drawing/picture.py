@@ -1,8 +1,10 @@
-"""The content of a picture of a robot: its shapes in their colours, frames, and driving directions
-of wheels; of a graded robot also what `graded_picture.py` adds to it.
+"""The content of a picture of a robot.
+
+It has its shapes in their colours, frames, and driving directions of wheels; of a graded robot also
+what `graded_picture.py` adds to it.
 """
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from math import isfinite
@@ -59,8 +61,9 @@ class Body(NamedTuple):
 
 
 class Wheel(NamedTuple):
-    """A wheel in the frame of a scene: its centre, and the unit direction in which it drives at
-    a positive rotation.
+    """A wheel in the frame of a scene.
+
+    It has its centre, and the unit direction in which it drives at a positive rotation.
     """
 
     centre: Vector
@@ -88,8 +91,9 @@ class Scene:
         return (*self.missing, f"Shown as the boxes around them: the meshes of {shown}")
 
     def centre(self, link: str) -> Vector | None:
-        """Return the centre of the first shape of a link, else the origin of its frame; None
-        without a pose.
+        """Return the centre of the first shape of a link, else the origin of its frame.
+
+        None without a pose.
         """
         pose = next(
             (body.T_frame_shape for body in self.bodies if body.link == link), self.poses.get(link)
@@ -98,8 +102,9 @@ class Scene:
 
     @property
     def root(self) -> str:
-        """The root of the tree that `frame` is in; `frame` itself if it is on or below a loop of
-        joints.
+        """The root of the tree that `frame` is in.
+
+        `frame` itself if it is on or below a loop of joints.
         """
         with suppress(MissingElement):
             return self.robot.root_of(self.frame)
@@ -117,8 +122,9 @@ def scene_of(
     wheels: Collection[str] = (),
     meshes: "MeshLoader | None" = None,
 ) -> Scene:
-    """Return the content of a picture of a robot, in the frame of a link; `wheels` are links
-    that are meant to roll. Without `meshes`, no mesh is shown.
+    """Return the content of a picture of a robot, in the frame of a link.
+
+    `wheels` are links that are meant to roll. Without `meshes`, no mesh is shown.
     """
     # The links that are not shown, or not wholly, by reason.
     omitted: dict[str, dict[str, None]] = {}
@@ -139,8 +145,13 @@ def scene_of(
         missing.append(f"Not shown: {counted(len(bodies) - _MAX_BODIES, 'more shape')}")
     shown = tuple(bodies)[:_MAX_BODIES]
     scene = Scene(robot, frame, poses, shown, (), tuple(missing), tuple(boxed))
-    turning = (_wheel(scene, link) for link in wheels)
-    return replace(scene, wheels=tuple(wheel for wheel in turning if wheel is not None))
+    return replace(scene, wheels=_turning_wheels(scene, wheels))
+
+
+def _turning_wheels(scene: Scene, links: Iterable[str]) -> tuple[Wheel, ...]:
+    """Return the wheels among the links that are meant to roll."""
+    turning = (_wheel(scene, link) for link in links)
+    return tuple(wheel for wheel in turning if wheel is not None)
 
 
 def _list_omitted(omitted: Mapping[str, Collection[str]]) -> list[str]:
@@ -209,8 +220,9 @@ def _body(link: str, visual: Visual, pose: Transform, meshes: "MeshLoader | None
 
 
 def _box_around(mesh: Mesh, meshes: "MeshLoader") -> tuple[Vector, Vector] | str:
-    """Return the size and the centre of the box around a scaled mesh, in its frame (m); else why
-    there is none.
+    """Return the size and the centre of the box around a scaled mesh, in its frame (m).
+
+    Else why there is none.
     """
     loaded = meshes.load(mesh)
     if isinstance(loaded, str):
@@ -233,8 +245,9 @@ def _is_drawable(values: Vector) -> bool:
 
 
 def _wheel(scene: Scene, link: str) -> Wheel | None:
-    """Return a link as a wheel; None if it has no place, no joint turns it, it does not roll, or
-    no shape is known.
+    """Return a link as a wheel.
+
+    None if it has no place, no joint turns it, it does not roll, or no shape is known.
     """
     centre = scene.centre(link)
     with suppress(*_NOT_KNOWN):
@@ -282,8 +295,9 @@ def plain_picture(
     meshes: "MeshLoader | None" = None,
     wheels: Sequence[str] = (),
 ) -> Picture | None:
-    """Return the picture of a robot that is not graded, in the frame of one of its links; None
-    without either. `wheels` are the links that drive it, if they are known.
+    """Return the picture of a robot that is not graded, in the frame of one of its links.
+
+    None without either. `wheels` are the links that drive it, if they are known.
     """
     if robot is not None and frame is not None:
         return Picture(scene_of(robot, frame, meshes=meshes), (), (), (), {"wheels": wheels})

@@ -1,5 +1,6 @@
-"""The robot of a picture as data for the script of a page, which moves its joints: links with
-shapes, and joints.
+"""The robot of a picture as data for the script of a page, which moves its joints.
+
+The data has links with shapes, and joints.
 
 It has nothing of the reference: the script reads that from the three views in the page.
 """
@@ -41,6 +42,19 @@ def space_data(
         if name not in placed:
             link["pose"] = _rows(pose)
         links.append(link)
+    data = {
+        "frame": scene.frame,
+        "root": scene.root,
+        "links": links,
+        "joints": joints,
+        "pins": _pins(picture, cards),
+    }
+    drive = drive_data(picture)
+    return data if drive is None else {**data, "drive": drive}
+
+
+def _pins(picture: Picture, cards: Mapping[str, str]) -> list[dict[str, Any]]:
+    """Return the numbers at links, each with the card on the page that it leads to."""
     pins = []
     for callout in picture.callouts:
         if callout.point is not None:
@@ -49,15 +63,7 @@ def space_data(
             if card is not None:
                 pin["card"] = f"criterion-{card}"
             pins.append(pin)
-    data = {
-        "frame": scene.frame,
-        "root": scene.root,
-        "links": links,
-        "joints": joints,
-        "pins": pins,
-    }
-    drive = drive_data(picture)
-    return data if drive is None else {**data, "drive": drive}
+    return pins
 
 
 def without_names(space: Mapping[str, Any]) -> dict[str, Any]:
@@ -121,8 +127,9 @@ def _scalable_parts(body: Body) -> list[Body]:
 
 
 def _shape(body: Body, T_link_frame: Transform, meshes: Mapping[Mesh, str]) -> dict[str, Any]:
-    """Return a shape in the frame of its link; its size is that of the scaled unit shape of the
-    script.
+    """Return a shape in the frame of its link.
+
+    Its size is that of the scaled unit shape of the script.
     """
     shape = body.shape
     if isinstance(shape, Box):

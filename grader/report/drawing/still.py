@@ -1,5 +1,6 @@
-"""A small picture of a robot for a list of many: what one sees of its larger shapes, obliquely from
-above, in few numbers.
+"""A small picture of a robot for a list of many.
+
+It shows what one sees of its larger shapes, obliquely from above, in few numbers.
 """
 
 from collections.abc import Iterable, Iterator
@@ -57,8 +58,8 @@ def _from_back_to_front(bodies: Iterable[Body]) -> Iterator[Body]:
         extents = [(values.min(axis=0), values.max(axis=0)) for values in (places, depths)]
         bounds[body] = (*extents[0], *extents[1])
     hidden: dict[Body, set[Body]] = {}
-    for body, own in bounds.items():
-        hidden[body] = {other for other, others in bounds.items() if _hides(own, others)}
+    for body, own_bounds in bounds.items():
+        hidden[body] = {other for other, others in bounds.items() if _hides(own_bounds, others)}
     while hidden:
         last = min(hidden, key=lambda body: len(hidden[body]))
         del hidden[last]

@@ -1,5 +1,6 @@
-"""The drawing of a robot as SVG: three views at one scale, a key of the signs, and the failed
-criteria.
+"""The drawing of a robot as SVG.
+
+It has three views at one scale, a key of the signs, and the failed criteria.
 
 It needs no script or other file. A page that contains it adds `STYLE` to its own rules. The signs
 are shapes, ground, frames, driving directions, outlines of the reference, and numbers. Every text
@@ -81,8 +82,9 @@ _MAX_OUTLINES = 1024  # that are kept
 def drawing_element(
     picture: Picture, title: str = "", *, legend: bool = True, above: Sequence[str] = ()
 ) -> str:
-    """Return the drawing of a robot as an SVG element; `above` are lines above it, `legend` lists
-    the callouts below.
+    """Return the drawing of a robot as an SVG element.
+
+    `above` are lines above it, `legend` lists the callouts below.
 
     Screen readers read the title and the same list.
     """
@@ -141,8 +143,9 @@ def _wrapped_lines(texts: Iterable[str]) -> list[str]:
 
 
 def drawing_file(picture: Picture | None, title: str, words: Iterable[str], reason: str) -> str:
-    """Return a drawing as the text of an SVG file, with words below its title; without a picture,
-    the reason.
+    """Return a drawing as the text of an SVG file, with words below its title.
+
+    Without a picture, the reason.
     """
     above = _wrapped_lines(filter(None, words))
     if picture is not None:
@@ -189,8 +192,10 @@ def _view(panel: Panel, picture: Picture) -> Iterator[str]:
 
 
 def _lines(panel: Panel, picture: Picture) -> Iterator[tuple[str, str]]:
-    """Yield the look and the path of each line over the shapes: the outlines and frames of the
-    reference, the frames of the robot, and the driving directions.
+    """Yield the look and the path of each line over the shapes.
+
+    These are the outlines and frames of the reference, the frames of the robot, and the driving
+    directions.
     """
     for body in picture.outlines:
         yield "reference", _polygon(_outline(panel, body))
@@ -235,8 +240,9 @@ def _shape(body: Body, outline: Sequence[str]) -> str:
 
 
 def _axes(panel: Panel, look: str, length: float, pose: Transform) -> Iterator[tuple[str, str]]:
-    """Yield the axes of a frame that do not point to the viewer or away: the look and the path of
-    each.
+    """Yield the look and the path of each axis of a frame.
+
+    Axes that point to the viewer or away are left out.
     """
     x, y = panel.place(pose.translation)
     for name, axis in zip("xyz", AXES, strict=True):
@@ -247,8 +253,9 @@ def _axes(panel: Panel, look: str, length: float, pose: Transform) -> Iterator[t
 
 
 def _travel(panel: Panel, wheel: Wheel) -> Iterator[str]:
-    """Yield the path of the driving direction; it keeps to the right of the wheel's centre, so that
-    two are visible.
+    """Yield the path of the driving direction.
+
+    It keeps to the right of the wheel's centre, so that two are visible.
     """
     across, down, _ = panel.direction(wheel.travel)
     if hypot(across, down) > _END_ON:

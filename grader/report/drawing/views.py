@@ -1,5 +1,6 @@
-"""Three orthographic views of a scene at one scale, as in third-angle projection, and free places
-for labels in them.
+"""Three orthographic views of a scene at one scale, as in third-angle projection.
+
+It also finds free places for labels in them.
 
 A box, a cylinder, a capsule and a sphere are convex, so the outline of each in a view is the convex
 hull of its projected points. Lengths on the sheet are pixels, and y points down.
@@ -54,8 +55,9 @@ class Panel(NamedTuple):
     scale: float
 
     def direction(self, direction: Vector) -> Vector:
-        """Return a direction of the frame on the sheet, with y down, and its component to the
-        viewer.
+        """Return a direction of the frame on the sheet, and its component to the viewer.
+
+        On the sheet y is down.
         """
         x, y, z = np.array((self.right, self.up, self.near)) @ direction
         return float(x), -float(y), float(z)
@@ -80,8 +82,9 @@ class Panel(NamedTuple):
 
 
 def points_of(body: Body) -> _Points:
-    """Return points of the frame whose hull is a body; of a sphere and of the ends of a capsule,
-    those that are farthest along the axes.
+    """Return points of the frame whose hull is a body.
+
+    Of a sphere and of the ends of a capsule, those that are farthest along the axes.
     """
     pose, shape = body.T_frame_shape, body.shape
     if isinstance(shape, Capsule | Sphere):
@@ -104,8 +107,9 @@ def _ball_centres(body: Body) -> list[Vector]:
 
 
 def hull(points: _Points) -> list[Place]:
-    """Return the convex hull of points on the sheet, to a tenth of a pixel (Andrew's monotone
-    chain, 1979).
+    """Return the convex hull of points on the sheet, to a tenth of a pixel.
+
+    It is Andrew's monotone chain, 1979.
     """
     rounded: Any = np.round(points, 1).tolist()
     ordered = sorted({(float(x), float(y)) for x, y in rounded})
@@ -125,15 +129,17 @@ def _half_hull(ordered: list[Place]) -> list[Place]:
 
 
 def from_back_to_front(bodies: Iterable[Body], panel: Panel) -> list[Body]:
-    """Return bodies by the depth of their nearest points; slanted ones that interlock may be in
-    the wrong order.
+    """Return bodies by the depth of their nearest points.
+
+    Slanted ones that interlock may be in the wrong order.
     """
     return sorted(bodies, key=lambda body: float((points_of(body) @ panel.near).max()))
 
 
 def panels_of(picture: Picture, top: float = 0.0) -> tuple[Panel, ...]:
-    """Return the three views of a picture, below `top`; the room above the last one is for the
-    key.
+    """Return the three views of a picture, below `top`.
+
+    The room above the last one is for the key.
     """
     low, high = _bounds(picture)
     size = np.maximum(high - low, _SMALLEST)
@@ -164,8 +170,10 @@ def _bounds(picture: Picture) -> tuple[_Points, _Points]:
 
 
 class _LinkFrame(NamedTuple):
-    """The frame of a link: its pose in the frame of the scene, and the smallest size (m) of the
-    link's shapes, which its axes must not cover; None without shapes.
+    """The frame of a link.
+
+    It has its pose in the frame of the scene, and the smallest size (m) of the link's shapes,
+    which its axes must not cover; None without shapes.
     """
 
     pose: Transform
@@ -173,8 +181,9 @@ class _LinkFrame(NamedTuple):
 
 
 def frames_of(picture: Picture) -> list[_LinkFrame]:
-    """Return the frames that are shown: of links with callouts or shapes, or of all links if there
-    are no shapes.
+    """Return the frames that are shown.
+
+    They are those of links with callouts or shapes, or of all links if there are no shapes.
     """
     scene = picture.scene
     called = [callout.link for callout in picture.callouts]
@@ -182,7 +191,9 @@ def frames_of(picture: Picture) -> list[_LinkFrame]:
     for body in scene.bodies:
         sizes[body.link] = min(_smallest_size(body), sizes.get(body.link, inf))
     links = dict.fromkeys([scene.frame, scene.root, *called, *(sizes or scene.poses)])
-    frames = [_LinkFrame(scene.poses[it], sizes.get(it)) for it in links if it in scene.poses]
+    frames = [
+        _LinkFrame(scene.poses[link], sizes.get(link)) for link in links if link in scene.poses
+    ]
     return frames[: _MAX_FRAMES if scene.bodies else _MAX_FRAMES_ALONE]
 
 
@@ -204,8 +215,9 @@ class FreePlaces:
         self._taken: list[tuple[float, ...]] = []
 
     def take(self, centres: Iterable[Place], size: Place) -> Place | None:
-        """Take the first of some centres at which a label of a size is in the panel and free; None
-        without one.
+        """Take the first of some centres at which a label of a size is in the panel and free.
+
+        None without one.
         """
         panel, (across, down) = self._panel, size
         for x, y in centres:

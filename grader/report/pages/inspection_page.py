@@ -25,8 +25,9 @@ _CLASSES = {"clean": "passed", "degraded": "skipped"}  # of verdicts
 
 
 def inspection_html(inspection: Inspection, viewing: Viewing | None = None) -> str:
-    """Return the inspection as an HTML page, with the joints at the given positions; of `grader
-    view` with `viewing`.
+    """Return the inspection as an HTML page, with the joints at the given positions.
+
+    That of `grader view` with `viewing`.
     """
     robot = inspection.robot
     configuration = robot.configuration if robot is not None else None
@@ -44,10 +45,10 @@ def inspection_html(inspection: Inspection, viewing: Viewing | None = None) -> s
         ],
         "lists": [("Robots", lines)] if robot is None and lines else lists(robot),
     }
-    relative_to = robot.relative_to if robot is not None else None
-    meshes = robot.meshes if robot is not None else None
-    wheels = robot.wheels if robot is not None else ()
-    picture = plain_picture(configuration, relative_to, meshes, wheels)
+    if robot is not None:
+        picture = plain_picture(configuration, robot.relative_to, robot.meshes, robot.wheels)
+    else:
+        picture = plain_picture(configuration, None, None, ())
     return render_robot_page("inspection.html", values, picture, Assets(), {}, viewing)
 
 

@@ -21,16 +21,21 @@ def render_robot_page(
     cards: Mapping[str, str],
     viewing: Viewing | None,
 ) -> str:
-    """Return a page about the robot of a picture, if there is one; `cards` are the entries of its
-    criteria.
+    """Return a page about the robot of a picture, if there is one.
+
+    `cards` are the entries of its criteria.
     """
-    drawn = drawing_element(picture, legend=False) if picture is not None else ""
+    drawn = ""
+    space: dict[str, Any] | None = None
+    legend: list[Any] = []
+    if picture is not None:
+        drawn = drawing_element(picture, legend=False)
+        meshes: Mapping[Mesh, str] = {}
+        if viewing is not None:
+            picture, meshes = viewing.with_meshes(picture)
+        space = space_data(picture, cards, meshes)
+        legend = callout_lines(picture)
     views = Markup(drawn)  # noqa: S704  an element, whose text is escaped
-    meshes: Mapping[Mesh, str] = {}
-    if picture is not None and viewing is not None:
-        picture, meshes = viewing.with_meshes(picture)
-    space = space_data(picture, cards, meshes) if picture is not None else None
-    legend = callout_lines(picture) if picture is not None else []
     shown = {"picture": picture, "views": views, "legend": legend, "has_space": space is not None}
     data: dict[str, Any] = {"robot": space} if space is not None else {}
     scripts, styles, rules = assets.scripts, "text.css robot.css student.css", STYLE

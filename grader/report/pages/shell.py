@@ -1,5 +1,6 @@
-"""The common parts of all pages: templates that escape all text, one file without requests, a
-policy.
+"""The common parts of all pages.
+
+These are templates that escape all text, one file without requests, and a policy.
 """
 
 import hashlib
@@ -129,30 +130,32 @@ def _script(folder: Path, name: str) -> str:
 
 
 def shortened(script: str) -> str:
-    """Return a script without comments, indentation and spaces beside punctuation, as pages have
-    it.
+    """Return a script as pages have it.
+
+    It has no comments, and no indentation and spaces beside punctuation.
 
     Literals keep each character. Statements end with a semicolon or a brace, as prettier writes
     them.
     """
-    code = _COMMENTS.sub(lambda found: found["literal"] or "", script)
+    code = _COMMENTS.sub(lambda match: match["literal"] or "", script)
     return _SPACES.sub(_shortened_space, code).strip() + "\n"
 
 
 def shortened_style(style: str) -> str:
-    """Return a style without comments, indentation and spaces beside punctuation, as pages have
-    it. Literals keep each character.
+    """Return a style without comments, indentation and spaces beside punctuation, as pages have it.
+
+    Literals keep each character.
     """
     short = _SPACES_OF_STYLES.sub(
-        lambda found: found["literal"] or (" " if found["space"] else ""), style
+        lambda match: match["literal"] or (" " if match["space"] else ""), style
     )
     return short.strip().replace(";}", "}")
 
 
-def _shortened_space(found: re.Match[str]) -> str:
-    if found["end"] is not None:
+def _shortened_space(match: re.Match[str]) -> str:
+    if match["end"] is not None:
         return "\n"
-    return found["literal"] or ""
+    return match["literal"] or ""
 
 
 def _source_hash(text: str) -> str:
@@ -161,8 +164,9 @@ def _source_hash(text: str) -> str:
 
 
 def _json(data: Mapping[str, Any]) -> Markup:
-    """Return JSON that cannot close its script element. Raises ValueError for NaN, which is no
-    JSON.
+    """Return JSON that cannot close its script element.
+
+    Raises ValueError for NaN, which is no JSON.
     """
     text = json.dumps(data, ensure_ascii=True, allow_nan=False, separators=(",", ":"))
     return Markup(text.translate(_UNSAFE))  # noqa: S704  no character of it is markup

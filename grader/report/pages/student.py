@@ -31,8 +31,9 @@ _MAX_PICTURES = 6 * 1024 * 1024  # bytes on a page
 
 
 def render_html(report: Report, viewing: Viewing | None = None) -> str:
-    """Return the report as a page, of `grader view` with `viewing`. Model answers are on it only if
-    the rubric was loaded with them.
+    """Return the report as a page, of `grader view` with `viewing`.
+
+    Model answers are on it only if the rubric was loaded with them.
     """
     picture = picture_of(report) if not report.is_bare else None
     numbers = {}  # of the callouts in the picture, by criterion
@@ -80,8 +81,9 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
 
 
 def _pictures(report: Report, entries: Sequence[Entry]) -> Mapping[str, list[tuple[str, str]]]:
-    """Return the pictures of criteria that need manual grading, each as where it is and its data as
-    an address.
+    """Return the pictures of criteria that need manual grading.
+
+    Each is where it is and its data as an address.
     """
     shown: dict[str, list[tuple[str, str]]] = {}
     room = _MAX_PICTURES

@@ -1,5 +1,6 @@
-"""What a page of `grader view` has besides the page of a report or an inspection: the list of
-robots, the arguments of xacro, what breaks the file, and the triangles of meshes.
+"""What a page of `grader view` has besides that of a report or an inspection.
+
+The list of robots, the arguments of xacro, what breaks the file, and the triangles of meshes.
 """
 
 from collections.abc import Mapping, Sequence
@@ -68,8 +69,10 @@ class Viewing:
         }
 
     def with_meshes(self, picture: Picture) -> tuple[Picture, Mapping[Mesh, str]]:
-        """Return a picture that says which meshes are shown as boxes, or with fewer triangles, and
-        the addresses of the triangles of the others.
+        """Return a picture that says how meshes are shown, and addresses of triangles.
+
+        Meshes may be shown as boxes, or with fewer triangles. The addresses are those of
+        the triangles of the others.
         """
         scene = picture.scene
         if self.meshes is None or not scene.boxed:

@@ -1,5 +1,6 @@
-"""A report as annotations of its files for GitHub: failed criteria, most points first, then
-unreported problems.
+"""A report as annotations of its files for GitHub.
+
+Failed criteria come first, most points first, then unreported problems.
 
 GitHub shows ten annotations of each type in a step and drops the others silently, so the last of a
 type counts the rest.
@@ -26,10 +27,11 @@ from grader.report.writers.workflow_commands import (
 
 
 def render_github(report: Report, base: Base) -> str:
-    """Return the annotations of a report: the score as a notice, then the findings, most points
-    first.
+    """Return the annotations of a report.
+
+    The score is a notice, then come the findings, most points first.
     """
-    found = [*_findings(report, base)]
+    findings = [*_findings(report, base)]
     lines = [
         command(
             "notice",
@@ -38,22 +40,26 @@ def render_github(report: Report, base: Base) -> str:
             _overview(report),
         )
     ]
-    return "".join([*lines, *limited_annotations(found, 1)])
+    return "".join([*lines, *limited_annotations(findings, 1)])
 
 
 def _findings(report: Report, base: Base) -> Iterator[Annotation]:
-    """Yield what to fix or grade manually, and remarks; `base` is where the submission is in its
-    repository.
+    """Yield what to fix or grade manually, and remarks.
+
+    `base` is where the submission is in its repository.
     """
-    found, source_of = (
+    sections, source_of = (
         report_sections(report),
         cache(report.submission.source),
     )  # reads each file once
-    for entry in (*found.mistakes, *(one for one in found.pending if not is_manual(one.result))):
+    for entry in (
+        *sections.mistakes,
+        *(one for one in sections.pending if not is_manual(one.result)),
+    ):
         yield _entry_finding(entry, source_of, base)
     for title, lines in (
-        (found.unbuilt_title, [*found.unbuilt_lines]),
-        ("Not found", [*found.missing]),
+        (sections.unbuilt_title, [*sections.unbuilt_lines]),
+        ("Not found", [*sections.missing]),
     ):
         if lines:
             yield Annotation(title, "note", "\n".join(line.text for line in lines))
@@ -61,6 +67,11 @@ def _findings(report: Report, base: Base) -> Iterator[Annotation]:
         remarks = remarks_on(result) if not is_failure(result) else ()
         if remarks:
             yield Annotation(result.criterion.id, "note", "\n".join(remarks))
+    yield from _problem_findings(report, source_of, base)
+
+
+def _problem_findings(report: Report, source_of: SourceOf, base: Base) -> Iterator[Annotation]:
+    """Yield the problems that no criterion has reported."""
     for problem in other_problems(report):
         where = problem.location
         text = annotation_text([printable(problem.message)], where, base)

@@ -1,5 +1,6 @@
-"""A report as JSON, schema grader/report/v1: its objects, from which `grader schema report`
-follows.
+"""A report as JSON, schema grader/report/v1.
+
+It has its objects, from which `grader schema report` follows.
 """
 
 from functools import cache
@@ -144,8 +145,9 @@ REPORT = JsonObject(
 
 
 def render_json(report: Report) -> str:
-    """Return the report. It has no clock, absolute path or random order: the same input gives the
-    same bytes.
+    """Return the report.
+
+    It has no clock, absolute path or random order: the same input gives the same bytes.
     """
     return to_json(REPORT.data(_with_ends(report)))
 

@@ -1,5 +1,7 @@
-"""One line for each finding, `path:line:column: CODE message`, for editors, grep and problem
-matchers. The paths begin in the current folder; without a finding there is no line.
+"""One line for each finding, `path:line:column: CODE message`.
+
+For editors, grep and problem matchers. The paths begin in the current folder; without a finding
+there is no line.
 """
 
 from collections.abc import Iterable

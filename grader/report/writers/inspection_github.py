@@ -12,10 +12,11 @@ from grader.report.writers.workflow_commands import (
 
 
 def inspection_github(inspection: Inspection) -> str:
-    """Return the annotations of an inspection: what ROS 2 does as a notice, then its problems,
-    errors first.
+    """Return the annotations of an inspection.
+
+    What ROS 2 does is a notice, then come its problems, errors first.
     """
-    found = [
+    problems = [
         Annotation(
             problem.code,
             problem.severity,
@@ -25,4 +26,4 @@ def inspection_github(inspection: Inspection) -> str:
         for problem in inspection.problems
     ]
     first = command("notice", {}, printable(inspection.path), effect(inspection))
-    return "".join([first, *limited_annotations(found, 1)])
+    return "".join([first, *limited_annotations(problems, 1)])

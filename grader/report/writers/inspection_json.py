@@ -24,8 +24,9 @@ from grader.report.writers.problem_json import PROBLEM, problems_with_ends
 
 
 def _poses(robot: InspectedRobot) -> dict[str, list[list[float]] | None]:
-    """Return the poses of links as rows of numbers, rounded to 1e-12, because machines differ
-    beyond that.
+    """Return the poses of links as rows of numbers, rounded to 1e-12.
+
+    Machines differ beyond that.
     """
     rows: dict[str, list[list[float]] | None] = {}
     for link, pose in robot.poses():
@@ -76,8 +77,11 @@ INSPECTION = JsonObject(
         "robots": Many(_ROBOT),
         "problems": (Many(PROBLEM), "package_problems"),
         "read": (Maybe(_EXTENT), "extent"),
-        "distro": (array(TEXT), lambda it: it.extent.stated.releases if it.extent else ()),
-        "distro_from": (array(TEXT), lambda it: it.extent.stated.places if it.extent else ()),
+        "distro": (array(TEXT), lambda robot: robot.extent.stated.releases if robot.extent else ()),
+        "distro_from": (
+            array(TEXT),
+            lambda robot: robot.extent.stated.places if robot.extent else (),
+        ),
     }
 )
 

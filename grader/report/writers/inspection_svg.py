@@ -8,8 +8,9 @@ _SEVERAL = "No picture: there are several robots; name one with --robot."
 
 
 def inspection_svg(inspection: Inspection) -> str:
-    """Return the drawing of an inspected robot as a file, with its joints at the given
-    positions.
+    """Return the drawing of an inspected robot as a file.
+
+    Its joints are at the given positions.
     """
     title, words = inspection.path, f"{inspection.path}: {effect(inspection)}"
     reason = NO_PICTURE if not inspection.robots else _SEVERAL

@@ -29,12 +29,8 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
     verdict = (effect(inspection), _STYLES[look_of(inspection)])
     path = shown.path if shown is not None else inspection.path
     page.inset(Text.assemble((printable(path), "bold"), ": ", verdict, name), indent=0)
-    if inspection.extent is not None:
-        page.inset(Text(inspection.extent.words, "dim"), indent=0)
-    if shown is not None and shown.driving:
-        page.inset(Text(printable(shown.driving), "dim"), indent=0)
-    if inspection.ignored:
-        page.inset(Text(f"{inspection.ignored} ignored", "dim"), indent=0)
+    for remark in _remarks_on(inspection):
+        page.inset(Text(remark, "dim"), indent=0)
     if len(inspection.robots) > 1:
         page.title("Robots")
         for robot in inspection.robots:
@@ -48,6 +44,17 @@ def inspection_terminal(inspection: Inspection, console: Console) -> None:
         for name, words in rows:
             page.inset(Text.assemble(name, (words, "dim")))
     page.print()
+
+
+def _remarks_on(inspection: Inspection) -> Iterator[str]:
+    """Yield what is known of releases and of driving, and how many problems are ignored."""
+    shown = inspection.robot
+    if inspection.extent is not None:
+        yield inspection.extent.words
+    if shown is not None and shown.driving:
+        yield printable(shown.driving)
+    if inspection.ignored:
+        yield f"{inspection.ignored} ignored"
 
 
 def _problem_rows(console: Console, inspection: Inspection) -> Iterator[Text]:

@@ -1,5 +1,6 @@
-"""A report as JUnit XML: a suite for each part, a test case for each criterion. Jenkins, GitLab and
-others show it.
+"""A report as JUnit XML: a suite for each part, a test case for each criterion.
+
+Jenkins, GitLab and others show it.
 
 A failure is the student's, an error the grader's. What needs manual grading and extra credit that
 was not earned are skipped. There are no times: the same submission gives the same report.
@@ -29,8 +30,9 @@ _COUNTS = {"failures": "failure", "errors": "error", "skipped": "skipped"}
 
 
 def render_junit(report: Report, base: Base) -> str:
-    """Return the report; its paths are those in the repository, where the submission is at
-    `base`.
+    """Return the report as JUnit XML.
+
+    Its paths are those in the repository, where the submission is at `base`.
     """
     top = etree.Element("testsuites", {"name": graded_line(report), **_counts(report.results)})
     said = [*(line.text for line in head(report)), *closing_lines(report)]

@@ -1,5 +1,6 @@
-"""A report as Markdown (CommonMark, and HTML only to fold what passed): for job summaries, comments
-and LMS pages.
+"""A report as Markdown, for job summaries, comments and LMS pages.
+
+It is CommonMark, and HTML only to fold what passed.
 
 Text of a submission is escaped: it never becomes markup, HTML, a link or a mention.
 """
@@ -57,8 +58,9 @@ def render_markdown(report: Report) -> str:
 
 
 def cut_markdown(report: Report, most: int) -> str:
-    """Return the first blocks of a report that fit into a number of bytes of UTF-8, and a notice if
-    some are missing.
+    """Return the first blocks of a report that fit into a number of bytes of UTF-8.
+
+    And a notice if some are missing.
 
     It is for job summaries, which students read, so it has no model answers.
     """
@@ -124,8 +126,9 @@ def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str
 
 
 def _entry_head(entry: Entry) -> str:
-    """Return what a mistake costs and its criteria; of another criterion the points, and the title
-    where it holds.
+    """Return what a mistake costs and its criteria.
+
+    Of another criterion the points, and the title where it holds.
     """
     result, name = entry.result, code(entry.id)
     if entry.lost or is_failure(result):
@@ -166,8 +169,8 @@ def _fold_passed(group: CriteriaGroup) -> str:
 
 def escape(text: str) -> str:
     """Return one line of printable text that Markdown shows as it is."""
-    plain = _ACTIVE.sub(lambda found: _HTML.get(found[0]) or f"\\{found[0]}", text.strip())
-    plain = _OPENING.sub(lambda found: f"{found[0][:-1]}\\{found[0][-1]}", plain)
+    plain = _ACTIVE.sub(lambda match: _HTML.get(match[0]) or f"\\{match[0]}", text.strip())
+    plain = _OPENING.sub(lambda match: f"{match[0][:-1]}\\{match[0][-1]}", plain)
     return _MENTION.sub("\\g<0>\u2060", plain)
 
 
@@ -191,7 +194,7 @@ def _keep_spaces(text: str) -> str:
 
 def code(text: str) -> str:
     """Return printable text as inline code; as plain text if it has too many backticks."""
-    longest = max((len(found[0]) for found in re.finditer(r"`+", text)), default=0)
+    longest = max((len(match[0]) for match in re.finditer(r"`+", text)), default=0)
     if longest >= _MAX_FENCE:
         return escape(text)
     fence = "`" * (longest + 1)
@@ -202,7 +205,7 @@ def code(text: str) -> str:
 def fence(lines: Sequence[str], language: str = "text") -> str:
     """Return printable lines, none of them blank, as a code block that nothing in them can end."""
     fence = "`" * max(
-        (len(found[0]) + 1 for line in lines for found in _FENCE.finditer(line)), default=3
+        (len(match[0]) + 1 for line in lines for match in _FENCE.finditer(line)), default=3
     )
     if len(fence) > _MAX_FENCE:
         return "\n".join(f"    {line}" for line in lines)

@@ -1,5 +1,6 @@
-"""A report as the result file of a platform: Gradescope's results.json or Classroom 50's
-result.json.
+"""A report as the result file of a platform.
+
+This is Gradescope's results.json or Classroom 50's result.json.
 
 In Gradescope's, what needs manual grading has no points, because they would be shown as lost: give
 them in Gradescope. Extra credit has points, but no maximum (`max_score` is optional). The maxima
@@ -91,8 +92,9 @@ _TAG = re.compile(
 
 
 def identity_from(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return whose result it is, from the runner's environment variables. Raises InputError if some
-    are missing.
+    """Return whose result it is, from the runner's environment variables.
+
+    Raises InputError if some are missing.
     """
     missing = [name for name in _REQUIRED if not environment.get(name)]
     if missing:

@@ -29,7 +29,7 @@ PROBLEM = JsonObject(
 
 def problems_with_ends(problems: Iterable[Problem], source_of: SourceOf) -> tuple[Problem, ...]:
     """Return problems whose locations have their ends."""
-    found = []
+    with_ends = []
     for problem in problems:
-        found.append(problem._replace(location=ended(problem.location, source_of)))
-    return tuple(found)
+        with_ends.append(problem._replace(location=ended(problem.location, source_of)))
+    return tuple(with_ends)

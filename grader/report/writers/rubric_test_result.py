@@ -47,8 +47,9 @@ _NUMBER_OF_ID = re.compile(r" \(\d+\)$")  # of equal ones
 
 
 def render_rubric_test(test: RubricTest, width: int) -> str:
-    """Return the result in lines of at most this width: what was graded, what is wrong, the score
-    last.
+    """Return the result in lines of at most this width.
+
+    What was graded, what is wrong, the score last.
     """
     lines = [f"{test.reference.rubric.id}: {test.reference.rubric.title}", "", *_count_lines(test)]
     if test.lost:
@@ -84,10 +85,10 @@ def render_rubric_test(test: RubricTest, width: int) -> str:
 def _kind_lines(test: RubricTest) -> Iterator[str]:
     """Yield the score of each kind, if there are several, and why mutants may survive."""
     if len(test.kinds) > 1:
-        shown = [f"{it.kind} {it.caught}/{it.graded}" for it in test.kinds]
+        shown = [f"{kind.kind} {kind.caught}/{kind.graded}" for kind in test.kinds]
         yield from ("", f"By kind: {', '.join(shown)}")
     given = {row.reason for row in test.reference.rubric.ignored}
-    reasons = Counter(it.reason for it in test.ignored if it.reason not in given)
+    reasons = Counter(mutant.reason for mutant in test.ignored if mutant.reason not in given)
     for reason, count in reasons.items():
         yield from ("", f"{counted(count, 'mutant')} may survive: {reason}.")
 
@@ -131,6 +132,11 @@ def _count_lines(test: RubricTest) -> Iterator[str]:
         if samples.skipped:
             line += f", {samples.skipped} of other rubrics skipped"
         yield line
+    yield _mutants_line(test)
+
+
+def _mutants_line(test: RubricTest) -> str:
+    """Return how many mutants were graded, and what became of them."""
     line = f"Mutants      {test.tried}"
     if test.tried < test.total:
         line += f" of {test.total}"
@@ -139,7 +145,7 @@ def _count_lines(test: RubricTest) -> Iterator[str]:
         line += f", {test.same} {'is' if test.same == 1 else 'are'} the same robot"
     if test.ignored:
         line += f", {len(test.ignored)} ignored"
-    yield f"{line}, {_count_or_none(len(test.survivors), 'survives', 'survive')}"
+    return f"{line}, {_count_or_none(len(test.survivors), 'survives', 'survive')}"
 
 
 def _count_or_none(count: int, one: str, several: str) -> str:
@@ -147,8 +153,9 @@ def _count_or_none(count: int, one: str, several: str) -> str:
 
 
 def _by_element(test: RubricTest) -> list[Loss]:
-    """Return the mutants that survive: those of one element, or of one line of another file, with
-    the first diff.
+    """Return the mutants that survive, with the first diff.
+
+    Those of one element, or of one line of another file, are together.
     """
     groups: dict[str, list[str]] = {}
     diffs: dict[str, str] = {}

@@ -45,8 +45,9 @@ def sarif_inspection(inspection: Inspection) -> str:
 
 
 def _log(findings: Sequence[Finding], base: Base, source_of: SourceOf) -> str:
-    """Return a log of one run, with the rules that have a result. Several rules may share a code,
-    which is their id: `ruleIndex` says which of them is meant.
+    """Return a log of one run, with the rules that have a result.
+
+    Several rules may share a code, which is their id: `ruleIndex` says which of them is meant.
     """
     rules: dict[tuple[str, str], dict[str, Any]] = {}
     for finding in findings:

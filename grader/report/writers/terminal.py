@@ -1,5 +1,6 @@
-"""A report for a person at a terminal: what to fix first; the score last, where the eye is when the
-command ends.
+"""A report for a person at a terminal: what to fix first.
+
+The score is last, where the eye is when the command ends.
 
 It has the first mistakes in full, and a line for each further one; `--verbose` has everything. Text
 of a submission is never interpreted as markup or control codes.
@@ -39,7 +40,7 @@ from grader.report.criteria import (
     remarks_on,
     status_of,
 )
-from grader.report.locations import diff_lines, location_text
+from grader.report.locations import SourceOf, diff_lines, location_text
 from grader.report.screen import link_to
 from grader.report.statuses import STYLES
 from grader.report.writers.terminal_page import (
@@ -73,42 +74,42 @@ _MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
 
 def render_terminal(report: Report, console: Console, *, verbose: bool = False) -> None:
     """Print a report, with `verbose` everything in it."""
-    found = report_sections(report, everything=verbose)
+    sections = report_sections(report, everything=verbose)
     page = Page(console, [])
     if verbose:
-        _show_everything(report, found, page)
+        _show_everything(report, sections, page)
     else:
-        _show_brief(report, found, page)
+        _show_brief(report, sections, page)
     _show_end(report, page)
     page.print()
 
 
-def _show_brief(report: Report, found: ReportSections, page: Page) -> None:
+def _show_brief(report: Report, sections: ReportSections, page: Page) -> None:
     """Add the short report, without its last lines.
 
     While a student has something to fix, what comes later is a line each, without empty rows.
     """
-    is_unfinished = bool(found.mistakes or found.unbuilt) and not report.student
-    is_short = is_unfinished and len(found.mistakes) == 1
+    is_unfinished = bool(sections.mistakes or sections.unbuilt) and not report.student
+    is_short = is_unfinished and len(sections.mistakes) == 1
     _show_start(report, page)
-    _show_mistakes(found.mistakes, report, page)
-    if found.unbuilt:
-        page.title(found.unbuilt_title)
-    for line in found.unbuilt_lines:
+    _show_mistakes(sections.mistakes, report, page)
+    if sections.unbuilt:
+        page.title(sections.unbuilt_title)
+    for line in sections.unbuilt_lines:
         page.inset(line.text)
-    found_line = content.found_line(found.pending) if is_unfinished else ""
+    found_line = content.found_line(sections.pending) if is_unfinished else ""
     if is_unfinished and not found_line:
-        _show_pending(report, found.pending, page)
-    if found.carried:
+        _show_pending(report, sections.pending, page)
+    if sections.carried:
         page.leave_row()
-    for line in found.carried:
+    for line in sections.carried:
         page.line(line.text, _LOOKS[line.role])
     if is_unfinished:
-        _show_later(report, found_line, found.missing, page)
+        _show_later(report, found_line, sections.missing, page)
     else:
-        _show_missing(found.missing, page)
-        _show_pending(report, found.pending, page)
-    for section in found.remarks:
+        _show_missing(sections.missing, page)
+        _show_pending(report, sections.pending, page)
+    for section in sections.remarks:
         page.leave_row()
         _show_remarks(section, page)
     _show_groups(report, page)
@@ -126,11 +127,12 @@ def _show_remarks(section: Section, page: Page) -> None:
         page.item(entry.status, name, f"  {earned_text(entry.result)}: {words}")
 
 
-def _show_later(report: Report, found: str, missing: Sequence[Line], page: Page) -> None:
-    """Add how much is left to submit, what was found for manual grading, and what matches
-    nothing.
+def _show_later(report: Report, missing_text: str, missing: Sequence[Line], page: Page) -> None:
+    """Add how much is left to submit.
+
+    And what was found for manual grading, and what matches nothing.
     """
-    texts = [text for text in (content.hand_in_line(report), found) if text]
+    texts = [text for text in (content.hand_in_line(report), missing_text) if text]
     texts += [line.text for line in missing if line.role == "there"]
     if texts:
         page.leave_row()
@@ -147,8 +149,9 @@ def _show_missing(missing: Sequence[Line], page: Page) -> None:
 
 
 def _show_start(report: Report, page: Page) -> None:
-    """Add what was graded, the result, and notes; the package only if the path of the URDF does not
-    show it.
+    """Add what was graded, the result, and notes.
+
+    The package only if the path of the URDF does not show it.
     """
     submission = report.submission
     rejected = ", which ROS 2 rejects" if submission.verdict == "rejected" else ""
@@ -179,8 +182,9 @@ def _show_mistakes(mistakes: Sequence[Entry], report: Report, page: Page) -> Non
 
 
 def _brief_blocks(entry: Entry) -> Iterator[Block]:
-    """Yield the blocks of a short report: what is expected only if needed, and nothing that head
-    and hint say.
+    """Yield the blocks of a short report.
+
+    What is expected only if needed, and nothing that head and hint say.
     """
     is_clear = entry.result.outcome.expected is not None or bool(entry.texts("hint", "feedback"))
     for part in entry.blocks:
@@ -209,13 +213,20 @@ def _show_entry(entry: Entry, report: Report, page: Page, blocks: Iterable[Block
                 source = source_of(part.path)
                 if source is not None and source.line(part.line).strip():
                     page.rows.append(excerpt_block(page.console, source, part, INDENT))
-            case Answer(title, lines):
-                page.inset(f"{title}:", "bold")
-                for line in lines:
-                    page.inset(line, indent=2 * INDENT)
-            case Diff(edits):
-                for line in diff_lines(edits, source_of):
-                    page.inset(line, _DIFF_STYLES.get(line[0], "dim"), 2 * INDENT)
+            case Answer() | Diff():
+                _show_lines(part, source_of, page)
+
+
+def _show_lines(part: Answer | Diff, source_of: SourceOf, page: Page) -> None:
+    """Add the lines of an answer or of edits."""
+    match part:
+        case Answer(title, lines):
+            page.inset(f"{title}:", "bold")
+            for line in lines:
+                page.inset(line, indent=2 * INDENT)
+        case Diff(edits):
+            for line in diff_lines(edits, source_of):
+                page.inset(line, _DIFF_STYLES.get(line[0], "dim"), 2 * INDENT)
 
 
 def _mistake_head(entry: Entry, page: Page) -> Text:
@@ -243,8 +254,9 @@ def _entry_head(entry: Entry, page: Page) -> Text:
 
 
 def _show_pending(report: Report, pending: Sequence[Entry], page: Page) -> None:
-    """Add what needs manual grading: where each answer and picture was found, or why a check cannot
-    decide.
+    """Add what needs manual grading.
+
+    This is where each answer and picture was found, or why a check cannot decide.
     """
     if pending:
         points = points_of(result for entry in pending for result in entry.results)
@@ -286,8 +298,10 @@ def _is_known(group: CriteriaGroup) -> bool:
 
 
 def _show_files(report: Report, page: Page, most: int) -> None:
-    """Add the first problems that no criterion has reported, and the first of the files that were
-    not graded. Problems that make a report higher than `most` are only counted, if it is not 0.
+    """Add the first unreported problems, and the first files that were not graded.
+
+    No criterion has reported these problems. Problems that make a report higher than `most` are
+    only counted, if it is not 0.
     """
     problems = content.other_problems(report)
     listed = [problem for problem in problems if problem.severity != "note"]
@@ -339,11 +353,11 @@ def _show_end(report: Report, page: Page) -> None:
     page.inset(Text.assemble(*parts), indent=0)
 
 
-def _show_everything(report: Report, found: ReportSections, page: Page) -> None:
+def _show_everything(report: Report, sections: ReportSections, page: Page) -> None:
     """Add a report, without its last lines."""
     for line in content.head(report):
         page.line(line.text, _LOOKS[line.role])
-    for section in found.sections:
+    for section in sections.sections:
         _show_section(section, report, page)
     _show_parts(report, page)
     for section in content.closing(report):
@@ -389,8 +403,9 @@ def _is_carried(result: Result) -> bool:
 
 
 def _criterion_row(result: Result) -> Text:
-    """Return a criterion in a line: its title if it passed, else its name, because a title would
-    read as a fact.
+    """Return a criterion in a line: its title if it passed, else its name.
+
+    A title would read as a fact.
     """
     status = status_of(result)
     if status == "passed":

@@ -34,8 +34,9 @@ class Page(NamedTuple):
         return sum(height_of(row) for row in self.rows if row.plain)
 
     def close_up(self, most: int) -> None:
-        """Remove empty rows, the last ones first, until there are at most so many rows; none if
-        they are too many without.
+        """Remove empty rows, the last ones first, until there are at most so many rows.
+
+        None if they are too many without.
         """
         empty = [index for index, row in enumerate(self.rows) if not row.plain]
         excess = self.height + len(empty) - most
@@ -84,8 +85,9 @@ class Page(NamedTuple):
 
 
 def block(console: Console, text: Text, indent: int, head: Text | None = None) -> Text:
-    """Return text that keeps its indent when it wraps; `head` is in place of the indent of the
-    first line.
+    """Return text that keeps its indent when it wraps.
+
+    `head` is in place of the indent of the first line.
     """
     lines = text.wrap(console, max(8, console.width - indent))
     for line in lines:

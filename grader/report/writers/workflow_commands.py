@@ -24,18 +24,19 @@ class Annotation(NamedTuple):
     place: Mapping[str, str] = {}  # without any the whole submission is meant
 
 
-def limited_annotations(found: Sequence[Annotation], notices: int) -> Iterator[str]:
+def limited_annotations(annotations: Sequence[Annotation], notices: int) -> Iterator[str]:
     """Yield at most as many annotations of each type as GitHub shows, besides some notices."""
     for level, name in _COMMANDS.items():
-        some = [finding for finding in found if finding.level == level]
+        some = [finding for finding in annotations if finding.level == level]
         room = _MAX_ANNOTATIONS - notices * (level == "note")
         listed = some if len(some) <= room else [*some[: room - 1], _rest_finding(some[room - 1 :])]
         yield from (command(name, one.place, one.title, one.text) for one in listed)
 
 
 def annotation_place(where: Location | None, source_of: SourceOf, base: Base) -> Mapping[str, str]:
-    """Return the properties of an annotation at a location, as seen from the root of the
-    repository; empty without.
+    """Return the properties of an annotation at a location.
+
+    As seen from the root of the repository; empty without.
     """
     if where is None or base.is_outside:  # a file of the repository may have the same path
         return {}
@@ -51,8 +52,9 @@ def annotation_place(where: Location | None, source_of: SourceOf, base: Base) ->
 
 
 def annotation_text(lines: list[str], where: Location | None, base: Base) -> str:
-    """Return the lines, and the location where that is in a macro, or not in a file of the
-    repository.
+    """Return the lines, and the location where lines cannot show it.
+
+    That is in a macro, or not in a file of the repository.
     """
     if where is not None and (
         base.archive or base.is_outside or archive_around(where.path) or where.calls
@@ -61,14 +63,17 @@ def annotation_text(lines: list[str], where: Location | None, base: Base) -> str
     return "\n".join(lines)
 
 
-def _rest_finding(found: Sequence[Annotation]) -> Annotation:
-    text = "\n".join(("See the report for:", *dict.fromkeys(finding.title for finding in found)))
-    return found[0]._replace(title=f"{len(found)} more", text=text, place={})
+def _rest_finding(annotations: Sequence[Annotation]) -> Annotation:
+    text = "\n".join(
+        ("See the report for:", *dict.fromkeys(finding.title for finding in annotations))
+    )
+    return annotations[0]._replace(title=f"{len(annotations)} more", text=text, place={})
 
 
 def command(name: str, place: Mapping[str, str], title: str, text: str) -> str:
-    """Return one annotation: `error`, `warning` or `notice` of printable text, with a line break at
-    its end.
+    """Return one annotation of printable text, with a line break at its end.
+
+    It is an `error`, `warning` or `notice`.
     """
     properties = [*place.items(), ("title", title)]
     listed = ",".join(

@@ -1,5 +1,6 @@
-"""Grade the submission in the current folder, as Gradescope lays it out, and write
-results/results.json.
+"""Grade the submission in the current folder, and write results/results.json.
+
+The folder is as Gradescope lays it out.
 
 There is always a results.json: run_autograder writes one that says that nothing was graded, and
 this script replaces it if the grader wrote a report. It needs only the standard library.
@@ -36,8 +37,9 @@ class _Completed(NamedTuple):
 
 
 def _main(arguments: list[str]) -> int:
-    """Grade, or with --check only test that the grader runs and loads the rubric. Return the exit
-    code.
+    """Grade, or with --check only test that the grader runs and loads the rubric.
+
+    Return the exit code.
     """
     settings = json.loads(Path("source", "autograder.json").read_text(encoding="utf-8"))
     if arguments == ["--check"]:
@@ -129,11 +131,11 @@ def _report(output: bytes) -> dict[str, Any] | None:
     if len(output) > _MAX_BYTES:
         return None
     try:
-        found = json.loads(output.decode(), parse_constant=_refuse_constant)
+        report = json.loads(output.decode(), parse_constant=_refuse_constant)
     except (ValueError, RecursionError):
         return None
-    if isinstance(found, dict) and isinstance(found.get("score"), int | float):
-        return found
+    if isinstance(report, dict) and isinstance(report.get("score"), int | float):
+        return report
     return None
 
 
