@@ -51,7 +51,7 @@ class _Macro(NamedTuple):
     scope: str
     start: int
     end: int
-    own: frozenset[str]
+    local: frozenset[str]
 
 
 class _Document(NamedTuple):
@@ -225,6 +225,6 @@ def _scope_at(macros: Sequence[_Macro], offset: int, name: str) -> str:
     """Return the innermost macro around an offset that has a name as its own; empty without one."""
     scope = ""  # `macros` has outer ones first
     for macro in macros:
-        if macro.start < offset < macro.end and name in macro.own:
+        if macro.start < offset < macro.end and name in macro.local:
             scope = macro.scope
     return scope
