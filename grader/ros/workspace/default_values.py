@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from grader.ros.known.parameter_rows import COVERED, row_for
+from grader.ros.known.parameter_rows import COVERED, node_rows, row_for
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.nodes.node_facts import NodeParameter
@@ -59,7 +59,9 @@ def _defaults(
     if not is_as_released(workspace, kind):
         yield ParameterValue(_NOT_KNOWN, node.location)
         return
-    for release in workspace.releases or COVERED:
+    table = node_rows(kind)
+    read = [release for release in COVERED if table is None or table.is_known_in(release)]
+    for release in workspace.releases or read:
         default = default_in(GivenNode(kind, name, given.values, None), parameter, release)
         yield ParameterValue(default, node.location) if default is not None else None
 
