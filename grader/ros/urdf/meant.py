@@ -129,8 +129,7 @@ def _edits_of(word: Word, problems: Problems) -> Iterator[Edits]:
     else:
         new = next(name for name in word.attributes if name not in word.element.attrib)
         edits = renamed_attribute(source, start, attribute, new)
-    if edits:
-        yield edits
+    yield from filter(None, [edits])
 
 
 def _edits_of_value(word: Word, attribute: str, problems: Problems) -> Edits:
@@ -330,13 +329,12 @@ def _pasted_children(root: Element, robot: Robot) -> Iterator[Word]:
     lonely = [link.name for link in robot.links if link.name not in named]
     doubled = [child for child, count in counts.items() if count == 2]
     if len(lonely) == len(doubled) == 1:
-        end = _end_for_link(root, doubled[0], lonely[0])
-        if end is not None:
+        for end in _end_for_link(root, doubled[0], lonely[0]):
             yield _word_with_value(end, "link", lonely[0], "the child")
 
 
-def _end_for_link(root: Element, doubled: str, lonely: str) -> Element | None:
-    """Return the end of a joint that names a child twice, and should name the lonely link.
+def _end_for_link(root: Element, doubled: str, lonely: str) -> Sequence[Element]:
+    """Return the one end of a joint that names a child twice, and should name the lonely link.
 
     It is that of the joint that is named after the lonely link, else the later one.
     """
@@ -348,9 +346,7 @@ def _end_for_link(root: Element, doubled: str, lonely: str) -> Element | None:
             ends.append(end)
             if lonely in (joint.get("name") or ""):
                 named_after.append(end)
-    if len(named_after) == 1:
-        return named_after[0]
-    return ends[-1] if ends else None
+    return named_after if len(named_after) == 1 else ends[-1:]
 
 
 def _repeated_names(root: Element) -> Iterator[Word]:
