@@ -105,6 +105,11 @@ def _notes(source: Source) -> Iterator[Mismatch]:
     if at >= 0:
         yield warning(NOTE_LEFT, "the launch file has a note of its author", source.at(at))
 """
+RULE_EXAMPLE = """
+[note-left]
+wrong = "Node(package='turtlesim', executable='turtlesim_node', name='FIXME'),"
+right = "Node(package='turtlesim', executable='turtlesim_node', name='turtle'),"
+"""
 RULE_TEST = '''"""A note of an author in a launch file is named."""
 
 from grader.ros.workspace.rules.reading import read_agreement
@@ -238,7 +243,7 @@ def test_a_new_rubric(project: Path) -> None:
 
 
 def test_a_new_rule(project: Path) -> None:
-    """A rule is a row of the table, a function in the file of its family, a test and a line of the changelog."""
+    """A rule is a row of the table, a function in the file of its family, an example, a test and a line of the changelog."""
     rules = project / "grader/ros/workspace/rules"
     replace(rules / "rule_table.py", "\n_moveit = ", f"{RULE}\n_moveit = ")
     with (rules / "one_machine.py").open("a", encoding="utf-8") as family:
@@ -246,6 +251,8 @@ def test_a_new_rule(project: Path) -> None:
     call = "            yield from _variables(source)\n"
     replace(rules / "one_machine.py", call, f"{call}            yield from _notes(source)\n")
     replace(rules / "one_machine.py", "    HOME_PATH,\n", "    HOME_PATH,\n    NOTE_LEFT,\n")
+    examples = project / "docs/examples/rules.toml"
+    replace(examples, "\n[srdf-robot]\n", f"{RULE_EXAMPLE}\n[srdf-robot]\n")
     (project / "tests/workspace/test_notes.py").write_text(RULE_TEST, encoding="utf-8")
     python(project, "docs/make.py")
     add_to_changelog(project, "The rule `note-left`.")

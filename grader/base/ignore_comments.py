@@ -10,9 +10,9 @@ from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
-from grader.base.markup import comment_spans
 from grader.base.problems import Kind, Problem
 from grader.base.source import Location, Source
+from grader.base.text import comment_spans
 
 _MARK = "grader:ignore"
 MARK = _MARK.encode()

@@ -32,14 +32,6 @@ class Attribute(NamedTuple):
         return self.value_start, self.value_end
 
 
-def comment_spans(text: str) -> Iterator[tuple[int, int]]:
-    """Yield the offsets at which each comment begins, and at which its `-->` does."""
-    start = text.find("<!--")
-    while start >= 0 and (end := text.find("-->", start + 4)) >= 0:
-        yield start, end
-        start = text.find("<!--", end)
-
-
 def attributes(text: str, start: int) -> Iterator[Attribute]:
     """Yield the attributes of the start tag at an offset."""
     name = _TAG_NAME.match(text, start)

@@ -218,3 +218,11 @@ def texts_in(value: Any) -> Iterator[str]:
                 yield from texts_in(item)
         case Mapping():
             yield from texts_in(list(value.values()))
+
+
+def comment_spans(text: str) -> Iterator[tuple[int, int]]:
+    """Yield the offsets at which each comment begins, and at which its `-->` does."""
+    start = text.find("<!--")
+    while start >= 0 and (end := text.find("-->", start + 4)) >= 0:
+        yield start, end
+        start = text.find("<!--", end)

@@ -10,11 +10,10 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
-from grader.base import markup
 from grader.base.names import MAX_GUESSES
 from grader.base.problems import Effect, Problem, causes, in_order
 from grader.base.source import Source
-from grader.base.text import enumerated, quoted
+from grader.base.text import comment_spans, enumerated, quoted
 from grader.files.limits import ROBOT_ENDINGS
 from grader.files.reading import read_capped
 from grader.ros.known.releases import Release
@@ -408,7 +407,7 @@ def find_xacro(text: str) -> int | None:
     if "$" not in text and "xacro:" not in text:
         return None
     outside = 0  # where the text begins that is after the last comment
-    for start, end in (*markup.comment_spans(text), (len(text), len(text))):
+    for start, end in (*comment_spans(text), (len(text), len(text))):
         match = _XACRO.search(text, outside, start)
         if match is not None:
             return match.start()
@@ -428,7 +427,7 @@ def _check_text(problems: Problems, *, is_expanded: bool) -> None:
             f"xacro {quote(name)}`"
         )
         problems.listed.append(Problem(urdf_problems.RAW_XACRO, message, problems.source.at(xacro)))
-    for start, end in markup.comment_spans(text):
+    for start, end in comment_spans(text):
         if text.find(": ", start, end) >= 0 or text.find("\t", start, end) >= 0:
             message = "this comment contains a colon and a space, or a tab"
             message += ": it can stop a launch file that passes the URDF as YAML"

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 from grader.base.errors import InputError
-from grader.base.markup import comment_spans
 from grader.base.source import Source
+from grader.base.text import comment_spans
 from grader.files.tree import parents
 from grader.ros.installation.places import is_launch_file
 from grader.ros.package.package import Package
