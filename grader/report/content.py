@@ -55,7 +55,7 @@ _MAX_LISTED = 12
 class ReportSections(NamedTuple):
     """A report in the order in which a student needs it.
 
-    Criteria that passed and have no remark are left out.
+    Criteria that passed and have no remark are not among them.
     """
 
     mistakes: tuple[

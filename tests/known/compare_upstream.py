@@ -1,8 +1,8 @@
 """Print what the tables have otherwise than upstream: `python -m tests.known.compare_upstream CHECKOUT...`.
 
 The arguments are clones of the repositories in READERS, with the branches of their releases, which are read with git and not
-checked out. Each line is a release and what differs there; a release without a branch is named. Nothing is written: whoever
-runs it reads the difference in the sources, and corrects the table. `--since RELEASE` leaves out older releases.
+checked out. Each line is a release and what differs there; a release without a branch is named. Nothing is written:
+read the difference in the sources, and correct the table. `--since RELEASE` ignores older releases.
 """
 
 import argparse

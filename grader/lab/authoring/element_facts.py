@@ -261,7 +261,7 @@ def _value_words(value: Any) -> str:
 def _entries(root: Element, covered: Collection[str]) -> Facts:
     """Yield the values in each element, or why it is omitted.
 
-    The interfaces that are `covered` are left out.
+    The interfaces that are `covered` are not among them.
     """
     for element in foreign_elements(root):
         about = f"<{name_of(element)}>"

@@ -103,7 +103,7 @@ def _places_by_message(
 ) -> dict[Outcome, list[tuple[TomlPath, str]]]:
     """Return the places and criteria of failures with one status and message.
 
-    Criteria whose selectors are `unresolved` are left out.
+    Criteria whose selectors are `unresolved` are not among them.
     """
     places: dict[Outcome, list[tuple[TomlPath, str]]] = {}
     for path, name, outcome in failures:

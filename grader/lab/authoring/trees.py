@@ -153,7 +153,7 @@ def add_joint(tree: Element, name: str, parent: str, child: str, transform: Tran
 def own_elements(tree: Element, *tags: str) -> Iterator[Element]:
     """Yield the elements with these tags that ROS 2 reads.
 
-    Those inside of elements for a simulator are left out.
+    Those inside of elements for a simulator are not among them.
     """
     for child in tree:
         if child.tag not in FOREIGN:

@@ -242,7 +242,7 @@ def _shape(body: Body, outline: Sequence[str]) -> str:
 def _axes(panel: Panel, look: str, length: float, pose: Transform) -> Iterator[tuple[str, str]]:
     """Yield the look and the path of each axis of a frame.
 
-    Axes that point to the viewer or away are left out.
+    Axes that point to the viewer or away are not among them.
     """
     x, y = panel.place(pose.translation)
     for name, axis in zip("xyz", AXES, strict=True):

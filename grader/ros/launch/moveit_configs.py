@@ -568,7 +568,7 @@ class _Actions:
     folders: Mapping[str, str]
 
     def made(self, kind: str, **kwargs: Value) -> Call:
-        """Return an action, condition or substitution; arguments that are None are left out."""
+        """Return an action, condition or substitution; arguments that are None are ignored."""
         return Call(
             kind, [], {name: value for name, value in kwargs.items() if value is not None}, self.at
         )

@@ -367,7 +367,7 @@ def _asked(nodes: Sequence[ast.AST]) -> Iterator[str]:
 def certain_nodes(function: ast.AST) -> Iterator[ast.AST]:
     """Yield the nodes of a function, or of a module without its functions and classes.
 
-    Nodes of which errors are caught are left out.
+    Nodes of which errors are caught are not among them.
     """
     pending = [function]
     while pending:

@@ -54,7 +54,7 @@ def with_transforms(
     The frames are links at fixed joints.
 
     tf2 has one parent of each frame, the one that it was told of last: a frame with two is open.
-    What places the root of the robot in the world is left out.
+    What places the root of the robot in the world is not among them.
 
     Args:
         robot: The robot in the URDF.

@@ -168,8 +168,8 @@ class Problems:
             self.add(urdf_problems.NEWER_ATTRIBUTE, message, element, attribute)
         elif attribute == "quat_xyzw":
             message = (
-                "ROS 2 ignores quat_xyzw, which turns nothing: write rpy, or "
-                f"version {in_words(since)} for ROS 2 Lyrical and later"
+                "ROS 2 ignores quat_xyzw, which turns nothing: write rpy (ROS 2 Lyrical reads it "
+                f"in a file of version {in_words(since)})"
             )
             self.add(urdf_problems.IGNORED_QUATERNION, message, element, attribute)
         return True

@@ -345,13 +345,11 @@ def _read_robot(
 def _refused_version(text: str, version: UrdfVersion | None, newest: UrdfVersion) -> str:
     """Return in words that a release does not read a version, and which it reads."""
     known = [in_words((1, minor)) for minor in range(newest[1] + 1)]
-    since = ""
+    why = "is not supported"
     if version is not None and newest < version <= NEWEST:
-        since = " in this release, but from Lyrical on"
-    return (
-        f'version="{text[:40]}" is not supported{since}, expected '
-        f"{enumerated(known, len(known), 'or')}; ROS 2 rejects the file"
-    )
+        why = "is supported by ROS 2 Lyrical and later"
+    expected = enumerated(known, len(known), "or")
+    return f'version="{text[:40]}" {why}, expected {expected}; ROS 2 rejects the file'
 
 
 def _why_incomplete(document: XmlDocument, robot: Robot) -> str:

@@ -116,7 +116,7 @@ class _RowSide(NamedTuple):
 
 
 def _row_in_yaml(row: YamlNode, *, is_used: bool) -> BridgeRow | None:
-    """Return a row of a file; None where it has no topics or types, with which it is left out."""
+    """Return a row of a file; None where it has no topics or types, and is ignored."""
     ros, gz = _side_of_row(row, "ros"), _side_of_row(row, "gz")
     if ros is None or gz is None:
         return None

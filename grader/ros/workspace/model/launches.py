@@ -25,7 +25,7 @@ class Launches:
     def files(self) -> tuple[tuple[Package, str, Launch], ...]:
         """The launch files, each with its package and its path in it.
 
-        Those of tests and of ROS 1 are left out.
+        Those of tests and of ROS 1 are not among them.
         """
         launches: list[tuple[Package, str, Launch]] = []
         for package in self.folder.packages:

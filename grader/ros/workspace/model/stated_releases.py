@@ -140,7 +140,7 @@ def _in_setting_of_every_branch(text: str) -> set[str]:
 def _in_prose(text: str) -> set[str]:
     """Return the releases that a README states.
 
-    Those that are on other branches, and those that the work was ported from, are left out.
+    Those that are on other branches, and those that the work was ported from, are not among them.
     """
     releases: set[str] = set()
     text = _ORIGIN.sub(lambda match: f"ROS 2 {match['to'] or ''}", text)

@@ -58,7 +58,7 @@ class WorkspaceFolder:
     def packages(self) -> tuple[Package, ...]:
         """The packages that a build of the workspace has: the best of each name.
 
-        Those that colcon ignores are left out.
+        Those that colcon ignores are not among them.
         """
         packages = []
         for package in self.found_packages:

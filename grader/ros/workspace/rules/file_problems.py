@@ -93,7 +93,7 @@ def _build_problems(workspace: Workspace) -> Iterator[Problem]:
 def listed_problems(workspace: Workspace) -> list[Problem]:
     """Return what is wrong in the files, each once.
 
-    What is not evaluated is left out; it is only counted.
+    What is not evaluated is only counted.
     """
     return [
         problem

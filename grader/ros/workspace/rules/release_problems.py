@@ -41,7 +41,7 @@ def compared_names(workspace: Workspace) -> Iterator[Problem]:
 def _release_problems(workspace: Workspace, agreement: Agreement) -> list[Problem]:
     """Return the names that no stated release has, each once in a file.
 
-    Those that are said not to agree are left out.
+    Those that are said not to agree are not among them.
     """
     if not workspace.releases:
         return []
