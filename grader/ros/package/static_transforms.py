@@ -5,11 +5,11 @@ It is started as the launch files of a package start it.
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import replace
-from math import atan2, hypot, isfinite
+from math import hypot, isfinite
 from typing import NamedTuple
 
 from grader.base.source import LazyLocation, Source
-from grader.base.transforms import Transform, Vector, rotation_about
+from grader.base.transforms import Transform, Vector, rotation_from_quaternion
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
 from grader.ros.urdf.link_tree import parent_joints
@@ -259,9 +259,6 @@ def _read_values(options: Mapping[str, str]) -> dict[str, float] | None:
 
 
 def _convert_quaternion(x: float, y: float, z: float, w: float) -> Vector | None:
-    length = hypot(x, y, z)
-    if abs(length**2 + w**2 - 1) > _NORM_TOLERANCE:
+    if abs(hypot(x, y, z, w) ** 2 - 1) > _NORM_TOLERANCE:
         return None
-    if not length:
-        return (0.0, 0.0, 0.0)
-    return Transform(rotation_about((x / length, y / length, z / length), 2 * atan2(length, w))).rpy
+    return Transform(rotation_from_quaternion((x, y, z, w))).rpy
