@@ -5,6 +5,7 @@ from functools import cache
 from typing import Any, NamedTuple, cast
 
 from grader.ros.known.package_files import tables_in_file
+from grader.ros.known.releases import Release
 from grader.ros.known.typed_rows import read_typed
 
 
@@ -72,16 +73,18 @@ class _LaunchFunction(NamedTuple):
 
 INTERFACE_KINDS = ("msg", "srv", "action")
 _Words = Mapping[str, str]
+_Signatures = Mapping[str, Mapping[Release, str]]
 TABLES: Mapping[str, Mapping[str, Any]] = {  # the types of the tables of each package
     "cv_bridge": {"encodings": Mapping[str, int]},
     "image_transport": {"transports": _Words},
     "moveit_configs_utils": {"launches": Mapping[str, _LaunchFunction]},
     "moveit_simple_controller_manager": {"actions": _Words},
     "rclcpp": {"cpp": _CppTable},
-    "rclpy": {"python": _PythonTable},
+    "rclpy": {"python": _PythonTable, "calls": _Signatures},
     "ros_gz_bridge": {"bridge": _BridgeTable},
     "ros_gz_sim": {"create": _CreateTable},
     "rviz_default_plugins": {"displays": _Words},
+    "tf2_ros": {"calls": _Signatures},
 }
 
 
@@ -143,3 +146,9 @@ def create_table() -> _CreateTable:
 def display_types() -> _Words:
     """Return the types of messages that displays of rviz_default_plugins read."""
     return cast("_Words", _table("rviz_default_plugins", "displays"))
+
+
+def call_signatures() -> _Signatures:
+    """Return the parameters of what nodes in Python call, by the release in which they changed."""
+    tables = [_table(package, "calls") for package in ("rclpy", "tf2_ros")]
+    return {name: row for table in tables for name, row in table.items()}

@@ -65,7 +65,7 @@ from grader.ros.python.budget import Budget, OutOfBudget
 _SETTING = {"get_parameter": 1, "get_parameter_or": 1}
 _REGISTERED = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(\s*([\w:]+)\s*\)")
 _SUBSCRIBER = "message_filters::Subscriber"
-_FILTER = re.compile(r"(?P<class>[\w:]*\bSubscriber)\s*<\s*(?P<type>[\w:]+)\s*[,>]")
+_FILTER = re.compile(r"(?P<class>(?<![\w:])[\w:]*\bSubscriber)\s*+<\s*+(?P<type>[\w:]++)\s*+[,>]")
 _LISTS = ("argument_list", "initializer_list")
 _OF_NODE = 20  # parts of a class that may be that of a node
 _SELF = ("shared_from_this", "weak_from_this", "get_node_base_interface")

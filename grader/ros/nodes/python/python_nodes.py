@@ -267,7 +267,8 @@ def _slips_of(package: Package, program: NodeProgram) -> list[Slip] | None:
         return None
     code = parse(data or b"", package.path(program.path))
     if isinstance(code, Code):
-        return node_slips(code, StartedProgram(program.name, program.function))
+        started = StartedProgram(program.name, program.function)
+        return node_slips(code, started, package.releases)
     return python_slips(data or b"", package.path(program.path))
 
 

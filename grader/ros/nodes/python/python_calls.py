@@ -1,0 +1,252 @@
+"""Calls of rclpy and tf2_ros whose arguments Python cannot bind, or that are exchanged.
+
+Signatures by release are rows of `known/packages/rclpy.toml` and `tf2_ros.toml`. Of a release that
+was not read, only missing and exchanged arguments are wrong: it may have more parameters.
+"""
+
+import ast
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+from itertools import combinations
+from typing import Literal, NamedTuple
+
+from grader.base.names import near
+from grader.base.source import Edit, Edits, Source
+from grader.base.text import counted
+from grader.ros.known.package_tables import call_signatures
+from grader.ros.known.releases import RELEASES, Release
+from grader.ros.python.constants import dotted
+
+ArgumentKind = Literal["text", "number", "function", "type"]
+# What is given to parameters of these names, where an argument surely is of a kind. A depth may
+# stand for a profile of quality of service.
+_KINDS: Mapping[str, ArgumentKind] = {
+    "timer_period_sec": "number",
+    "callback": "function",
+    "execute_callback": "function",
+    "topic": "text",
+    "srv_name": "text",
+    "action_name": "text",
+    "name": "text",
+    "node_name": "text",
+    "target_frame": "text",
+    "source_frame": "text",
+    "msg_type": "type",
+    "srv_type": "type",
+    "action_type": "type",
+}
+_NEVER: Mapping[str, tuple[ArgumentKind, ...]] = {"qos_profile": ("text", "function", "type")}
+_FILLED = {"qos_profile": "10"}  # what is assumed where an argument is missing
+_ANYTHING = "..."
+_READ: tuple[Release, ...] = ("humble", "iron", "jazzy")  # those that were read, and between them
+
+
+class _WrongCall(NamedTuple):
+    """What is wrong with the arguments of a call, and the edits that write what is assumed."""
+
+    reaction: str
+    assumption: str
+    edits: Edits
+
+
+class Written(NamedTuple):
+    """A call as it is written."""
+
+    call: ast.Call
+    source: Source
+    span_of: Callable[[ast.AST], tuple[int, int]]  # the offsets of a part
+    kind_of: Callable[[ast.expr], ArgumentKind | None]  # None: of any kind
+    filled: Mapping[str, str]  # what is given to parameters where it is missing
+
+    @property
+    def _arguments(self) -> list[ast.expr | ast.keyword]:
+        return [*self.call.args, *self.call.keywords]
+
+    def added(self, place: int, text: str) -> Edit:
+        """Return the edit that adds an argument before the one at a place."""
+        if place < len(self._arguments):
+            start, _ = self.span_of(self._arguments[place])
+            return self.source.edit(start, start, f"{text}, ")
+        end = self.span_of(self._arguments[-1] if self._arguments else self.call.func)[1]
+        if self._arguments:
+            return self.source.edit(end, end, f", {text}")
+        end = self.source.text.index("(", end) + 1
+        return self.source.edit(end, end, text)
+
+    def left_out(self, arguments: Sequence[ast.expr | ast.keyword]) -> Edits:
+        """Return the edits that leave out arguments."""
+        edits = []
+        for argument in arguments:
+            at = self._arguments.index(argument)
+            start, end = self.span_of(argument)
+            if at > 0:
+                start = self.span_of(self._arguments[at - 1])[1]
+            elif len(self._arguments) > len(arguments):
+                end = self.span_of(self._arguments[1])[0]
+            edits.append(self.source.edit(start, end, ""))
+        return tuple(edits)
+
+    def replaced(self, part: ast.AST, by: str | ast.AST) -> Edit:
+        """Return the edit that writes a text, or another part, in the place of a part."""
+        text = by if isinstance(by, str) else self.source.text[slice(*self.span_of(by))]
+        return self.source.edit(*self.span_of(part), text)
+
+
+class _Signature(NamedTuple):
+    """The parameters of a function, in order, and those of them that must be given."""
+
+    positional: tuple[str, ...]
+    required: frozenset[str]
+    by_name: frozenset[str]  # only
+    takes_more: bool  # positional or named ones
+
+    @property
+    def names(self) -> frozenset[str]:
+        """All names that may be given."""
+        return self.by_name.union(self.positional)
+
+
+def wrong_call(written: Written, function: str, releases: Sequence[Release]) -> _WrongCall | None:
+    """Return what is wrong with the arguments of a call in each of some releases.
+
+    `function` is a key of the table of calls. None where nothing is wrong, or where arguments are
+    unpacked.
+    """
+    call = written.call
+    is_unpacked = any(isinstance(argument, ast.Starred) for argument in call.args)
+    if is_unpacked or any(keyword.arg is None for keyword in call.keywords):
+        return None
+    signatures = _signatures(function, tuple(releases))
+    wrong = [_unbound(written, _shown(call), signature) for signature in signatures]
+    return wrong[-1] if wrong and all(wrong) else None
+
+
+def _shown(call: ast.Call) -> str:
+    name = dotted(call.func)
+    if getattr(call.func, "attr", "") == "__init__":
+        name = "super().__init__"
+    elif not name.startswith("rclpy."):
+        name = name.rpartition(".")[2]
+    return f"{name}()"
+
+
+@cache
+def _signatures(function: str, releases: tuple[Release, ...]) -> tuple[_Signature, ...]:
+    """Return the signatures of a function in some releases, each once."""
+    rows = call_signatures().get(function, {})
+    signatures: dict[tuple[str, bool], _Signature] = {}
+    for release in releases if rows else ():
+        earlier = [row for row in rows if RELEASES.index(row) <= RELEASES.index(release)]
+        words = rows[earlier[-1] if earlier else next(iter(rows))]
+        is_read = release in _READ
+        signatures[words, is_read] = _parsed(words, takes_more=not is_read)
+    return tuple(signatures.values())
+
+
+def _parsed(signature: str, *, takes_more: bool) -> _Signature:
+    words = signature.split()
+    stars = [index for index, word in enumerate(words) if word.startswith("*")]
+    end = stars[0] if stars else len(words)
+    by_name = [word for word in words[end:] if not word.startswith("*")]
+    return _Signature(
+        tuple(word.removesuffix("=") for word in words[:end]),
+        frozenset(word for word in (*words[:end], *by_name) if not word.endswith("=")),
+        frozenset(word.removesuffix("=") for word in by_name),
+        takes_more or any(words[index].strip("*") for index in stars),
+    )
+
+
+def _unbound(written: Written, shown: str, signature: _Signature) -> _WrongCall | None:
+    """Return the first thing that is wrong with the arguments of a call."""
+    return (
+        _unknown_keyword(written, shown, signature)
+        or _too_many(written, shown, signature)
+        or _exchanged(written, shown, signature)
+        or _missing(written, shown, signature)
+    )
+
+
+def _unknown_keyword(written: Written, shown: str, signature: _Signature) -> _WrongCall | None:
+    keywords = written.call.keywords
+    for keyword in keywords if not signature.takes_more else ():
+        name = keyword.arg or ""
+        if name in signature.names:
+            continue
+        meant = near(name, signature.names - {other.arg or "" for other in keywords})
+        reaction = f"{shown} has no argument {name}"
+        if meant is not None:
+            start, end = written.span_of(keyword)[0], written.span_of(keyword)[0] + len(name)
+            edit = written.source.edit(start, end, meant)
+            return _WrongCall(reaction, f"{name} is read as {meant}", (edit,))
+        return _WrongCall(reaction, f"{name} is left out", written.left_out([keyword]))
+    return None
+
+
+def _too_many(written: Written, shown: str, signature: _Signature) -> _WrongCall | None:
+    arguments, most = written.call.args, len(signature.positional)
+    for keyword in written.call.keywords:
+        if keyword.arg in signature.positional[: len(arguments)]:
+            reaction = f"{shown} gets {keyword.arg} twice"
+            return _WrongCall(reaction, "the second one is left out", written.left_out([keyword]))
+    if len(arguments) <= most or signature.takes_more:
+        return None
+    taken = counted(most, "argument") if most else "no argument"
+    reaction = f"{shown} takes {taken} without a name, and gets {len(arguments)}"
+    return _WrongCall(reaction, "the others are left out", written.left_out(arguments[most:]))
+
+
+def _exchanged(written: Written, shown: str, signature: _Signature) -> _WrongCall | None:
+    """Return that two arguments surely stand in each other's place."""
+    given = [
+        (name, argument, written.kind_of(argument))
+        for name, argument in zip(signature.positional, written.call.args, strict=False)
+    ]
+    for one, other in combinations(given, 2):
+        if one[2] is None or other[2] is None:
+            continue
+        is_right = _fits(one[0], one[2]) and _fits(other[0], other[2])
+        if not is_right and _fits(one[0], other[2]) and _fits(other[0], one[2]):
+            edits = (written.replaced(one[1], other[1]), written.replaced(other[1], one[1]))
+            reaction = f"{shown} gets {one[0]} and {other[0]} in the wrong order"
+            return _WrongCall(reaction, "they are exchanged", edits)
+    return None
+
+
+def _missing(written: Written, shown: str, signature: _Signature) -> _WrongCall | None:
+    """Return the first argument that is missing; all that are missing are added."""
+    arguments = written.call.args
+    given = {keyword.arg or "" for keyword in written.call.keywords}
+    behind = (*signature.positional[len(arguments) :], *sorted(signature.by_name))
+    missing = [name for name in behind if name in signature.required - given]
+    if not missing:
+        return None
+    place = len(arguments)
+    if len(missing) == 1:
+        kinds = [written.kind_of(argument) for argument in arguments]
+        place = _place_of_missing(signature.positional[: place + 1], kinds)
+    name = signature.positional[place] if place < len(arguments) else missing[0]
+    value = written.filled.get(name) or _FILLED.get(name, _ANYTHING)
+    added = [value if place < len(arguments) or len(missing) == 1 else f"{name}={value}"]
+    added += [f"{other}={_FILLED.get(other, _ANYTHING)}" for other in missing[1:]]
+    if len(missing) == 1 and place == len(arguments) and given:
+        added = [f"{name}={value}"]
+        place += len(given)
+    assumption = f"`{value}` is added" if value != _ANYTHING else "it is assumed"
+    edit = written.added(place, ", ".join(added))
+    return _WrongCall(f"{shown} lacks its argument {name}", assumption, (edit,))
+
+
+def _place_of_missing(names: Sequence[str], kinds: Sequence[ArgumentKind | None]) -> int:
+    """Return the last place of a missing argument with which the kinds of the others fit."""
+    for place in range(len(kinds), -1, -1):
+        others = [name for index, name in enumerate(names) if index != place]
+        if all(map(_fits, others, kinds)):
+            return place
+    return len(kinds)
+
+
+def _fits(name: str, kind: ArgumentKind | None) -> bool:
+    """Return whether an argument of a kind, None for any, may be given to a parameter."""
+    if kind is None:
+        return True
+    return kind not in _NEVER.get(name, ()) and kind == _KINDS.get(name, kind)
