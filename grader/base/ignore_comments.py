@@ -16,7 +16,7 @@ from grader.base.text import comment_spans
 
 _MARK = "grader:ignore"
 MARK = _MARK.encode()
-_NAME = r"(?:[A-Z]+[0-9]*|[a-z]+(?:-[a-z]+)+)"  # of a code or a rule
+_NAME = r"(?:[A-Z]++[0-9]*+|[a-z]++(?:-[a-z]++)++)"  # of a code or a rule
 _COMMENT = re.compile(rf"{_MARK}\b[ \t]*({_NAME}(?:[ \t]*,[ \t]*{_NAME})*)?")
 _XML = (".xml", ".urdf", ".xacro", ".launch", ".sdf", ".world", ".srdf")
 _SLASHES = (".cpp", ".cc", ".cxx", ".c", ".hpp", ".hh", ".h")
@@ -74,7 +74,9 @@ def read_ignore_comments(path: str, text: str) -> Iterator[IgnoreComment]:
         while mark is not None and mark.start() < end:
             last = last or _last_line(source, start, end)
             yield IgnoreComment(
-                source.at(mark.start()), tuple(re.findall(_NAME, mark[1] or "")), last
+                source.at(mark.start()),
+                tuple(mark[1].replace(",", " ").split() if mark[1] else ()),
+                last,
             )
             mark = next(marks, None)
 

@@ -10,7 +10,9 @@ from typing import NamedTuple
 _HEAD = re.compile(r"""<\s*([^\s=/>"'<]*)((?:"[^"]*"|'[^']*'|[^>"'<])*)(/?)>""")
 _TAG_NAME = re.compile(r"<\s*[^\s=/>]*")
 _ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
-_TOKEN = re.compile(r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<!|</[^>]*>|<", re.DOTALL)
+_TOKEN = re.compile(
+    r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<!|</[^<>]*>?|<", re.DOTALL
+)
 _STEP = "   "  # of indentation, where the file shows none
 
 

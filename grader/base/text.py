@@ -10,7 +10,7 @@ from typing import Any
 
 # The runner of GitHub Actions treats a line as a command if it begins with `::`, after white space
 # as well, or contains `##[`; the agent of Azure Pipelines, if it contains `##vso[`.
-_LINE_COMMAND = re.compile(r"^(\s*):(?=:)", re.MULTILINE)
+_LINE_COMMAND = re.compile(r"^([^\S\n]*+):(?=:)", re.MULTILINE)
 _TAG_COMMAND = re.compile(r"##(vso)?\[", re.IGNORECASE)
 _MAX_NAME = 60  # characters of a name that are shown
 _MAX_FILE_NAME = 100  # characters of a path that are shown, its last ones

@@ -43,8 +43,8 @@ _BOMS = (
 )
 # the last four are the small forms
 _TRIGGERS = "=+\\-@\uff1d\uff0b\uff0d\uff20\ufe66\ufe62\ufe63\ufe6b"
-_FORMULA = re.compile(rf"(\A\s*+|[;\t\r\n]\s*+)('*+[{_TRIGGERS}])")
-_PROTECTED = re.compile(rf"(\A\s*+|[;\t\r\n]\s*+)'('*+[{_TRIGGERS}])")
+_FORMULA = re.compile(rf"(\A\s*+|;\s*+|(?<!\s)[^\S\t\r\n]*+[\t\r\n]\s*+)('*+[{_TRIGGERS}])")
+_PROTECTED = re.compile(rf"(\A\s*+|;\s*+|(?<!\s)[^\S\t\r\n]*+[\t\r\n]\s*+)'('*+[{_TRIGGERS}])")
 # Control characters but tab and line ends, C1 controls, bidirectional embeddings and isolates,
 # surrogates, and the noncharacters of Unicode, which HTML has no reference for.
 _NONCHARACTERS = "".join(

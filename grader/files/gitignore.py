@@ -124,7 +124,7 @@ def _read_rules(folder: Path, depth: int) -> Iterator[_IgnoreRule]:
 
 def _rule(line: str, depth: int) -> _IgnoreRule | None:
     """Return the rule of a line; None for a comment, and for a pattern that matches nothing."""
-    pattern = re.sub(r"(?<!\\) +$", "", line)
+    pattern = re.sub(r"(?:(?<![\\ ])|(?<=\\ )) ++$", "", line)
     is_negated = pattern.startswith("!")
     pattern = pattern.removeprefix("!")
     if pattern.strip("/") == "" or line.startswith("#") or re.search(r"(?<!\\)(\\\\)*\\$", pattern):

@@ -114,7 +114,7 @@ def _tags(context: typer.Context, tag: str) -> Iterator[str]:
         for pattern in _ROBOTS:
             files += sorted(path.glob("*/" * depth + pattern))
     for file in files[:_MAX_ROBOTS]:
-        yield from re.findall(rf"<{tag}\s[^>]*>", _text_of(file))
+        yield from re.findall(rf"<{tag}\s[^<>]*>", _text_of(file))
 
 
 def _names_of(tags: Iterable[str]) -> Iterator[str]:

@@ -33,7 +33,7 @@ MAX_LINES = 40
 _MAX_LINE = 700  # characters: with all lines less than a cell of Excel has
 _OPENING = "Grade"
 _MARK = re.compile(r"<!-- grader ([0-9a-f]{12}) -->")
-_TAG = re.compile(r"<[^>]*+>")
+_TAG = re.compile(r"<[^<>]*+>")
 _Names = tuple[
     dict[str, str], dict[str, str]
 ]  # by the student's key: the path in the zip, or why there is none

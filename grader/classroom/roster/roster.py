@@ -331,9 +331,11 @@ def iso_time(text: str) -> str:
 
     A time without a zone gets none.
     """
-    zoned = re.sub(r"\s*(?:UTC|UCT|GMT|Z)\Z", "+00:00", text.strip()) if ":" in text else text
+    zoned = (
+        re.sub(r"(?<!\s)\s*+(?:UTC|UCT|GMT|Z)\Z", "+00:00", text.strip()) if ":" in text else text
+    )
     try:
-        time = datetime.fromisoformat(re.sub(r"\s+(?=[+-][0-9:]+\Z)", "", zoned))
+        time = datetime.fromisoformat(re.sub(r"(?<!\s)\s++(?=[+-][0-9:]+\Z)", "", zoned))
     except ValueError:
         return ""
     if ":" not in text:

@@ -26,8 +26,8 @@ from grader.ros.xml.elements import (
 from grader.ros.xml.parsing import Element
 
 _MAX_VALUES = 500  # in one element of <robot>: a check compares each with each
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-_CONDITION = re.compile(r"\[[^\]=]*@[^=]+='([^']*)'\]")
+_NUMBER = re.compile(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?")
+_CONDITION = re.compile(r"\[[^\[\]=@]*@[^=@\[\]]+='([^']*)'\]")
 _REFERENCE = re.compile(r"\[(@reference|joint/@name)='([^']*)'\]")
 _JOINT_KEY = re.compile(r"(?:^|[/_])joints?$|joint_names?$|(?:^|/)joint/@name$")
 _TRUTH = {"true": True, "false": False}

@@ -17,9 +17,11 @@ from grader.ros.workspace.rules.reading import compared_facts
 from grader.ros.workspace.rules.rule_table import Family
 
 _YAML = (".yaml", ".yml")
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_NUMBER = re.compile(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?")
 _INSTALL = re.compile(r"(?im)^[ \t]*install[ \t]*\([^()]*\)")
-_DEPENDENCY = re.compile(r"<((?:build_|build_export_|exec_)?depend)\b[^>]*>\s*([\w-]+)\s*</\1>")
+_DEPENDENCY = re.compile(
+    r"<((?:build_|build_export_|exec_)?depend)\b[^<>]*+>\s*+([\w-]++)\s*+</\1>"
+)
 _WORLDS = (".sdf", ".world")
 _OF_WORLDS = ("plugin", "sensor", "topic")
 _WORLD_FAMILIES = ("element deleted", "text misspelt", "attribute deleted")

@@ -27,7 +27,7 @@ from grader.lab.documents.headings import (
     stem,
 )
 
-_ORDINAL = re.compile(r"\s*(\S.*?)\s+(\d{1,3})\s+of\s+(\d{1,3})\s*")
+_ORDINAL = re.compile(r"\s*+(\S++(?:\s++\S++)*?)\s++(\d{1,3})\s++of\s++(\d{1,3})\s*")
 _MAX_TEXT = 32_000  # characters, which no written answer has
 _MAX_QUESTION = 4000  # characters of a question
 _MAX_HEADING_WORDS = 6  # a passage of so few words is a heading without a text

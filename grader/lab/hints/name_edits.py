@@ -22,9 +22,9 @@ from grader.ros.workspace.rules.rule_table import Family
 _MAX_WRONG = 4  # names of which all combinations are tried
 _MAX_REMAPPINGS = 8  # of a file
 _REMAPPINGS = re.compile(r"\bremappings\s*=\s*\[[^][]*\]")
-_PAIR = re.compile(r"""\(\s*(["'][^"'\n]+["'])\s*,\s*(["'][^"'\n]+["'])\s*,?\s*\)""")
+_PAIR = re.compile(r"""\(\s*+(["'][^"'\n]++["'])\s*+,\s*+(["'][^"'\n]++["'])\s*+(?:,\s*+)?\)""")
 _FROM_TO = re.compile(
-    r"""\bfrom\s*[=:]\s*(["']?[\w~/]+["']?)\s*,?\s*\bto\s*[=:]\s*(["']?[\w~/]+["']?)(?![^\s},>/])"""
+    r"""\bfrom\s*+[=:]\s*+(["']?[\w~/]++["']?)\s*+(?:,\s*+)?\bto\s*+[=:]\s*+(["']?[\w~/]++["']?)(?![^\s},>/])"""
 )
 
 

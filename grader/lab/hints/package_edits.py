@@ -36,7 +36,7 @@ _LIKENESS = 0.75
 _TOKEN = re.compile(r"\w+|[ \t]+|\r?\n|.", re.DOTALL)
 _AROUND_TEXTS = " ,'\"\r\n"
 _MAX_DIFFERENCES, _MAX_TOKENS = 6, 3000
-_SETTING = re.compile(r"(?P<key>[^\W\d][\w -]*?)(?::[ ]+|=\")(?P<value>[^\s\"][^\n\"]*)")
+_SETTING = re.compile(r"(?P<key>[^\W\d][\w -]{0,60}?)(?::[ ]+|=\")(?P<value>[^\s\"][^\n\"]*)")
 _MAX_VALUES = 4
 _SUBSTITUTIONS = ("find-pkg-share", "var", "env", "command", "dirname")
 _SUBSTITUTION = re.compile(rf"(?<=\$\()(?!(?:{'|'.join(_SUBSTITUTIONS)})\b)[\w-]+")
@@ -46,11 +46,11 @@ _PIECE = re.compile(r"[^\s\"'<>=(){},\[\]$;|]+")
 # What is before the name of a package: get_package_share_directory(', FindPackageShare(",
 # $(find-pkg-share and a space.
 _PACKAGE_ARGUMENT = re.compile(
-    r"(?:package_share_\w+|package_prefix|FindPackage\w*|find-pkg-\w+)[\s(]*['\"]?$"
+    r"(?:package_share_\w{1,30}|package_prefix|FindPackage\w{0,30}|find-pkg-\w{1,30})[\s(]{0,30}['\"]?$"
 )
 _MAX_PIECES = 1000  # of one file
 _MAX_CALL = 80  # characters before an argument that are looked at
-_REST_OF_ARGUMENT = re.compile(r"\s*,\s*")
+_REST_OF_ARGUMENT = re.compile(r"\s*+,\s*+")
 _ENDINGS = {
     "urdf": (".urdf", ".xacro"),
     "rviz": (".rviz",),

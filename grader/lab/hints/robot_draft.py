@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 _MAX_WAYS = 4
-_COMMENT = re.compile(r"[ \t]*<!--.*?-->", re.DOTALL)
+_COMMENT = re.compile(r"(?<![ \t])[ \t]*+<!--.*?(?:-->|\Z)", re.DOTALL)
 
 
 class Set(NamedTuple):

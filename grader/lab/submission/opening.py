@@ -129,7 +129,7 @@ def _is_blank(data: bytes) -> bool:
     if len(data) > _MAX_BLANK:
         return False
     text = data.decode("utf-8-sig", "replace")
-    return not re.sub(r"(?s)<\?xml.*?\?>|<!--.*?-->", "", text).strip()
+    return not re.sub(r"(?s)<\?xml[^<>]*\?>|<!--.*?(?:-->|\Z)", "", text).strip()
 
 
 def _is_lab(lab: Lab, name: str) -> bool:

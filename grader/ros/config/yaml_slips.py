@@ -17,7 +17,7 @@ _MAX_BYTES = 32 * 1024  # of a file: what may be meant is tried by reading it ag
 _MAX_LENGTH = 1_000  # characters of a line
 _MAX_SHOWN = 60
 _MAX_DEPTH = 5  # of the keys of nodes
-_NO_BLANK = re.compile(r"(\s*(?:- )?[A-Za-z_][\w /.-]+):(?=[^\s:/]|/[^/])")
+_NO_BLANK = re.compile(r"(?<![A-Za-z_])([A-Za-z_][\w /.-]{1,80}):(?=[^\s:/]|/[^/])")
 _CLOSING = {"[": "]", "{": "}"}
 
 

@@ -38,7 +38,9 @@ from grader.ros.python.values import (
 # differs between these.
 ORDERS = ("sorted", "reversed", "rotated")
 _MAGIC = re.compile(r"[*?\[]")
-_SLASHES = re.compile(r"//+(?=[^/]*[*?\[][^/]*$)")  # those before other names are in the result
+_SLASHES = re.compile(
+    r"(?<!/)//++(?=[^/]*[*?\[][^/]*$)"
+)  # those before other names are in the result
 _OUTSIDE = "it searches for files outside of the package"
 _IGNORED = "it searches an ignored folder"
 _UNUSUAL = "a pattern of this kind is not supported"

@@ -29,13 +29,13 @@ from grader.ros.interfaces.interface_types import (
 INTERFACE_ENDINGS = tuple(f".{kind}" for kind in get_args(InterfaceKind))
 _MAX_LINES = 2_000  # of a file; no message is as long
 _MAX_FAULTS = 20
-_SEPARATOR, _LIKE_SEPARATOR = "---", re.compile(r"\s*[-_]{2,}\s*")
+_SEPARATOR, _LIKE_SEPARATOR = "---", re.compile(r"\s*+[-_]{2,}+\s*")
 _BOUND = "<="
 _PACKAGE = re.compile(r"(?!.*__)(?!.*_\Z)[a-z][a-z0-9_]*\Z")
 _FIELD = _PACKAGE
 _MESSAGE = re.compile(r"[A-Z][A-Za-z0-9]*\Z")
 # rosidl has the pattern [A-Z]([A-Z0-9_]?[A-Z0-9]+)*, which takes long on some names.
-_CONSTANT = re.compile(r"(?!.*__)[A-Z](?:[A-Z0-9_]*[A-Z0-9])?\Z")
+_CONSTANT = re.compile(r"(?!.*__)[A-Z][A-Z0-9_]*+(?<!_)\Z")
 _OWN_SUFFIXES = ("_Request", "_Response", "_Goal", "_Result", "_Feedback")
 _WORDS = {"true": True, "1": True, "false": False, "0": False}
 # Names that other languages and ROS 1 have for the primitive types.

@@ -7,7 +7,6 @@ line, in order.
 import posixpath
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from functools import lru_cache
 from itertools import chain, pairwise
 from math import inf, nan
 from pathlib import PurePosixPath
@@ -62,7 +61,7 @@ _SUBSTITUTION = "$("
 _TRUE = frozenset(["Y", "y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"])
 _FALSE = frozenset(["N", "n", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"])
 _INTEGER = re.compile(r"([+-]?)(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
-_FLOAT = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
+_FLOAT = re.compile(r"[+-]?([0-9]++\.?[0-9]*+|\.[0-9]++)([eE][+-]?[0-9]+)?")
 _SPECIAL = {".nan": nan, ".inf": inf, "+.inf": inf, "-.inf": -inf}
 _PARAM_FILES = ("-p", "--param-file")
 
@@ -675,15 +674,17 @@ def is_key_of(key: str | None, full: str) -> bool:
     """
     if key is None or "*" not in key:
         return key == full
-    return _pattern_of(key).fullmatch(full) is not None
-
-
-@lru_cache(maxsize=256)
-def _pattern_of(key: str) -> re.Pattern[str]:
-    pattern = re.sub(
-        r"/\\\*(\\\*)?", lambda match: r"(/\w+)*" if match[1] else r"(/\w+)", re.escape(key)
-    )
-    return re.compile(pattern)
+    names = full.split("/")
+    reached: Sequence[int] = range(1)  # how many names the parts so far may stand for
+    for part in key.split("/"):
+        if part == "**":
+            reached = range(reached[0], len(names) + 1)
+        else:
+            after = [count + 1 for count in reached if part in ("*", *names[count : count + 1])]
+            reached = [count for count in after if count <= len(names)]
+        if not reached:
+            return False
+    return len(names) in reached
 
 
 def remap_rules(words: Sequence[str]) -> list[tuple[str, str, str]]:

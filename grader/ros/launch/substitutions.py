@@ -466,7 +466,7 @@ def _check_spaces(words: Sequence[str], at: Position) -> None:
     """Raise EvaluationFails for a word that is several, because a space is missing."""
     for word in words:
         name, is_given, value = word.partition(":=")
-        path = re.match(r".*/.*\.(?:xacro|urdf)", name) if is_given else None
+        path = re.match(r"[^/\n]*+/.*\.(?:xacro|urdf)", name) if is_given else None
         if path is not None:
             before, after = posixpath.basename(path[0]), f"{name[path.end() :]}:="
             raise EvaluationFails(f"a space is missing between {before} and {after}", at)

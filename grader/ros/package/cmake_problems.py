@@ -12,8 +12,10 @@ from grader.ros.package.package import Package
 _SOURCES = (".cpp", ".cc", ".cxx")
 _MAX_BYTES = 256 * 1024
 _MAX_FILES = 50
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
-_PROGRAM = re.compile(r"\bint\s+main\s*\(|^\s*RCLCPP_COMPONENTS_REGISTER_NODE\b", re.MULTILINE)
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
+_PROGRAM = re.compile(
+    r"\bint\s+main\s*\(|^[^\S\n]*+RCLCPP_COMPONENTS_REGISTER_NODE\b", re.MULTILINE
+)
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[\"<](\w+)/", re.MULTILINE)
 # Other ways to find headers: of all packages, or by their folders.
 _OTHER_WAYS = ("ament_auto", "_INCLUDE_DIR", "link_libraries(")

@@ -14,7 +14,7 @@ from grader.ros.package.package import Package
 from grader.ros.package.robot_file import Read
 from grader.ros.urdf import urdf_problems as kinds
 
-_HARDWARE = re.compile(rb"<hardware>.*?</hardware>", re.DOTALL)
+_HARDWARE = re.compile(rb"<hardware>.*?(?:</hardware>|\Z)", re.DOTALL)
 _CONDITION = re.compile(rb"<xacro:(if|unless)\b")
 # That something is not there, or is there twice.
 _OF_THE_WHOLE = frozenset(

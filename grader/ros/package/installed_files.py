@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 from grader.base.names import closest
 from grader.ros.package.package import CMAKE, Package
 
-_FOR_TESTS = re.compile(r"if\s*\(\s*BUILD_TESTING.*?endif", re.DOTALL)
+_FOR_TESTS = re.compile(r"if\s*+\(\s*+BUILD_TESTING.*?(?:endif|\Z)", re.DOTALL)
 _MAX_CMAKE, _MAX_FILE = 128 * 1024, 512 * 1024  # bytes
 
 

@@ -27,7 +27,7 @@ _CLOSING = {"(": ")", "[": "]", "{": "}"}
 _QUOTES = str.maketrans("“”„‘’‚´\N{NO-BREAK SPACE}", "\"\"\"'''' ")
 _TOKEN = re.compile(r"""[rRbBfFuU]*(?:"[^"\n]*"|'[^'\n]*')|\w+|[^\w\s]""")
 _OPENED = re.compile(r"'([(\[{])'(?: was never closed| on line (\d+)|$)")
-_TRAILING = re.compile(r"[\s,)\]}:]*$")
+_TRAILING = re.compile(r"(?<![\s,)\]}:])[\s,)\]}:]*+$")
 _COMMENT = re.compile(r"""((?:[^#'"]|"[^"]*"|'[^']*')*?)(\s*(?:\#.*)?)$""")
 
 

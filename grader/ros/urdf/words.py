@@ -8,7 +8,7 @@ from grader.ros.urdf.numbers import NumberError, number, numbers, readable_numbe
 from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN, OWNERS, PARTS, TAGS, numbers_in
 
 _MAX_LENGTH = 64  # characters of a value
-_SEPARATORS = re.compile(r"\s*[,;]\s*")
+_SEPARATORS = re.compile(r"(?:(?<!\s)\s++)?[,;]\s*")
 _DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
 _BRACKETS = re.compile(r"\s*[(\[{](.*)[)\]}]\s*")
 _LETTERS = str.maketrans("OoIl", "0011")

@@ -31,16 +31,18 @@ _EXPRESSION = re.compile(
 )  # no brace inside: else many that open take quadratic time
 _NAME = re.compile(r"[^\W\d]\w*")
 _NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-_PRODUCT = re.compile(r"-?\s*[\w.]+(?:\s*[*/]\s*[\w.]+)*")
+_PRODUCT = re.compile(r"-?\s*+[\w.]++(?:\s*+[*/]\s*+[\w.]++)*+")
 _MAX_MIRRORED = 6  # ways to negate a number of what another call gives
 _WORD = re.compile(r"(?:\$\{[^{}]*\}|[^\s$])+")
 _DECIMAL_COMMA = re.compile(r"\s*[-+]?\d+,\d+\s*")
 # A separator between parameters, which xacro takes for a part of the name or of the default before
 # it.
-_SEPARATOR = re.compile(r"\$\{[^{}]*\}|'[^']*'|(?P<separator>\s*[,;](?=\s|\Z|[*^\W\d]))")
+_SEPARATOR = re.compile(
+    r"\$\{[^{}]*\}|'[^']*'|(?P<separator>(?:(?<!\s)\s++)?[,;](?=\s|\Z|[*^\W\d]))"
+)
 # What is written for ${side}: {side}, $ {side}, $(side), $side.
 _UNMARKED = re.compile(
-    r"\$\{[^{}]*\}|\$?\s*\{\s*(?P<brace>[^\W\d]\w*)\s*\}|\$\(\s*(?P<paren>[^\W\d]\w*)\s*\)|\$(?P<bare>[^\W\d]\w*)"
+    r"\$\{[^{}]*\}|(?:\$\s*+)?\{\s*+(?P<brace>[^\W\d]\w*)\s*\}|\$\(\s*(?P<paren>[^\W\d]\w*)\s*\)|\$(?P<bare>[^\W\d]\w*)"
 )
 
 

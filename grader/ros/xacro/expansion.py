@@ -173,7 +173,7 @@ class ExpandedSource(Source):
 
 
 _INSTRUCTION = re.compile(
-    r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?(?!xml\s)(?P<target>[\w:.-]+)", re.DOTALL
+    r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?(?!xml\s)(?P<target>[\w:.-]+)", re.DOTALL
 )
 _MAX_ASSUMED = 20
 

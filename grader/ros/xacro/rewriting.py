@@ -39,7 +39,7 @@ _NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
 _TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
 _EXPRESSION = re.compile(r"\$\{([^}]*)\}")
 _NAME = re.compile(r"(?<![\w.'\"])[^\W\d]\w*(?![\w(])")
-_NUMBER = re.compile(r"\s*[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?\s*")
+_NUMBER = re.compile(r"\s*+[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?\s*")
 # The one expression of a text that is a name, perhaps with a minus.
 _ALONE = re.compile(
     r"""(?P<before>[^$]*)

@@ -33,7 +33,7 @@ _UNDECLARED = re.compile(r"(</?\s*)xacro:")
 # for the colon of an undeclared prefix: a letter that looks like one, so that columns stay
 _STAND_IN = "\u02d0"
 _UNDECLARED_TAG = f"xacro{_STAND_IN}"
-_CDATA = re.compile(r"<!--.*?-->|<!\[CDATA\[(.*?)\]\]>", re.DOTALL)
+_CDATA = re.compile(r"<!--.*?(?:-->|\Z)|<!\[CDATA\[(.*?)(?:\]\]>|\Z)", re.DOTALL)
 
 
 class XacroNode:

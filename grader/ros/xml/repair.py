@@ -264,7 +264,7 @@ class _Repairer:
         """Return whether content and an own end tag follow a tag that ends with a slash."""
         if tag.name not in CHILDREN or not (tag.name == "robot" or self._is_before_child(tag, end)):
             return False
-        other = re.compile(rf"<\s*(/?)\s*{tag.name}(?![\w:.-])").search(self._text, end)
+        other = re.compile(rf"<\s*+(/?)\s*+{tag.name}(?![\w:.-])").search(self._text, end)
         return other is not None and other[1] == "/"
 
     def _is_before_child(self, tag: Tag, end: int) -> bool:

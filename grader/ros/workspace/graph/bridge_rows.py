@@ -13,7 +13,7 @@ from grader.ros.workspace.model.workspace import Workspace
 BRIDGE = "ros_gz_bridge"  # the package
 TO_ROS, TO_GAZEBO, _BOTH = "GZ_TO_ROS", "ROS_TO_GZ", "BIDIRECTIONAL"
 _DIRECTIONS = {"[": TO_ROS, "]": TO_GAZEBO, "@": _BOTH}
-_ARGUMENT = re.compile(r"(?P<topic>[^@\s]+)@(?P<ros>[\w/]+)(?P<direction>[@\[\]])(?P<gz>[\w.]+)")
+_ARGUMENT = re.compile(r"(?P<topic>[^@\s]++)@(?P<ros>[\w/]++)(?P<direction>[@\[\]])(?P<gz>[\w.]++)")
 _OLDER_FORM = re.compile("^ignition[.]msgs(?=[.])")
 
 

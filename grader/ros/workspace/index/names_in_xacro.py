@@ -20,7 +20,7 @@ from grader.ros.xml.parsing import XMLSyntaxError
 
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _PIECE = re.compile(
-    r"\$\$+[{(]|\$\{(?P<expression>[^}]*)\}|\$\(\s*arg\s+(?P<argument>[^\s()]+)\s*\)"
+    r"(?<!\$)\$\$++[{(]|\$\{(?P<expression>[^{}]*)\}|\$\(\s*arg\s+(?P<argument>[^\s()]+)\s*\)"
 )
 _IN_EXPRESSION = re.compile(
     r"\barg\(\s*['\"](?P<argument>\w+)['\"]|'[^']*'|\"[^\"]*\"|[\w)\]]\s*\.\s*\w+"

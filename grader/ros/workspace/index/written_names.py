@@ -64,10 +64,10 @@ _USUAL = {
     "launch argument": ("launch_arguments",),
 }
 _IN_XML = ("name", "reference", "link", "joint", "link1", "link2", "value")
-_ATTRIBUTE_START = re.compile(r"""[^\s=<>"'/]+\s*=\s*(["'])""")
+_ATTRIBUTE_START = re.compile(r"""[^\s=<>"'/]++\s*+=\s*+(["'])""")
 _TOKEN_OF_CALL = re.compile(
     r'''(?P<text>(?i:[rbuf]{0,2})(?:"""(?s:(?:[^\\]|\\.)*?)"""|"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'))'''
-    r"|(?P<open>[\[({])|(?P<close>[\])}])|(?P<keyword>\w+)\s*=(?!=)|(?P<comment>#[^\n]*|//[^\n]*)|;"
+    r"|(?P<open>[\[({])|(?P<close>[\])}])|(?P<keyword>(?<!\w)\w++)\s*+=(?!=)|(?P<comment>#[^\n]*|//[^\n]*)|;"
 )
 _LINE = re.compile(r"(?P<indent> *)(?P<dash>- )?[^\s#]")  # of YAML, that is no comment
 _EXPRESSION = re.compile(r"\$\{[^{}]*\}|\$\([^()]*\)|\{[^{}]*\}")

@@ -15,7 +15,7 @@ _TAG = re.compile(
     re.DOTALL,
 )
 _XACRO_TAG = re.compile(r"<xacro:(\w+)\b([^<>]*)>")  # a call of a macro, or a property
-_ATTRIBUTE = re.compile(r"([\w.-]+)\s*=\s*(?:\"([^\"]*)\"|'([^']*)')")
+_ATTRIBUTE = re.compile(r"(?<![\w.-])([\w.-]++)\s*+=\s*(?:\"([^\"]*)\"|'([^']*)')")
 _COMPUTED = re.compile(r"\$\([^()]*\)|\$\{[^{}]*\}")
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _MAX_STEPS = 5  # from an argument by way of properties and parameters of macros

@@ -135,7 +135,9 @@ def _meant(
 
     This is its key, else the first behind the place, or the last before it.
     """
-    key = re.compile(rf"{re.escape(name)}[\"']?\s*:\s*(?:\{{?\s*(?:ros__parameters|type)\s*:\s*)?")
+    key = re.compile(
+        rf"{re.escape(name)}[\"']?\s*+:\s*+(?:\{{?\s*+(?:ros__parameters|type)\s*+:\s*+)?"
+    )
     before = [span for span in spans if span[0] < at]
     after = [span for span in spans if span[0] >= at]
     if before and at - before[-1][0] < _MAX_KEY and key.fullmatch(text, before[-1][0], at):

@@ -168,7 +168,7 @@ def _uses_in_code(workspace: Workspace) -> Iterator[_Use]:
     names = names_without("class", workspace.releases)
     if not names:
         return
-    pattern = re.compile(rf"//[^\n]*|/\*.*?\*/|\b({'|'.join(names)})\b", re.DOTALL)
+    pattern = re.compile(rf"//[^\n]*|/\*.*?(?:\*/|\Z)|\b({'|'.join(names)})\b", re.DOTALL)
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, _CPP):
             for match in pattern.finditer(source.text):

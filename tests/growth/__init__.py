@@ -1,0 +1,1 @@
+"""How the time of searching grows with the text."""
