@@ -7,7 +7,7 @@ import re
 from collections.abc import Iterator
 from typing import NamedTuple
 
-_HEAD = re.compile(r"""<\s*([^\s=/>"'<]*)((?:"[^"]*"|'[^']*'|[^>"'<])*)(/?)>""")
+_HEAD = re.compile(r"""<\s*+([^\s=/>"'<]*+)((?:"[^"]*+"|'[^']*+'|[^>"'<])*)(/?)>""")
 _TAG_NAME = re.compile(r"<\s*[^\s=/>]*")
 _ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 _TOKEN = re.compile(

@@ -27,7 +27,9 @@ _TEST_STUDENT = re.compile(
 )  # of Canvas and Blackboard
 _NOT_GRADED = frozenset({"", "-", "needs grading"})  # the last in Blackboard
 _POINTS_ROW = "Points Possible"  # in the first cell, of Canvas
-_THOUSANDS = re.compile(r"\s|[.,](?=.*[.,])")  # in 1.000,00: the last comma or point is decimal
+_THOUSANDS = re.compile(
+    r"\s|[.,](?=[^.,\n]*+[.,])"
+)  # in 1.000,00: the last comma or point is decimal
 _COMMA, _WORDS = r"[0-9],[0-9]{1,2}$", r"[^\W\d_]+|\d+"
 _MAX_CHANGES, _MAX_REASONS, _MAX_COLUMNS = 40, 50, 20
 _MAX_CONCERNED = 3  # people who are named for one reason

@@ -102,7 +102,7 @@ _BRIGHTSPACE = Form(
     {},
     (),
     re.compile(
-        r"(?P<title>.*?) Points Grade(?: <Numeric MaxPoints:(?P<maximum>[0-9.,]+)[^>]*>)?",
+        r"(?P<title>.*?) Points Grade(?: <Numeric MaxPoints:(?P<maximum>[0-9.,]++)[^<>]*+>)?",
         re.DOTALL,
     ),
     kept=("last name", "first name", "end-of-line indicator"),

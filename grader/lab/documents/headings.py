@@ -60,7 +60,7 @@ _TAG = re.compile(r"</?[a-zA-Z][^<>]{0,80}>")  # of HTML in Markdown
 _TASK = rf"(?:{'|'.join(sorted(_TASKS))})(?:[\W_]*\d{{1,4}}(?!\d))+"
 _STEP = (
     rf"(?:{'|'.join(sorted(_STEPS))})[\W_]*\d{{1,4}}(?!\d)"
-    r"(?:(?:\s*[,&+/]?\s*|[-_])\d{1,4}(?!\d))*"
+    r"(?:(?:\s*+(?:[,&+/]\s*+)?|[-_])\d{1,4}(?!\d))*"
 )
 # What a line needs to begin a passage: a sign or number at its start, or a keyword with a number.
 _BEGINNING = (

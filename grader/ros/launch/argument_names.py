@@ -29,7 +29,7 @@ _VARIABLE = re.compile(r"\$\(\s*var\s+['\"]?([\w.-]+)")
 _COMMENT = re.compile(r"<!--.*?(?:-->|\Z)", re.DOTALL)
 _YAML_COMMENT = re.compile(r"(?:^|(?<=\s))#[^\n]*")
 _YAML_ARGUMENT = re.compile(
-    r"-\s+(?:arg|let)\s*:\s*\{?\s*(?:[\w-]+\s*:[^\n{}]*\n\s*)*?name\s*:\s*['\"]?([\w.-]+)"
+    r"-\s+(?:arg|let)\s*+:\s*+(?:\{\s*+)?(?:[\w-]+\s*:[^\n{}]{0,200}\n\s*)*?name\s*:\s*['\"]?([\w.-]+)"
 )
 
 

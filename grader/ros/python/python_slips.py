@@ -125,10 +125,8 @@ def _readable_changes(
 
 def _code_and_rest(line: str) -> tuple[str, str]:
     """Return a line up to its comment, and the rest."""
-    match = _COMMENT.match(line)
-    if match is None or len(line) > _MAX_LENGTH:
-        return line, ""
-    return match[1], match[2]
+    match = _COMMENT.match(line) if len(line) <= _MAX_LENGTH else None
+    return (match[1], match[2]) if match is not None else (line, "")
 
 
 def _with_plain_quotes(fault: SyntaxFault, lines: list[str]) -> Iterator[_Change]:

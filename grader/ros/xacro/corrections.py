@@ -30,7 +30,7 @@ _EXPRESSION = re.compile(
     r"\$\{([^{}]*)\}"
 )  # no brace inside: else many that open take quadratic time
 _NAME = re.compile(r"[^\W\d]\w*")
-_NUMBER = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+_NUMBER = re.compile(r"-?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?")
 _PRODUCT = re.compile(r"-?\s*+[\w.]++(?:\s*+[*/]\s*+[\w.]++)*+")
 _MAX_MIRRORED = 6  # ways to negate a number of what another call gives
 _WORD = re.compile(r"(?:\$\{[^{}]*\}|[^\s$])+")

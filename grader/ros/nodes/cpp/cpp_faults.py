@@ -37,7 +37,7 @@ _WAITING = ("wait", "get")
 _GIVEN_CALLBACKS = (*_KEPT, "create_client")
 _SENDING = ("sendTransform", "push_back", "emplace_back")
 _ROTATION = re.compile(r"(\w+(?:(?:\.|->)\w+)*)(?:\.|->)rotation\.([xyzw])")
-_ZERO = re.compile(r"-?0*\.?0+\.?0*f?")
+_ZERO = re.compile(r"-?(?:0++(?:\.0*+)?|\.0++)f?")
 
 
 def cpp_faults(

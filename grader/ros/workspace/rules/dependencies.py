@@ -22,6 +22,7 @@ from grader.ros.workspace.rules.rule_table import (
 
 _FIND = re.compile(r"\$\(find ([\w-]+)\)|package://([\w-]+)/")
 _OF_ROS = ("rclpy", "tf2_ros")
+_XACRO = "xacro"
 _RUNTIME = "rosidl_default_runtime"  # what generated interfaces need
 _IMPORT = re.compile(r"^(?:from|import)\s+(\w+)", re.MULTILINE)
 
@@ -112,11 +113,17 @@ def _found_by_xacro(
 
 
 def _launched(launch: Launch) -> Iterator[tuple[str, Location]]:
-    """Yield the packages whose programs or launch files a launch file starts."""
+    """Yield the packages whose programs or launch files a launch file starts.
+
+    Among them is xacro, where it prints a robot.
+    """
     included = {passed.location for passed in launch.passed}  # of whose nodes these are the places
     for node in launch.nodes:
         if not node.included_by and node.location not in included:
             yield node.package, node.location
+    for reference in launch.references:
+        if reference.by == _XACRO:
+            yield _XACRO, reference.location
     for passed in launch.passed:
         folder, _, inside = passed.path.partition("/")
         if folder == "share" and inside:
