@@ -13,6 +13,7 @@ from grader.base.toml_types import Constraint, Content, NonNegative, Scalar
 from grader.lab.checks.check import MIMIC_TURNED, About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.submission.submission import Submission
+from grader.ros.known.releases import Release
 from grader.ros.package.package import Package
 from grader.ros.package.trees import (
     PathStep,
@@ -89,14 +90,15 @@ def entry_is(
         raise MissingElement(
             "robot", "", message="the file is not well-formed XML, so it has no elements"
         )
+    releases = submission.package.releases if submission.package is not None else ()
     steps = [_with_names(step, robot) for step in steps_of(at, is_xml=True)]
     wanted = _Wanted(steps, value, one_of, has, values or {}, tolerance)
-    tree = _robot_entry(reading, root)
+    tree = _robot_entry(reading, root, releases)
     outcome = _judge(tree, wanted, _IN_ROBOT)
     if outcome.status == "passed":
         if wanted.first.name != "link":
             return outcome
-        if wanted.found_in(_robot_entry(reading, _kept(robot, root))):
+        if wanted.found_in(_robot_entry(reading, _kept(robot, root), releases)):
             return outcome
         _check_known(reading, tree, wanted)
         raise _dropped_part(tree, wanted)
@@ -195,7 +197,7 @@ class _Wanted(NamedTuple):
         if entry.text is None:
             return False
         if entry.is_xml or isinstance(expected, str):
-            return matches_value(readable(entry.text), expected, self.tolerance)
+            return any(matches_value(text, expected, self.tolerance) for text in entry.texts)
         if entry.is_quoted:
             return False
         if isinstance(expected, bool):
@@ -402,14 +404,14 @@ def _value_text(value: Scalar) -> str:
 # ----------------------------------------------------------------------
 
 
-def _robot_entry(reading: Reading, root: Element) -> TreeEntry:
+def _robot_entry(reading: Reading, root: Element, releases: Sequence[Release]) -> TreeEntry:
     """Return the entry of a robot, whose elements are those of a reading or of a copy."""
 
     def locate(element: Element, attribute: str | None) -> LazyLocation:
         tag = next((index for index, other in enumerate(root.iter()) if other is element), 0)
         return LazyLocation(reading.source, tag, attribute)
 
-    return xml_entry(root, locate)
+    return xml_entry(root, locate, releases)
 
 
 def _with_names(step: PathStep, robot: Configuration) -> PathStep:

@@ -1,10 +1,11 @@
 """What is known of Gazebo: the file gazebo.toml."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import NamedTuple
 
 from grader.ros.known.package_rows import WheelRow
+from grader.ros.known.releases import RELEASES, Release, is_before
 from grader.ros.known.typed_rows import read_file
 
 
@@ -40,6 +41,28 @@ class _SensorRow(NamedTuple):
     system: str = ""  # without which it publishes nothing
 
 
+class _SensorWord(NamedTuple):
+    """An element of a sensor that Gazebo reads where another one of the same meaning is missing."""
+
+    name: str
+    meant: str
+    of: tuple[str, ...] = ()  # types of sensors; none: of each
+    since: Release = RELEASES[0]  # the first release whose Gazebo reads it
+    until: Release = RELEASES[-1]  # the last one
+
+    def is_read(self, kind: str, releases: Sequence[Release]) -> bool:
+        """Return whether the Gazebo of each of some releases reads it in a sensor of a type.
+
+        Without any, that of every release does.
+        """
+        if self.of and kind not in self.of:
+            return False
+        return not any(
+            is_before(release, self.since) or is_before(self.until, release)
+            for release in releases or RELEASES
+        )
+
+
 class Gazebo(NamedTuple):
     """The words of Gazebo in robots, models and worlds."""
 
@@ -47,6 +70,8 @@ class Gazebo(NamedTuple):
     joint_elements: tuple[str, ...]
     odometry_elements: tuple[str, ...]  # with frames of odometry
     odometry_frames: tuple[str, ...]  # by default
+    sensor_types: Mapping[str, str]  # older ones, with what they are called now
+    sensor_words: tuple[_SensorWord, ...]
     system: Mapping[str, _SystemRow]
     library: Mapping[str, _LibraryRow]
     sensor: Mapping[str, _SensorRow]

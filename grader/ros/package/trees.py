@@ -9,14 +9,16 @@ takes the entries with this value.
 """
 
 import re
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.names import similar_there
 from grader.base.source import LazyLocation, Location, Source
+from grader.ros.known.gazebo_rows import gazebo
+from grader.ros.known.releases import Release
 from grader.ros.package.package import Package
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.xml.elements import attributes_of, matches_value, name_of, readable, text_in
@@ -51,11 +53,18 @@ class TreeEntry:
     is_quoted: bool = False  # a text of YAML that is no number and no boolean
     is_list: bool = False
     element: Element | None = None  # what it was made of, if it is an element
+    meant: str = ""  # the name that it stands for, if Gazebo has another word for it
+    meant_text: str | None = None  # likewise the text
 
     @property
     def children(self) -> "list[TreeEntry]":
         """The entries in it: of a list its rows."""
         return self.find_children()
+
+    @property
+    def texts(self) -> list[str]:
+        """Its text, and the one that it stands for, as readable texts."""
+        return [readable(text) for text in (self.text, self.meant_text) if text is not None]
 
     @property
     def place(self) -> _Place:
@@ -119,7 +128,7 @@ class Search:
         """Return whether an entry contains the values of a step."""
         for key, value in step.conditions:
             inner = self.find(entry, steps_of(key, is_xml=entry.is_xml))
-            texts = [readable(row.text) for row in inner if row.text is not None]
+            texts = [text for row in inner for text in row.texts]
             if not any(matches_value(text, value, _EXACT) for text in texts):
                 return False
         return True
@@ -137,7 +146,7 @@ class Search:
                     yield from self._find(child, steps)
         for count in _key_lengths(entry, steps):
             name = ".".join(step.name for step in steps[:count])
-            named = [child for child in children if child.name == name]
+            named = [child for child in children if name in (child.name, child.meant or child.name)]
             yield from self._find_below(named, steps[count - 1 :])
 
     def _find_below(
@@ -150,26 +159,78 @@ class Search:
                 yield from self._find(row, steps[1:])
 
 
-def xml_entry(element: Element, locate: Callable[[Element, str | None], _Place]) -> TreeEntry:
-    """Return the entry of an element; `locate` returns its place, or that of an attribute of it."""
+def xml_entry(
+    element: Element,
+    locate: Callable[[Element, str | None], _Place],
+    releases: Sequence[Release],
+    meant: str = "",
+) -> TreeEntry:
+    """Return the entry of an element; `locate` returns its place, or that of an attribute of it.
+
+    In a sensor of Gazebo, a word stands for another one that the Gazebo of these releases reads as
+    the same, and a topic for itself with and without a slash, since there are no namespaces.
+    """
+    name, text = name_of(element), text_in(element)
+    is_topic = name == "topic" and _is_sensor(element.getparent())
     return TreeEntry(
-        name_of(element),
-        text_in(element),
-        partial(_list_xml_children, element, locate),
+        name,
+        text,
+        partial(_list_xml_children, element, locate, releases),
         partial(locate, element, None),
         is_xml=True,
         element=element,
+        meant=meant,
+        meant_text=_other_topic(text or "") if is_topic else None,
     )
 
 
+def _other_topic(text: str) -> str:
+    """Return a topic with a slash before it, or without the one that it has."""
+    topic = text.strip()
+    return topic.removeprefix("/") if topic.startswith("/") else f"/{topic}"
+
+
 def _list_xml_children(
-    element: Element, locate: Callable[[Element, str | None], _Place]
+    element: Element,
+    locate: Callable[[Element, str | None], _Place],
+    releases: Sequence[Release],
 ) -> list[TreeEntry]:
     attributes = [
         TreeEntry(f"@{name}", value, list, partial(locate, element, name), is_xml=True)
         for name, value in attributes_of(element)
     ]
-    return [*attributes, *(xml_entry(child, locate) for child in element.iterchildren("*"))]
+    children = [*element.iterchildren("*")]
+    names: Mapping[str, str] = {}
+    if _is_sensor(element):
+        kind = next((entry.text or "" for entry in attributes if entry.name == "@type"), "")
+        names = _meant_elements(kind, {name_of(child) for child in children}, releases)
+        meant = gazebo().sensor_types.get(kind)
+        attributes = [
+            replace(entry, meant_text=meant) if entry.name == "@type" else entry
+            for entry in attributes
+        ]
+    return [
+        *attributes,
+        *(xml_entry(child, locate, releases, names.get(name_of(child), "")) for child in children),
+    ]
+
+
+def _is_sensor(element: Element | None) -> bool:
+    """Return whether an element is a sensor of Gazebo: in a <gazebo> of URDF, or in SDF."""
+    if element is None or name_of(element) != "sensor":
+        return False
+    return any(name_of(outer) in ("gazebo", "sdf") for outer in element.iterancestors())
+
+
+def _meant_elements(
+    kind: str, present: Collection[str], releases: Sequence[Release]
+) -> dict[str, str]:
+    """Return what other words in a sensor of a type stand for where these are not there."""
+    return {
+        word.name: word.meant
+        for word in gazebo().sensor_words
+        if word.meant not in present and word.is_read(kind, releases)
+    }
 
 
 def _yaml_entry(node: "YamlNode", name: str = "") -> TreeEntry:
@@ -226,7 +287,7 @@ def read_tree(package: Package, file: str) -> TreeEntry:
     try:
         if kind == "YAML":
             return _yaml_entry(read_yaml(data, package_path))
-        return _read_xml(data, package_path)
+        return _read_xml(data, package_path, package.releases)
     except (YamlFault, XmlFault) as fault:
         message = f"{path} is not readable as {kind}: {fault}"
         raise MissingElement(
@@ -234,6 +295,6 @@ def read_tree(package: Package, file: str) -> TreeEntry:
         ) from None
 
 
-def _read_xml(data: bytes, path: str) -> TreeEntry:
+def _read_xml(data: bytes, path: str, releases: Sequence[Release]) -> TreeEntry:
     file = XmlFile(data, Source(path, data.decode("utf-8", "replace")))
-    return xml_entry(file.root, file.location)
+    return xml_entry(file.root, file.location, releases)
