@@ -34,14 +34,14 @@ METHODS = {
 
 # Patterns that may be slow, by their module and how they begin: why their texts are never long.
 BOUNDED = {
-    ("grader.app.editor.completions", ""): "_MAX_BEFORE letters before the cursor",
-    ("grader.base.toml_file", r"\{[^}]*"): "_MAX_WIDTH letters on each side of a mistake",
-    ("grader.report.pages.shell", ""): "scripts and styles of our own",
-    ("grader.ros.installation.manifest_conditions", r"(\$[A-Z"): "_MAX_LENGTH",
-    ("grader.ros.package.trees", ""): "paths of entries in a rubric",
-    ("grader.ros.python.python_slips", "((?:[^#"): "_MAX_LENGTH of a line",
-    ("grader.ros.xacro.rewriting", ""): "_MAX_LENGTH of a text",
-    ("grader.ros.xml.repair", "<!--"): "what was read before, between two tags",
+    ("app.editor.completions", ""): "_MAX_BEFORE letters before the cursor",
+    ("base.toml_file", r"\{[^}]*"): "_MAX_WIDTH letters on each side of a mistake",
+    ("report.pages.shell", ""): "scripts and styles of our own",
+    ("ros.installation.manifest_conditions", r"(\$[A-Z"): "_MAX_LENGTH",
+    ("ros.package.trees", ""): "paths of entries in a rubric",
+    ("ros.python.python_slips", "((?:[^#"): "_MAX_LENGTH of a line",
+    ("ros.xacro.rewriting", ""): "_MAX_LENGTH of a text",
+    ("ros.xml.repair", "<!--"): "what was read before, between two tags",
 }
 
 _Key = tuple[str | bytes, int]
@@ -176,7 +176,10 @@ def _end(*_: object) -> None:
 def _worst(number: int) -> str:
     """Return what to say of a pattern that is too slow, else nothing."""
     (source, _), pattern = _ROWS[number]
-    if any(pattern.module == name and str(source).startswith(start) for name, start in BOUNDED):
+    if any(
+        pattern.module == f"grader.{name}" and str(source).startswith(start)
+        for name, start in BOUNDED
+    ):
         return ""
     worst = max(slow_texts(pattern), default=None)
     if worst is None:
