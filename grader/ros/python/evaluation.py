@@ -233,8 +233,8 @@ class Evaluation(Expressions):
             case py.BoundMethod(owner=py.Call() as owner, name=name):
                 made.name, made.owner = f"{owner.name}.{name}", owner
                 result = self._by_name(made)
-            case py.BoundMethod(owner=owner, name=name):
-                result = self._method(owner, name, made)
+            case py.BoundMethod() | py.UnknownAttribute():
+                result = self._method(function.owner, function.name, made)
             case py.PlainFunction():
                 result = self._plain(function, made)
             case py.Unknown(follows_error=True):

@@ -199,9 +199,9 @@ class Interpreter(Evaluation):
         is_plain = not node.keywords and not node.decorator_list
         if not is_plain or not all(isinstance(base, py.QualifiedName) for base in bases):
             raise py.Undetermined("a class of this kind is not evaluated", self.at, is_final=True)
-        at = self.at
-        self._block(node.body, _ClassScope({}, scope))
-        scope.names[node.name] = py.Unknown("a class is not evaluated", at)
+        at, inside = self.at, _ClassScope({}, scope)
+        self._block(node.body, inside)
+        scope.names[node.name] = py.ClassBody(inside.names, at)
 
     def _delete(self, node: ast.Delete, scope: py.Scope) -> None:
         for target in node.targets:
@@ -360,27 +360,32 @@ class Interpreter(Evaluation):
 
     def _attribute(self, node: ast.Attribute, scope: py.Scope) -> py.Value:
         owner, name = self.evaluate(node.value, scope), node.attr
+        if isinstance(owner, py.QualifiedName):
+            return self._attribute_of_module(owner, node)
         match owner:
-            # Used without an import: an attribute shows that the module is meant.
-            case py.QualifiedName(name="?glob"):
-                return py.QualifiedName(f"glob.{name}")
-            case py.QualifiedName(name="glob.glob") if name in ("glob", "iglob"):
-                message = f"glob is a function here, so glob.{name} is not defined: write glob(...)"
-                self.error(message, position_of(node))
-                return owner
-            case py.QualifiedName():
-                return self._attribute_of_module(owner, node)
             case PurePosixPath() if name in _PARTS:
                 value = getattr(owner, name)
                 return self.budget.checked(list(value) if name == "parents" else value, "path")
             case py.Namespace():
                 return owner.find(name)
+            case py.Unknown(is_text=False):
+                return owner.attribute(name)
         if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
             raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
         return py.BoundMethod(owner, name, node)
 
     def _attribute_of_module(self, owner: py.QualifiedName, node: ast.Attribute) -> py.Value:
         """Return what a name in a module stands for; a misspelt one is an error."""
+        if (
+            owner.name == "?glob"
+        ):  # used without an import: the attribute shows that it is the module
+            return py.QualifiedName(f"glob.{node.attr}")
+        if owner.name == "glob.glob" and node.attr in ("glob", "iglob"):
+            message = (
+                f"glob is a function here, so glob.{node.attr} is not defined: write glob(...)"
+            )
+            self.error(message, position_of(node))
+            return owner
         module, full = owner.name, f"{owner.name}.{node.attr}"
         error = attribute_error(module, node.attr) if full not in self.functions else None
         if error is not None:
