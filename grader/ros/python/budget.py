@@ -1,6 +1,6 @@
 """The budget for reading a workspace: the work of documents, expressions and searches."""
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator
 from pathlib import PurePosixPath
 
 from grader.ros.python import values as py
@@ -147,6 +147,19 @@ class Budget:
                 ):
                     raise py.Undetermined(_FOLDER)
         return value
+
+    def items(self, value: py.Value) -> Iterator[py.Value]:
+        """Return what a loop over a value yields: the letters of a text, if they are known.
+
+        Raises Undetermined.
+        """
+        if isinstance(value, str):
+            self.measure(value)
+        return py.iterate(value)
+
+    def is_below(self, before: py.Value, after: py.Value) -> bool:
+        """Return whether a path is below the folders that are not known, as another one is."""
+        return all(stand_in in str(after) for stand_in in self.stand_ins if stand_in in str(before))
 
     def _size_alone(self, part: py.Value, kind: str) -> int:
         """Return the size of a part beyond one.

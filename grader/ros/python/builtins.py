@@ -22,6 +22,11 @@ from grader.ros.python.values import (
 
 _MAX_DIGITS = 400  # that round leaves
 _OF_SIGNATURE = re.compile(r"positional argument|keyword argument|required keyword")
+_OF_ANY_LETTERS = ("bool", "print")  # whatever the letters of a text are
+_ABOVE = frozenset(  # what may be above a path
+    {f"os.path.{name}" for name in ("dirname", "normpath", "abspath", "realpath")}
+    | {"pathlib.Path.resolve", "pathlib.Path.absolute"}
+)
 _FAST_GROWING = ("factorial", "comb", "perm", "prod", "lcm")
 
 # Calls a function value with arguments, for the functions that call others: map, filter, sorted.
@@ -44,9 +49,11 @@ def call(
     budget.measure(
         [args, list(kwargs.values())], "holds" if function.kind == "applies" else function.kind
     )
+    if function.kind in ("holds", "applies") and function.name not in _OF_ANY_LETTERS:
+        budget.measure([value for value in args if isinstance(value, str)])
     given = (apply, *args) if function.kind == "applies" else args
     try:
-        return budget.checked(call_plain(function.run, *given, **kwargs), function.kind)
+        result = budget.checked(call_plain(function.run, *given, **kwargs), function.kind)
     except py.EvaluationFails as error:
         if function.kind != "plain" and _OF_SIGNATURE.search(
             str(error)
@@ -54,6 +61,14 @@ def call(
             wrong = _wrong_arguments(function, args, kwargs)
             raise py.EvaluationFails(f"TypeError: {function.name}() {wrong}") from None
         raise
+    if function.kind == "path" and (function.name in _ABOVE or str(result).startswith("..")):
+        _require_below(result, args, budget)
+    return result
+
+
+def _require_below(path: py.Value, given: list[py.Value], budget: Budget) -> None:
+    if not all(budget.is_below(value, path) for value in given):
+        raise py.Undetermined("what is above a folder that is not known is not known")
 
 
 def _wrong_arguments(
@@ -180,9 +195,6 @@ _HOLDING: dict[str, Callable[..., Any]] = {
     "iter": lambda value: py.Items(iterate(value)),
     "enumerate": lambda value, start=0: py.Items(enumerate(iterate(value), known(start))),
     "zip": lambda *values: py.Items(zip(*map(iterate, values), strict=False)),
-    "sorted": _taking_known_items(sorted),
-    "min": _taking_known_items(min),
-    "max": _taking_known_items(max),
     "any": lambda items: any(map(truth, iterate(items))),
     "all": lambda items: all(map(truth, iterate(items))),
 }
@@ -191,6 +203,9 @@ _FUNCTIONS: dict[str, Callable[..., Any]] = {
     "float": float,
     "int": int,
     "abs": abs,
+    "sorted": _taking_known_items(sorted),
+    "min": _taking_known_items(min),
+    "max": _taking_known_items(max),
     "ord": ord,
     "round": _round,
     "range": _range,

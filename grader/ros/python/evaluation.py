@@ -18,7 +18,7 @@ from grader.ros.python.expressions import Expressions
 from grader.ros.python.library import PYTHON_3_12, USUAL_NAMES, usual_meaning
 from grader.ros.python.operators import method, operate
 from grader.ros.python.parse import START, Position, position_of
-from grader.ros.python.values import call_plain, iterate, known, reason_of
+from grader.ros.python.values import call_plain, known, reason_of
 
 
 class PythonError(NamedTuple):
@@ -317,7 +317,8 @@ class Evaluation(Expressions):
                 return None
             if name in ("extend", "update"):
                 args = [
-                    value if isinstance(value, dict) else list(iterate(value)) for value in args
+                    value if isinstance(value, dict) else list(self.budget.items(value))
+                    for value in args
                 ]
             elif name == "remove":
                 known([owner, args])

@@ -20,7 +20,6 @@ from grader.ros.python.values import (
     Undetermined,
     Value,
     call_plain,
-    iterate,
 )
 
 _MAX_LENGTH = 4_000  # characters of an expression
@@ -220,7 +219,7 @@ class Expressions:
         loop, *nested = loops
         if first is None:
             outer = scope if depth else scope.outer or scope
-            first = iterate(self.budget.checked(self.evaluate(loop.iter, outer)))
+            first = self.budget.items(self.budget.checked(self.evaluate(loop.iter, outer)))
         for item in first:
             self.budget.charge(_OF_NODE + len(scope.names) + depth)
             self.bind(loop.target, item, scope)
@@ -241,7 +240,7 @@ class Expressions:
         """Bind several targets to the items of a value."""
         if any(isinstance(target, ast.Starred) for target in targets):
             raise Undetermined("a target with a star is not supported")
-        values = list(iterate(value))
+        values = list(self.budget.items(value))
         if len(values) != len(targets):
             message = f"ValueError: cannot unpack {len(values)} values into {len(targets)} names"
             raise EvaluationFails(message)

@@ -32,7 +32,7 @@ from grader.ros.python.library import (
 )
 from grader.ros.python.operators import has_attribute, operate
 from grader.ros.python.parse import Code, Position, bound_in, own_nodes, position_of
-from grader.ros.python.values import call_plain, iterate, known, refuse, str_of
+from grader.ros.python.values import call_plain, known, refuse, str_of
 
 _PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
 MAX_FILE_STEPS = 100_000  # what the evaluation of one file may use
@@ -247,7 +247,7 @@ class Interpreter(Evaluation):
         if isinstance(items, py.Unknown) and items.follows_error:
             self.doubted(items)
             items = []
-        for item in iterate(items):
+        for item in self.budget.items(items):
             self.bind(node.target, item, scope)
             self._block(node.body, scope)
         self._block(node.orelse, scope)
@@ -364,8 +364,7 @@ class Interpreter(Evaluation):
             return self._attribute_of_module(owner, node)
         match owner:
             case PurePosixPath() if name in _PARTS:
-                value = getattr(owner, name)
-                return self.budget.checked(list(value) if name == "parents" else value, "path")
+                return self._part_of_path(owner, name)
             case py.Namespace():
                 return owner.find(name)
             case py.Unknown(is_text=False):
@@ -373,6 +372,17 @@ class Interpreter(Evaluation):
         if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
             raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
         return py.BoundMethod(owner, name, node)
+
+    def _part_of_path(self, path: PurePosixPath, name: str) -> py.Value:
+        """Return an attribute of a path; those above a folder that is not known are not known."""
+        value = self.budget.checked(getattr(path, name) if name != "parents" else None, "path")
+        above: list[py.Value] = [*path.parents] if name == "parents" else [value]
+        is_folder = name in ("parent", "parents")
+        unknown = py.Unknown("the folder that a build installs to is not known", self.at)
+        known = [
+            part if not is_folder or self.budget.is_below(path, part) else unknown for part in above
+        ]
+        return known if name == "parents" else known[0]
 
     def _attribute_of_module(self, owner: py.QualifiedName, node: ast.Attribute) -> py.Value:
         """Return what a name in a module stands for; a misspelt one is an error."""
@@ -427,7 +437,7 @@ class Interpreter(Evaluation):
                 values.append(self.evaluate(node, scope))
                 continue
             try:
-                values += iterate(self.evaluate(node.value, scope))
+                values += self.budget.items(self.evaluate(node.value, scope))
             except py.Undetermined as error:
                 raise py.Undetermined(
                     str(error), error.at or position_of(node), is_final=True
@@ -488,7 +498,7 @@ class Interpreter(Evaluation):
 
         The items of its first loop are evaluated now, the rest when it is iterated.
         """
-        first = iterate(self.evaluate(node.generators[0].iter, scope))
+        first = self.budget.items(self.evaluate(node.generators[0].iter, scope))
         rounds = self.rounds(node.generators, py.Scope({}, scope), first)
         return py.Items(self.evaluate(node.elt, inner) for inner in rounds)
 
@@ -551,7 +561,7 @@ class Interpreter(Evaluation):
         if not isinstance(before, py.PLAIN):
             refuse(before, "this value is not supported")
         if isinstance(before, list) and isinstance(node.op, ast.Add):
-            before.extend(list(iterate(value)))
+            before.extend(list(self.budget.items(value)))
             self.budget.measure(before, "holds")
         elif isinstance(before, list | dict):
             raise py.Undetermined("this operator is not supported")

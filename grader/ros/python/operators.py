@@ -79,6 +79,9 @@ def _search_cost(text: py.Value, part: py.Value) -> int:
     return 0
 
 
+_FORMATTED = re.compile(r"%(?:\(\w*\))?[-+ #0-9.*]")  # a width, a precision, or a sign
+
+
 def _percent_format(template: str, value: py.Value) -> str:
     """Return template % value."""
     if _WIDE.search(template):
@@ -104,6 +107,8 @@ def _replace(text: str, old: str, new: str, *count: int) -> str:
 
 
 def _join(separator: str, items: py.Value) -> str:
+    if isinstance(items, str):
+        raise py.Undetermined("joining the letters of a text is not supported")
     parts = items_of(items)
     if sum(len(part) + len(separator) for part in parts if isinstance(part, str)) > py.MAX_TEXT:
         too_large("text")
@@ -183,6 +188,8 @@ def operate(op: ast.operator, left: py.Value, right: py.Value, budget: Budget) -
         kind = _kind(op, left, right)
         if isinstance(op, ast.Mod) and isinstance(left, str):
             operation = _percent_format
+            if _FORMATTED.search(left):
+                budget.measure(right)
         made = _size_made(op, left, right, kind, budget)
         if made > py.MAX_PARTS:
             too_large("value")
