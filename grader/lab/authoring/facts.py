@@ -153,7 +153,7 @@ def _visual_facts(link: Link) -> Facts:
                 selected = {}
             else:
                 selected = {"shape": type(visual.geometry).__name__.lower()}
-            if visual.material is not None:
+            if visual.material is not None and not visual.material.texture:
                 yield _link_fact(
                     link.name, "shows_colour", **selected, colour=_rounded(visual.material.rgba, 4)
                 )

@@ -169,7 +169,7 @@ def shows_colour(
             largest of all.
     """
     visual = main_visual(robot, link, shape)
-    if visual.material is None or _has_only_texture(visual.material):
+    if visual.material is None or visual.material.texture:
         return _judge_colourless(link, visual)
     actual = visual.material.rgba[: len(colour)]
     fine = all_within(actual, colour, tolerance)
@@ -202,7 +202,7 @@ def shows_grey(
         tolerance: How far red, green and blue may be apart, on the scale from 0 to 1.
     """
     visual = main_visual(robot, link)
-    if visual.material is None or _has_only_texture(visual.material):
+    if visual.material is None or visual.material.texture:
         return _judge_colourless(link, visual)
     actual = visual.material.rgba[:3]
     message = f"{link!r} is shown in rgb {point(actual)}"
@@ -300,11 +300,6 @@ def _why_invisible(material: Material) -> str:
     if alpha >= VISIBLE:
         return ""
     return f"; its alpha is {alpha:g}, so it is invisible; it should be at least {VISIBLE:g}"
-
-
-def _has_only_texture(material: Material) -> bool:
-    # ROS 2 gives a material black where it has a texture and no colour.
-    return material.rgba == Material("").rgba and material.texture != ""
 
 
 def _judge_colourless(link: str, visual: Visual) -> Outcome:
