@@ -32,7 +32,8 @@ class Definition(NamedTuple):
 class Use(NamedTuple):
     """A name that a file uses, and what the file calls it.
 
-    Where it is `optional`, only a similar name is wrong.
+    Where it is `optional`, only a similar name is wrong. It does not stand for one that is `taken`,
+    such as another entry of the list that it is in.
     """
 
     kind: DefinedKind
@@ -41,6 +42,7 @@ class Use(NamedTuple):
     said: str
     owner: str = ""
     optional: bool = False
+    taken: frozenset[str] = frozenset()
 
 
 class Open(NamedTuple):
@@ -192,6 +194,8 @@ def _undefined(
 ) -> Iterator[Mismatch]:
     """Yield that a name is not defined, unless what is not known may define it."""
     known = names.like(use)
+    if use.taken:
+        known = {name: at for name, at in known.items() if name not in use.taken}
     charge(cost_of_guess(len(known)))
     mismatch = _mismatch(use, known, is_open=names.are_open(use))
     if mismatch is not None:
