@@ -67,9 +67,11 @@ def _read() -> Iterator[SmallWorkspace]:
 def _variant(
     variant: Mapping[str, Any], files: Mapping[str, str], codes: tuple[str, ...], depends: str
 ) -> SmallWorkspace:
-    """Return a workspace in which one text is replaced in each file that has it."""
+    """Return a workspace in which texts are replaced in each file that has them."""
     assert any(variant["old"] in text for text in files.values()), variant["about"]
-    changed = {path: text.replace(variant["old"], variant["new"]) for path, text in files.items()}
+    changed = dict(files)
+    for old, new in {variant["old"]: variant["new"], **variant.get("others", {})}.items():
+        changed = {path: text.replace(old, new) for path, text in changed.items()}
     built = _with_build_files(changed, depends)
     return SmallWorkspace(variant["about"], built, codes, tuple(variant.get("said", ())))
 

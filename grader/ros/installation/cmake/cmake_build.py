@@ -54,6 +54,9 @@ class Build:
         self._package_at: Position | None = None  # where ament_package() is called
         self._automatic: list[str] = []  # targets that ament_auto_package() installs
         self._guesses = 0
+        # The folders below the prefix of installed programs, each with the target.
+        self._installed: list[tuple[str, str]] = []
+        self.may_have_other_targets = False  # of projects that CMake adds
 
     def result(self, source: Source) -> Installation:
         """Return what is known at the end."""
@@ -62,6 +65,7 @@ class Build:
                 "CMakeLists.txt does not call ament_package(), so ROS 2 does not find the package",
                 self.last,
             )
+        self._name_programs()
         project = self.values.variables.get("PROJECT_NAME")
         first_stops = {stop.reason: stop for stop in reversed(self.later_stops)}
         return Installation(
@@ -81,11 +85,20 @@ class Build:
             interfaces=tuple(self.interfaces),
             targets=self.made.all(
                 {
-                    written_path: self.inside(written_path)
+                    written_path: self._source(written_path)
                     for written_path in self.made.written_sources
                 }
             ),
         )
+
+    def _name_programs(self) -> None:
+        """Add the installed programs of targets under the names of their files."""
+        for folder, target in self._installed:
+            name = self.made.file_name(target)
+            if isinstance(name, Unknown):
+                self._leave_open(name)
+            else:
+                self.programs.add(f"{folder}/{name}")
 
     def give_up(self, reason: str, at: Position) -> None:
         """Note that something is not evaluated.
@@ -124,6 +137,16 @@ class Build:
         if path == ".":
             return ""
         return None if path.startswith(("/", "..")) else path
+
+    def _source(self, text: str) -> str | None:
+        """Return the path of a source, whose ending may lack (policy CMP0115 of CMake)."""
+        path = self.inside(text)
+        if path is None or posixpath.splitext(path)[1] or path in self.listing.files:
+            return path
+        for ending in cmake_words().source_endings:
+            if path + ending in self.listing.files:
+                return path + ending
+        return path
 
     def _has(self, path: str) -> bool | None:
         """Return whether the package has a file or folder at a path.
@@ -209,6 +232,30 @@ class Build:
         if {"IMPORTED", "ALIAS", "DIRECTORY"}.isdisjoint(words):
             self._require_sources(words, command)
 
+    def name_target(self, command: Command) -> None:
+        """Add a target that tests have, or that is made by a command of its own."""
+        name = self.values.first(command)
+        if isinstance(name, str):
+            self.targets[name] = "executable" if self.values.uncertain is None else "unknown"
+        else:
+            self.may_have_other_targets = True
+
+    def set_properties(self, command: Command) -> None:
+        """Note the properties that name the files of targets."""
+        texts = self.values.texts(command.arguments)
+        if command.name == "set_property":
+            if texts[:1] != ["TARGET"]:
+                return
+            texts = texts[1:]
+        word = "PROPERTY" if command.name == "set_property" else "PROPERTIES"
+        if word not in texts:
+            return
+        end = texts.index(word)
+        for key, value in pairwise(texts[end + 1 :]):
+            for target in texts[:end]:
+                given = self.values.uncertain or value
+                self.made.set_property(str(target), str(key), given)
+
     def _require_sources(self, sources: Sequence[str], command: Command) -> None:
         for source in sources:
             path = self.inside(source) or ""
@@ -254,6 +301,9 @@ class Build:
                 )
 
     def _stop_target(self, command: Command, name: str) -> None:
+        if self.may_have_other_targets and near(name, self.targets) is None:
+            self._leave_open(Unknown(f"another project may have the target {name}", command.at))
+            return
         hint = self._guess(name, self.targets)
         self.stop(
             f"{command.name}() names the target {name!r}, which is not defined",
@@ -375,8 +425,9 @@ class Build:
         if texts is None:
             self.give_up("the arguments of ament_auto_package() are not known", command.at)
             return
-        executables = (name for name in self._automatic if self.targets[name] == "executable")
-        self.programs.update(f"lib/{self._project()}/{name}" for name in executables)
+        for name in self._automatic:
+            if self.targets[name] == "executable":
+                self._installed.append((f"lib/{self._project()}", name))
         groups = _groups(texts, cmake_words().auto_keywords)
         for keyword, folders in groups[1:]:
             target = self._share() if keyword == "INSTALL_TO_SHARE" else "bin"
@@ -482,7 +533,7 @@ class Build:
             elif known in (None, "unknown") or self.values.uncertain is not None:
                 self._leave_open(Unknown(f"the target {name} is not known", command.at))
             elif known == "executable":
-                self.programs.add(f"{target}/{name}")
+                self._installed.append((target, name))
 
     def _copy_files(
         self, texts: Sequence[str], target: str, command: Command, options: _Options
@@ -612,6 +663,7 @@ BUILD_COMMANDS: dict[str, Callable[[Build, Command], None]] = {
         Build.add_target,
     ),
     **dict.fromkeys(("target_link_libraries", "ament_target_dependencies"), Build.use_target),
+    **dict.fromkeys(("set_target_properties", "set_property"), Build.set_properties),
     "generate_parameter_library": Build.add_target,  # its YAML file is a source
     "rclcpp_components_register_node": Build.register_component,
     "rclcpp_components_register_nodes": Build.register_components,
@@ -626,11 +678,14 @@ BUILD_COMMANDS: dict[str, Callable[[Build, Command], None]] = {
 
 
 def _folder_of_programs(groups: _Groups) -> str:
-    """Return the folder below the prefix to which install(TARGETS ...) copies executables."""
+    """Return the folder below the prefix to which install(TARGETS ...) copies executables.
+
+    Of several destinations of one kind, the last counts (CMake 3.25, run).
+    """
     kind, places = "", dict[str, str]()
     for keyword, values in groups[1:]:
         if keyword in cmake_words().artifacts:
             kind = keyword
         elif keyword == "DESTINATION" and values:
-            places.setdefault(kind, posixpath.normpath(values[0].removeprefix(f"{PREFIX}/")))
+            places[kind] = posixpath.normpath(values[0].removeprefix(f"{PREFIX}/"))
     return places.get("RUNTIME") or places.get("") or "bin"

@@ -19,7 +19,13 @@ from grader.ros.installation.cmake.cmake_values import (
     split_list,
 )
 from grader.ros.installation.cmake.conditions import Condition
-from grader.ros.installation.cmake.language import BLOCK_WORDS, CMakeFault, Command, parse_cmake
+from grader.ros.installation.cmake.language import (
+    BLOCK_WORDS,
+    CMakeFault,
+    Command,
+    all_commands,
+    parse_cmake,
+)
 from grader.ros.installation.file_search import PackageListing
 from grader.ros.installation.installation import Installation
 from grader.ros.known.cmake_words import cmake_words
@@ -53,6 +59,8 @@ def read_cmake(
         )
     listing = PackageListing(tree, budget)
     build = Build(listing, Values(listing.budget), name)
+    names = {command.name for command in all_commands(commands)}
+    build.may_have_other_targets = not names.isdisjoint(cmake_words().target_makers)
     try:
         with suppress(_Returns):
             _Evaluation(build).run(commands)
@@ -107,6 +115,8 @@ class _Evaluation:
                 _COMMANDS[command.name](self, command)
             elif command.name in BUILD_COMMANDS:
                 BUILD_COMMANDS[command.name](self.build, command)
+            elif command.name in cmake_words().named_targets:
+                self.build.name_target(command)
             elif command.name in self.own:
                 self._call(command)
             elif command.name in cmake_words().harmless:
@@ -367,4 +377,6 @@ _COMMANDS: dict[str, Callable[[_Evaluation, Command], None]] = {
 
 def known_commands() -> frozenset[str]:
     """Return the names of the commands that are known of CMake and ament_cmake."""
-    return frozenset({*_COMMANDS, *BUILD_COMMANDS, *cmake_words().harmless, *BLOCK_WORDS})
+    words = cmake_words()
+    known = {*_COMMANDS, *BUILD_COMMANDS, *words.harmless, *words.named_targets, *BLOCK_WORDS}
+    return frozenset(known)

@@ -609,7 +609,8 @@ class _Target:
             nodes = tuple(self._started_by(started) for started in self._created)
             at = mains[0].node.location if mains else self._start
             path = at.path.removeprefix(package.path(""))
-            program = NodeProgram(target.name, nodes if mains else (), at, path, "main")
+            name = target.program or target.name
+            program = NodeProgram(name, nodes if mains else (), at, path, "main")
             yield program._replace(may_have_more=self._may_have_more)
         if package.installation is not None:
             yield from self._programs_of_components(package.installation)

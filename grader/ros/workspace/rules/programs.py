@@ -10,6 +10,7 @@ from typing import NamedTuple
 from grader.base.errors import InputError
 from grader.base.names import closest, near
 from grader.base.source import Location
+from grader.ros.installation.installation import Installation
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import parameters_of
@@ -132,6 +133,9 @@ def _why_no_program(package: Package, name: str) -> _MissingProgram:
             f"a build installs {name!r} in {folder}, not in {home}: see install_scripts of "
             "setup.cfg"
         )
+    if _is_built_only(setup, name):
+        message = f"CMakeLists.txt builds {name!r}, but no install(TARGETS ...) names it"
+        return _MissingProgram(message)
     installed = []
     if setup is not None:
         installed = [*setup.programs, *(copy.target for copy in setup.copies)]
@@ -147,6 +151,15 @@ def _why_no_program(package: Package, name: str) -> _MissingProgram:
     programs = {path.rpartition("/")[2] for path in installed if path.startswith(f"{home}/")}
     names = programs.union(entries)
     return _missing_program(package.name, name, sorted(names))
+
+
+def _is_built_only(setup: Installation | None, name: str) -> bool:
+    """Return whether CMake makes a program that no install() names."""
+    for target in setup.targets if setup is not None else ():
+        is_program = target.kind == "executable" and (target.program or target.name) == name
+        if is_program and not target.is_installed:
+            return True
+    return False
 
 
 def _missing_program(package: str, name: str, programs: Sequence[str]) -> _MissingProgram:
