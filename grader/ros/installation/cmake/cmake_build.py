@@ -2,7 +2,7 @@
 
 import posixpath
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fnmatch import translate
 from itertools import pairwise, takewhile
@@ -29,6 +29,7 @@ from grader.ros.python.parse import START, Position
 from grader.ros.python.values import Undetermined, Unknown
 
 _MANIFEST = "package.xml"
+_GENERATE = "rosidl_generate_interfaces"
 _Options = Mapping[str, list[str]]
 _Groups = Sequence[tuple[str, list[str]]]  # arguments by the keyword before them
 
@@ -56,6 +57,8 @@ class Build:
         self._guesses = 0
         # The folders below the prefix of installed programs, each with the target.
         self._installed: list[tuple[str, str]] = []
+        self.may_make_files = False  # by programs that run while CMake reads the file
+        self._may_find_more = False  # in a search after that
         self.may_have_other_targets = False  # of projects that CMake adds
 
     def result(self, source: Source) -> Installation:
@@ -190,7 +193,8 @@ class Build:
             if pattern is None or words[0] == "LIST_DIRECTORIES":
                 return Unknown("a search is not evaluated", at)
             paths = self._matching(pattern, recursive=recursive)
-            if not paths:
+            self._may_find_more = self._may_find_more or self.may_make_files
+            if not paths and not self.may_make_files:
                 self.listing.empty[EmptyGlob(pattern, at)] = None
             found_paths.update(paths)
         text = ";".join(f"{start}{path}" for path in sorted(found_paths))
@@ -365,10 +369,20 @@ class Build:
             command.at,
             tuple(made),
             tuple(groups.get("DEPENDENCIES", ())),
-            is_certain=is_known and self.values.uncertain is None,
+            is_certain=is_known and self.values.uncertain is None and not self._may_find_more,
             needs_group=groups.keys().isdisjoint(("SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK")),
         )
         self.interfaces.append(interfaces)
+
+    def note_calls(self, commands: Iterable[Command]) -> None:
+        """Note the calls of rosidl_generate_interfaces() in branches that are not taken here.
+
+        Variables that the command line of the build sets may decide it.
+        """
+        evaluated = {interfaces.at for interfaces in self.interfaces}
+        for command in commands:
+            if command.name == _GENERATE and command.at not in evaluated:
+                self.interfaces.append(GeneratedInterfaces(command.at, is_certain=False))
 
     def _copy_interfaces(self, texts: Sequence[str], command: Command) -> list[str]:
         """Install the files of interfaces, and return those that are known."""
@@ -391,6 +405,8 @@ class Build:
             return None
         if self._has(path) is not False:
             return path
+        if self.may_make_files:
+            return None
         self._stop_missing(command, path)
         self.listing.budget.charge(len(self.listing.files))
         meant = closest(path, self.listing.files)
@@ -668,7 +684,7 @@ BUILD_COMMANDS: dict[str, Callable[[Build, Command], None]] = {
     "rclcpp_components_register_node": Build.register_component,
     "rclcpp_components_register_nodes": Build.register_components,
     "target_sources": Build.add_sources,
-    "rosidl_generate_interfaces": Build.generate_interfaces,
+    _GENERATE: Build.generate_interfaces,
     "ament_package": Build.package,
     "ament_auto_package": Build.auto_package,
     "ament_python_install_package": Build.python_package,

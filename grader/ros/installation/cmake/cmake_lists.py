@@ -59,13 +59,15 @@ def read_cmake(
         )
     listing = PackageListing(tree, budget)
     build = Build(listing, Values(listing.budget), name)
-    names = {command.name for command in all_commands(commands)}
+    every_command = [*all_commands(commands)]
+    names = {command.name for command in every_command}
     build.may_have_other_targets = not names.isdisjoint(cmake_words().target_makers)
     try:
         with suppress(_Returns):
             _Evaluation(build).run(commands)
     except OutOfBudget:
         build.give_up("the file is too long to evaluate", START)
+    build.note_calls(every_command)
     return build.result(source)
 
 
@@ -168,6 +170,7 @@ class _Evaluation:
         if command.name == "message" and texts[:1] in (["FATAL_ERROR"], ["SEND_ERROR"]):
             words = " ".join(text for text in texts[1:] if isinstance(text, str))
             self.build.stop(f"CMakeLists.txt stops with the message {words!r}", command.at)
+        self.build.may_make_files |= command.name == "execute_process"
         self.values.is_opaque |= command.name in cmake_words().opaque
         index = cmake_words().outputs.get(command.name, len(texts))
         names = texts if index < 0 else texts[index : index + 1]
