@@ -14,6 +14,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.base.merge_conflicts import resolve_conflicts
+from grader.base.names import closest
 from grader.base.reuse import Answers, Memory
 from grader.base.source import Location, Source
 from grader.ros.config.yaml_nodes import yaml_value
@@ -257,7 +258,17 @@ def _add_missing_entry(file: "_PythonLaunchFile", findings: Findings, *, is_boun
         findings.add_undecided(message, START)
     else:
         message = f"the file does not define the function {_ENTRY}, which ros2 launch calls"
-        findings.add_fault(message, START)
+        functions = {
+            name: value.at
+            for name, value in file.interpreter.module.names.items()
+            if isinstance(value, Function)
+        }
+        meant = closest(_ENTRY, functions)
+        if meant is None:
+            findings.add_fault(message, START)
+        else:
+            at = functions[meant]._replace(column=functions[meant].column + len("def "))
+            findings.add_fault(f"{message}; did you mean it by {meant!r}?", at)
 
 
 def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
@@ -270,7 +281,7 @@ def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
     ):  # the description is not loaded, so what is wrong with the rest of it does not count
         findings.faults, findings.doubts = [], []
     for fault in interpreter.errors:
-        findings.add_fault(fault.message, fault.at, argument=fault.argument)
+        findings.add_fault(fault.message, fault.at, fault.lacks, fault.argument)
     for contents, at in file.reads:
         findings.refer("read", contents, Call("", [], {}, at))
     for call in interpreter.calls:

@@ -157,7 +157,7 @@ class Interpreter(Evaluation):
                 kind(self, node, scope)
             except py.EvaluationFails as error:  # of the statement itself, such as an assignment
                 at = error.at or position_of(node)
-                self.error(str(error), at, error.kind, argument=error.argument)
+                self.error(str(error), at, error.kind, argument=error.argument, lacks=error.lacks)
             except py.Undetermined as error:
                 if error.is_final:
                     raise

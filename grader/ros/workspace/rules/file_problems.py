@@ -126,14 +126,15 @@ def _started(workspace: Workspace, path: str, launch: Launch) -> Launch:
 
 
 def _may_be_included(workspace: Workspace, name: str, launch: Launch) -> bool:
-    """Return whether a text names a launch file, or a launch file is not known as a whole."""
+    """Return whether a text names a launch file, or another one is not known as a whole."""
     try:
         count = sum(name in text for text in workspace.texts.searched_launch_texts())
     except NotDecided:
         return True
     if count > (name in launch.source.text):
         return True
-    return any(any_launch.unknown for _, _, any_launch in workspace.launches.files)
+    others = [other for _, _, other in workspace.launches.files if other is not launch]
+    return any(other.unknown for other in others)
 
 
 def _rviz_problems(package: Package, path: str) -> Iterator[Problem]:
