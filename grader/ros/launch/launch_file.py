@@ -268,7 +268,7 @@ def _add_missing_entry(file: "_PythonLaunchFile", findings: Findings, *, is_boun
             findings.add_fault(message, START)
         else:
             at = functions[meant]._replace(column=functions[meant].column + len("def "))
-            findings.add_fault(f"{message}; did you mean it by {meant!r}?", at)
+            findings.add_fault(message, at, hint=f"; did you mean it by {meant!r}?")
 
 
 def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:

@@ -312,6 +312,7 @@ class LaunchFault(NamedTuple):
     location: Location
     lacks: Lacking = ""  # what another launch file, or the user, may give
     argument: str = ""  # that a function does not have
+    hint: str = ""  # what may be meant, for the end of the message
 
 
 class _LaterWord(NamedTuple):
@@ -417,10 +418,15 @@ class Findings:
     is_silent: bool = False  # while what may never be executed is visited
 
     def add_fault(
-        self, message: str, at: Position, lacks: Lacking = "", argument: str = ""
+        self,
+        message: str,
+        at: Position,
+        lacks: Lacking = "",
+        argument: str = "",
+        hint: str = "",
     ) -> None:
         """Add an error that stops the launch."""
-        self.faults.append(LaunchFault(message, self.locate(at), lacks, argument))
+        self.faults.append(LaunchFault(message, self.locate(at), lacks, argument, hint))
 
     def add_unknown(self, reason: str, at: Position) -> None:
         """Add what may start more than is found."""
