@@ -73,7 +73,7 @@ from grader.ros.python.values import (
 
 _MODULE_NAME = "python_launch_file"  # the __name__ of a launch file
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
-_RECORDED = ("builtins.open.close", "builtins.open.__enter__", "xacro.process_doc")
+_RECORDED = ("builtins.open.close", "builtins.open.__enter__")
 _TEXTS = [
     f"{name}.{method}"
     for name in ("xacro.process_file", "xacro.parse")
@@ -428,6 +428,7 @@ class _PythonLaunchFile:
             "xacro.process_file": self._xacro,
             "xacro.process": self._xacro,
             "xacro.parse": self._xacro,
+            "xacro.process_doc": _process_doc,
             **dict.fromkeys(_TEXTS, self._text),
             **dict.fromkeys(("yaml.safe_load", "yaml.load"), self._load_yaml),
             "subprocess.check_output": self._check_output,
@@ -619,6 +620,14 @@ def _add_action(evaluation: Evaluation, call: Call) -> Value:
     """Record an action that is added to a description."""
     if len(call.args) + len(call.kwargs) != 1:
         raise EvaluationFails(f"{call.short} takes one action")
+    record(evaluation, call)
+
+
+def _process_doc(evaluation: Evaluation, call: Call) -> Value:
+    """Give the document that xacro.parse() returns the arguments with which it is expanded."""
+    document, mappings = call.argument(0, "doc"), call.argument(1, "mappings")
+    if isinstance(document, Call) and mappings is not None:
+        document.kwargs["mappings"] = mappings
     record(evaluation, call)
 
 

@@ -27,6 +27,7 @@ from grader.ros.workspace.model.stated_releases import stated_releases
 from grader.ros.workspace.opened import OpenedWorkspace
 
 _MAX_PACKAGES, _MAX_ROBOTS = 1000, 200
+_NOTES = (".txt", ".md", ".rst", ".log")
 
 
 def read_workspace(
@@ -114,12 +115,19 @@ def _read_robots(
 def _whole(
     robot_files: Sequence[RobotFile], launched: set[str], parts: frozenset[str]
 ) -> list[RobotFile]:
-    """Return the files that launch files load, and those that are neither backups nor included."""
-    return [
-        file
-        for file in robot_files
-        if file.path in launched or not (file.path in parts or is_backup(file.path))
-    ]
+    """Return the files that launch files load, and those that are no backups, parts or notes."""
+    whole = []
+    for file in robot_files:
+        is_other = file.path in parts or is_backup(file.path) or _is_note(file)
+        if file.path in launched or not is_other:
+            whole.append(file)
+    return whole
+
+
+def _is_note(file: RobotFile) -> bool:
+    """Return whether a file is a text with a piece of a robot in it, which no program loads."""
+    is_text = file.name.endswith(_NOTES)
+    return is_text and not any(word in file.name for word in ("urdf", "xacro"))
 
 
 def _chosen_parts(tree: Tree, robot_files: Sequence[RobotFile]) -> frozenset[str]:

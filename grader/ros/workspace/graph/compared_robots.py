@@ -4,8 +4,8 @@ They are those that the file's launch files start, or those of packages that hav
 of the file. A file may name what another robot of the workspace has, and not mean it.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
-from functools import lru_cache
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 from grader.base.text import quoted
@@ -119,10 +119,22 @@ class _RobotGroups:
         robots: dict[str, KnownRobot] = {}
         for named in launch.named("urdf"):
             path = self._workspace.installed.source_of(named.path) if named.path else None
-            if path not in by_path or named.arguments:
+            if path not in by_path or len(self._arguments_of[named.path or ""]) > 1:
                 return None
             robots[path] = by_path[path]
         return None if launch.more or not robots else tuple(robots.values())
+
+    @cached_property
+    def _arguments_of(self) -> Mapping[str, set[tuple[tuple[str, str | None], ...]]]:
+        """The arguments of xacro under which launch files read robots, by the paths of these.
+
+        A robot is known under one of them only.
+        """
+        arguments: dict[str, set[tuple[tuple[str, str | None], ...]]] = {}
+        for _, launch in self._workspace.launches.roots:
+            for named in launch.named("urdf"):
+                arguments.setdefault(named.path or "", set()).add(named.arguments)
+        return arguments
 
     def _files_of(self, launch: Launch) -> Iterator[str]:
         """Yield the parameter files that the nodes and controllers of a launch file get."""
