@@ -29,6 +29,7 @@ from grader.ros.installation.cmake.language import (
 from grader.ros.installation.file_search import PackageListing
 from grader.ros.installation.installation import Installation
 from grader.ros.known.cmake_words import cmake_words
+from grader.ros.known.released import is_released
 from grader.ros.known.releases import RELEASES
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.parse import START, Position, SyntaxFault, location_in
@@ -336,7 +337,7 @@ class _Evaluation:
             return
         known = cmake_words().exports
         meant = near(name, known) if name.lower() not in known else None
-        if meant is not None:
+        if meant is not None and not is_released(name):
             if "REQUIRED" not in words:
                 return
             hint = f"; did you mean {meant!r}?"

@@ -12,6 +12,7 @@ from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.installation.manifest import Manifest
 from grader.ros.known.package_rows import controller_row, is_known_controller, package_row
+from grader.ros.known.released import is_released, packages_brought_by
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
 from grader.ros.workspace.model.workspace import Workspace
@@ -59,6 +60,8 @@ def _undeclared(
             continue
         workspace.charge(cost_of_guess(len(declared)))
         meant = near(name, declared)
+        if meant is not None and (package.find(name) is not None or is_released(name)):
+            meant = None  # another package, which is there too
         misplaced = manifest.misplaced.get(name)
         guess = ""
         if misplaced is not None:
@@ -78,7 +81,7 @@ def _declared(package: Package) -> set[str]:
     assert package.manifest is not None
     declared = {*package.manifest.dependencies, *package.names}
     for name in [*declared]:
-        declared.update(package_row(name).members)
+        declared.update(package_row(name).members, packages_brought_by(name))
     return declared
 
 

@@ -185,17 +185,14 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
         if names.compares(use):
             compared.add(family)
         charge(1 + len(names.patterns))
-        if names.holds(use) or names.may_hold(use) or _is_of_unknown_robot(use):
+        # A name in a file with which no robot has to do may be that of any robot.
+        is_open = use.robots is not None and not use.robots.robots
+        if is_open or names.holds(use) or names.may_hold(use):
             continue
         mismatches += _undefined(names, use, charge)
         if names.why_open(use):
             undecided.setdefault(family, names.why_open(use))
     return Agreement(_in_order(mismatches), undecided, frozenset(compared), files, counts)
-
-
-def _is_of_unknown_robot(use: Use) -> bool:
-    """Return whether no robot has to do with the file of a name."""
-    return use.robots is not None and not use.robots.robots
 
 
 def _undefined(
