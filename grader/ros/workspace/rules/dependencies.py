@@ -49,11 +49,12 @@ def _undeclared(
     Those that packages of the workspace bring, which are declared, rosdep installs.
     """
     declared = _declared(package)
-    brought: set[str] = set()
-    for name in declared:
+    brought: dict[str, str] = {}  # what each is brought by
+    for name in sorted(declared):
         dependency = package.find(name)
         if dependency is not None and dependency.manifest:
-            brought |= {*dependency.manifest.dependencies}
+            for inner in dependency.manifest.dependencies:
+                brought.setdefault(inner, name)
     start = manifest.name_location
     for name, at in used.items():
         if name in declared:
@@ -71,8 +72,13 @@ def _undeclared(
         message = (
             f"package.xml of {package.name!r} does not declare {name!r}, which is used here{guess}"
         )
-        either = corrections(name, at, meant, start if meant not in used else None)
         is_certain = name not in brought
+        if not is_certain:
+            message = (
+                f"package.xml of {package.name!r} does not declare {name!r}, which only "
+                f"{brought[name]!r} brings: the package builds and runs as long as that needs it"
+            )
+        either = corrections(name, at, meant, start if meant not in used else None)
         yield Mismatch(DEPENDENCY_DECLARED, message, at, start, is_certain, either)
 
 
