@@ -160,8 +160,11 @@ def _is_part(robot: Read | Unreadable) -> bool:
 
 
 def _is_empty(robot: Read | Unreadable) -> bool:
-    """Return whether a file of xacro has no links, as one that only defines macros."""
-    if not _is_xacro(robot):
+    """Return whether a file has no links, as one of xacro that only defines macros.
+
+    A file that is not called a URDF may be that of another program, which has a <robot> too.
+    """
+    if not isinstance(robot, Read) or (robot.path.endswith(".urdf") and not _is_xacro(robot)):
         return False
     errors = {problem.kind for problem in robot.problems if problem.severity == "error"}
     return NO_LINKS in errors and errors <= {NO_LINKS, ROBOT_WITHOUT_NAME}

@@ -17,6 +17,12 @@ from grader.ros.workspace.model.workspace_folder import WorkspaceFolder
 from grader.ros.xml.elements import readable
 from grader.ros.xml.parsing import Element
 
+# Plugins of hardware that have the interfaces which <ros2_control> lists, and no others.
+_LISTED_HARDWARE = (
+    *("mock_components/GenericSystem", "fake_components/GenericSystem"),
+    *("gz_ros2_control/GazeboSimSystem", "ign_ros2_control/IgnitionSystem"),
+    *("gazebo_ros2_control/GazeboSystem", "topic_based_ros2_control/TopicBasedSystem"),
+)
 _SYSTEM = re.compile(r"<ros2_control\b")
 _NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
 _CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
@@ -170,11 +176,18 @@ class Robots:
 def command_interfaces(
     robots: Sequence[KnownRobot],
 ) -> Mapping[str, tuple[frozenset[str], Location]]:
-    """Return the command interfaces of the joints in <ros2_control> of some robots."""
+    """Return the command interfaces of the joints in <ros2_control> of some robots.
+
+    A joint without any is left to its hardware, unless that is known to have what is listed.
+    """
     interfaces: dict[str, tuple[frozenset[str], Location]] = {}
     for robot in robots:
         for system in robot.systems:
+            plugin = next(system.iterfind("hardware/plugin"), None)
+            is_own = plugin is not None and (plugin.text or "").strip() not in _LISTED_HARDWARE
             for joint in system.iterchildren("joint"):
+                if is_own and next(joint.iterchildren("command_interface"), None) is None:
+                    continue
                 name, added = joint.get("name", ""), joint.iterchildren("command_interface")
                 before, at = interfaces.get(name, (frozenset[str](), robot.place(joint)))
                 interfaces[name] = (before.union(each.get("name", "") for each in added), at)

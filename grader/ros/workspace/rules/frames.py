@@ -36,6 +36,7 @@ from grader.ros.workspace.rules.names import (
     Use,
     among,
     corrections,
+    cost_of_guess,
 )
 from grader.ros.workspace.rules.rule_table import (
     FRAME_PARENT,
@@ -43,6 +44,7 @@ from grader.ros.workspace.rules.rule_table import (
 )
 from grader.ros.xml.parsing import Element
 
+_MIN_OF_ROBOT = 2  # joints that a file names, from which on it is for another robot
 _JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
 _FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
 _BROADCASTING = ("TransformBroadcaster", "TFMessage")
@@ -78,7 +80,10 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
     for path, tree in workspace.installed.trees:
         if is_parameters(tree):
             compared = robots_for_file(workspace, path)
-            for value in values_in(tree):
+            values = [*values_in(tree)]
+            if _is_of_absent_robot(workspace, path, values):
+                compared = ComparedRobots()
+            for value in values:
                 is_of_controller = not controllers.isdisjoint(value.keys)
                 for fact in _in_yaml(value, is_of_controller=is_of_controller):
                     yield among(fact, compared)
@@ -350,6 +355,25 @@ def _second_parents(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[M
             is_certain = node.when is True and len(robots) == 1
             at = _place(joint.location)
             yield Mismatch(FRAME_PARENT, message, node.location, at, is_certain=is_certain)
+
+
+def _is_of_absent_robot(workspace: Workspace, path: str, values: Sequence[YamlValue]) -> bool:
+    """Return whether a file that nothing gives to a node is for a robot that is not there.
+
+    It names joints, and no robot of the workspace has one of them, or one that is nearly called so.
+    """
+    given = workspace.parameters.files.keys() | workspace.parameters.controller_files
+    joints: set[str] = set()
+    for known_robot in workspace.robots.known:
+        joints |= {joint.name for joint in known_robot.robot.joints}
+    named: set[str] = set()
+    for value in values:
+        if value.keys and _JOINTS.search(value.keys[-1]):
+            named |= {text for text, _ in value.texts()}
+    if path in given or len(named) < _MIN_OF_ROBOT or not named.isdisjoint(joints):
+        return False
+    workspace.charge(len(named) * cost_of_guess(len(joints)))
+    return all(near(name, joints) is None for name in named)
 
 
 def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:
