@@ -81,12 +81,14 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
         if is_parameters(tree):
             compared = robots_for_file(workspace, path)
             values = [*values_in(tree)]
+            joints = compared
             if _is_of_absent_robot(workspace, path, values):
-                compared = ComparedRobots()
+                joints = ComparedRobots()
             for value in values:
                 is_of_controller = not controllers.isdisjoint(value.keys)
                 for fact in _in_yaml(value, is_of_controller=is_of_controller):
-                    yield among(fact, compared)
+                    is_joint = isinstance(fact, Use) and fact.kind == "joint"
+                    yield among(fact, joints if is_joint else compared)
     for known_robot in workspace.robots.known:
         yield from _in_robot(known_robot)
     yield from _odometry_frames(workspace, robots)
@@ -369,7 +371,7 @@ def _is_of_absent_robot(workspace: Workspace, path: str, values: Sequence[YamlVa
     named: set[str] = set()
     for value in values:
         if value.keys and _JOINTS.search(value.keys[-1]):
-            named |= {text for text, _ in value.texts()}
+            named |= {text for text, _ in value.texts() if text and "/" not in text}
     if path in given or len(named) < _MIN_OF_ROBOT or not named.isdisjoint(joints):
         return False
     workspace.charge(len(named) * cost_of_guess(len(joints)))
