@@ -275,7 +275,9 @@ def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
     """Add what Python raises, what is not evaluated, and what the file reads."""
     interpreter = file.interpreter
     if interpreter.doubt is not None:
-        findings.add_undecided(interpreter.doubt.reason, interpreter.doubt.at)
+        doubt = interpreter.doubt
+        findings.add_unknown(doubt.reason, doubt.at, follows_error=doubt.follows_error)
+        findings.add_doubt(doubt.reason, doubt.at)
     if (
         interpreter.errors
     ):  # the description is not loaded, so what is wrong with the rest of it does not count

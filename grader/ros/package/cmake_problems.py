@@ -108,9 +108,8 @@ def _not_compiled(package: Package, setup: Installation) -> Iterator[Problem]:
 
 
 def _is_named(path: str, text: str) -> bool:
-    """Return whether a text names a file, with or without its ending."""
-    name = posixpath.basename(path)
-    return any(re.search(rf"\b{re.escape(word)}\b", text) for word in (name, name.split(".")[0]))
+    """Return whether a text names a file."""
+    return re.search(rf"\b{re.escape(posixpath.basename(path))}\b", text) is not None
 
 
 def _text_of(package: Package, path: str) -> str:

@@ -162,9 +162,13 @@ def _is_part(robot: Read | Unreadable) -> bool:
 def _is_empty(robot: Read | Unreadable) -> bool:
     """Return whether a file has no links, as one of xacro that only defines macros.
 
-    A file that is not called a URDF may be that of another program, which has a <robot> too.
+    A file that is not called a URDF may be that of another program, which has a <robot> too; the
+    driver of Webots reads a URDF of its own form (webots_ros2_driver, WebotsNode).
     """
-    if not isinstance(robot, Read) or (robot.path.endswith(".urdf") and not _is_xacro(robot)):
+    if not isinstance(robot, Read):
+        return False
+    is_of_webots = b"<webots" in robot.data
+    if robot.path.endswith(".urdf") and not (is_of_webots or _is_xacro(robot)):
         return False
     errors = {problem.kind for problem in robot.problems if problem.severity == "error"}
     return NO_LINKS in errors and errors <= {NO_LINKS, ROBOT_WITHOUT_NAME}

@@ -105,7 +105,7 @@ def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismat
     guess = f"; did you mean {meant!r}?" if meant is not None else ""
     message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
     is_certain = is_known or near(written, same_class) is not None
-    at = controller.location
+    at = controller.type.location
     either = corrections(written, at, meant)
     yield Mismatch(CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
 

@@ -79,7 +79,7 @@ def _undeclared(
                 f"{brought[name]!r} brings: the package builds and runs as long as that needs it"
             )
         either = corrections(name, at, meant, start if meant not in used else None)
-        yield Mismatch(DEPENDENCY_DECLARED, message, at, start, is_certain, either)
+        yield Mismatch(DEPENDENCY_DECLARED, message, at, start, is_certain, either, word=name)
 
 
 def _declared(package: Package) -> set[str]:

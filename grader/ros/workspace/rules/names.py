@@ -94,6 +94,7 @@ class Mismatch(NamedTuple):
         Correction, ...
     ] = ()  # with each of which it agrees: first of the use, then of the definition
     fixes: Fixes = NO_FIXES  # of what is no name
+    word: str = ""  # that is wrong, in the call or element at the location
 
     @property
     def family(self) -> AnyFamily:
@@ -315,7 +316,8 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
         related = known[meant]
         message = f"{message}; did you mean {quoted(meant)} ({related.file_and_line})?"
     either = corrections(use.name, use.location, meant, related)
-    return Mismatch(DEFINED[use.kind], message, use.location, related, not is_open, either)
+    rule = DEFINED[use.kind]
+    return Mismatch(rule, message, use.location, related, not is_open, either, word=use.name)
 
 
 def among(fact: Fact, compared: ComparedRobots) -> Fact:

@@ -393,7 +393,15 @@ def _parameter_uses(
     """
     owner = f"{node.package}/{node.executable}"
     shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
+    own_node = workspace.code.own_node(node)
+    # That the code reads it and does not declare it is a mistake of the code.
+    read = set()
+    for parameter in own_node.parameters if own_node is not None else ():
+        if not parameter.is_declared and parameter.is_needed:
+            read.add(parameter.name)
     for name, value in values.items():
+        if name in read:
+            continue
         if value.location not in shared and not name.startswith("qos_overrides."):
             yield Use("parameter", name, value.named_at or value.location, said, owner)
 
@@ -501,7 +509,8 @@ def _other_type(
     message = (
         f"the parameter {name!r} is given {actual}; {reader} declares {declared}{there}, and stops"
     )
-    yield Mismatch(PARAMETER_TYPE, message, given.location, at, is_certain)
+    word = name if given.named_at is None else ""
+    yield Mismatch(PARAMETER_TYPE, message, given.location, at, is_certain, word=word)
 
 
 def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:

@@ -58,7 +58,8 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             workspace.charge(_OF_MISSING)
             missing = _missing_program(node.package, node.executable, programs)
             either = corrections(node.executable, node.location, missing.meant)
-            yield Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+            wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+            yield wrong._replace(word=node.executable)
     yield from _lifecycle(workspace)
 
 
@@ -75,7 +76,8 @@ def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Ite
         missing = _why_no_program(owner, node.executable)
         start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
         either = corrections(node.executable, node.location, missing.meant, start)
-        yield Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+        wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+        yield wrong._replace(word=node.executable)
     else:
         yield from _not_executed(owner, node)
 
