@@ -160,13 +160,13 @@ WEIGHTS = {
     "ros.installation": 31_200,  # names of program files, targets of tests and of other projects; what stops a build from a release on; functions for what was branches of long ones
     "ros.interfaces": 4_400,  # since and until when there is a type; functions for the checks of one default
     "ros.known": 8_600,  # the packages that are released; when each table was read, and the last release that was read for it
-    "ros.launch": 44_500,  # the words of Lyrical, and which release has each; functions that do one thing
+    "ros.launch": 44_800,  # what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing
     "ros.mesh": 4_300,
     "ros.nodes": 44_000,  # which programs may have more nodes, and what braces make; functions of their own for what was branches of long ones
     "ros.package": 25_800,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing
-    "ros.python": 28_000,  # functions that do one thing
+    "ros.python": 28_200,  # where calls end; functions that do one thing
     "ros.urdf": 49_200,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
-    "ros.workspace": 103_800,  # the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches
+    "ros.workspace": 105_600,  # the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches
     "ros.xacro": 28_200,  # functions that do one thing
     "ros.xml": 12_300,  # the attributes of newer versions of URDF
     "": 400,

@@ -61,8 +61,8 @@ def _undeclared(
             continue
         workspace.charge(cost_of_guess(len(declared)))
         meant = near(name, declared)
-        if meant is not None and (package.find(name) is not None or is_released(name)):
-            meant = None  # another package, which is there too
+        if meant is not None and _is_there(package, name) and _is_there(package, meant):
+            meant = None  # another package
         misplaced = manifest.misplaced.get(name)
         guess = ""
         if misplaced is not None:
@@ -80,6 +80,11 @@ def _undeclared(
             )
         either = corrections(name, at, meant, start if meant not in used else None)
         yield Mismatch(DEPENDENCY_DECLARED, message, at, start, is_certain, either, word=name)
+
+
+def _is_there(package: Package, name: str) -> bool:
+    """Return whether the workspace or a release has a package."""
+    return package.find(name) is not None or is_released(name)
 
 
 def _declared(package: Package) -> set[str]:

@@ -1,6 +1,5 @@
 """The fixes of names that do not agree: where they are used, or where they are defined."""
 
-import ast
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
@@ -11,7 +10,7 @@ from grader.base.source import Edits, Location, Source
 from grader.base.text import quoted
 from grader.files.reading import URDF_LIMIT
 from grader.ros.package.package import CMAKE, MANIFEST, Package
-from grader.ros.python.parse import Code, Position, location_in, parse, position_of
+from grader.ros.python.call_extents import ends_of_calls
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Correction, Mismatch
 
@@ -125,22 +124,9 @@ class NameFixes:
             return source.text.find(">", start) + 1
         if not at.path.endswith(".py"):
             return start
-        return self._ends_of_calls(source).get((at.line, at.column), start)
-
-    def _ends_of_calls(self, source: Source) -> Mapping[tuple[int, int], int]:
-        """Return where the calls of a file end, by their places."""
-        if source.path not in self._calls:
-            ends: dict[tuple[int, int], int] = {}
-            code = parse(source.text.encode("utf-8", "surrogateescape"), source.path)
-            for node in ast.walk(code.tree) if isinstance(code, Code) else ():
-                if isinstance(node, ast.Call):
-                    place = location_in(source, position_of(node))
-                    last = Position(node.end_lineno or 0, (node.end_col_offset or 0) + 1)
-                    end = location_in(source, last)
-                    key, offset = (place.line, place.column), source.offset(end.line, end.column)
-                    ends[key] = max(offset, ends.get(key, 0))
-            self._calls[source.path] = ends
-        return self._calls[source.path]
+        if at.path not in self._calls:
+            self._calls[at.path] = ends_of_calls(source)
+        return self._calls[at.path].get((at.line, at.column), start)
 
     def _spans_at(self, source: Source, at: Location, word: str) -> list[tuple[int, int]]:
         """Return the occurrences of a word that a place is about."""

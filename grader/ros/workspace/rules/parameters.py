@@ -395,12 +395,14 @@ def _parameter_uses(
     shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
     own_node = workspace.code.own_node(node)
     # That the code reads it and does not declare it is a mistake of the code.
-    read = set()
+    read, declared = set(), set()
     for parameter in own_node.parameters if own_node is not None else ():
-        if not parameter.is_declared and parameter.is_needed:
+        if parameter.is_declared:
+            declared.add(parameter.name)
+        elif parameter.is_needed:
             read.add(parameter.name)
     for name, value in values.items():
-        if name in read:
+        if name in read - declared:
             continue
         if value.location not in shared and not name.startswith("qos_overrides."):
             yield Use("parameter", name, value.named_at or value.location, said, owner)
@@ -589,10 +591,11 @@ def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[De
             yield Definition("plugin section", name, node.location, owner)
         listed = [*_listed(key, inner)]
         names = [name for name, _ in listed]
-        if not sections.keys() >= set(names) and _is_default(key, names):
-            continue
+        # Then only a section that is nearly called so is wrong.
+        is_default = not sections.keys() >= set(names) and _is_default(key, names)
         for name, at in listed:
-            yield Use("plugin section", name, at, key, owner, taken=frozenset(names))
+            use = Use("plugin section", name, at, key, owner, optional=is_default)
+            yield use._replace(taken=frozenset(names))
 
 
 def _is_default(key: str, names: Sequence[str]) -> bool:
