@@ -104,6 +104,7 @@ def _read_robots(
             assumes_defaults=True,
             memory=memory,
             releases=releases,
+            called="workspace",
         )
         robot = _read(tree, file, max_size, surroundings)
         is_loaded = file.path in launched and file.path not in included

@@ -13,9 +13,11 @@ from grader.ros.package.package import CMAKE, MANIFEST, Package
 from grader.ros.python.call_extents import ends_of_calls
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Correction, Mismatch
+from grader.ros.workspace.rules.rule_table import DEPENDENCY_DECLARED
 
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".sdf", ".txt", ".cfg")
 _MAX_KEY = 400  # characters from a key to its value
+_MAX_ATTRIBUTE = 40  # characters before a text in which its attribute is
 _OF_PACKAGE = re.compile(r"\b(?:package|pkg)\s*=\s*[\"']$")
 _SEPARATED = re.compile(r".*[./:]")
 # Files in which a name stands several times for one thing.
@@ -100,23 +102,33 @@ class NameFixes:
         source = self._source(at.path) if any(words) else None
         if source is None:
             return None
+        of_package = mismatch.rule is DEPENDENCY_DECLARED
         for word in filter(None, words):
-            span = self._span_inside(source, at, word.strip("/"))
+            span = self._span_inside(source, at, word.strip("/"), of_package=of_package)
             if span is not None:
                 start, end = source.at(span[0]), source.at(span[1])
                 return start._replace(end_line=end.line, end_column=end.column, calls=at.calls)
         return None
 
-    def _span_inside(self, source: Source, at: Location, word: str) -> tuple[int, int] | None:
-        """Return where a word is in the call of Python, or the start tag, at a place."""
+    def _span_inside(
+        self, source: Source, at: Location, word: str, *, of_package: bool = False
+    ) -> tuple[int, int] | None:
+        """Return where a word is in the call of Python, or the start tag, at a place.
+
+        A program may be called as its package: `of_package` says which is meant.
+        """
         start = source.offset(at.line, at.column)
         end = self._end_of_element(source, at, start)
         inside = [span for span in _spans(source, word) if start <= span[0] and span[1] <= end]
         if not inside or inside[0][0] <= start + 1:
             return None  # the place is that of the word, or of its quote
         texts = [span for span in inside if _is_whole_text(source.text, span)]
-        others = [span for span in texts if not _OF_PACKAGE.search(source.text[: span[0]][-40:])]
-        return (others or texts or inside)[0]
+        meant: list[tuple[int, int]] = []
+        for span in texts:
+            before = source.text[max(0, span[0] - _MAX_ATTRIBUTE) : span[0]]
+            if (_OF_PACKAGE.search(before) is not None) == of_package:
+                meant.append(span)
+        return (meant or texts or inside)[0]
 
     def _end_of_element(self, source: Source, at: Location, start: int) -> int:
         """Return where the call of Python or the start tag at a place ends; else the place."""
