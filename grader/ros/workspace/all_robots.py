@@ -1,6 +1,7 @@
 """Read a workspace with all of its robots: every file that is one, and not a part of another."""
 
 import posixpath
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from typing import TypeGuard
 
@@ -21,7 +22,7 @@ from grader.ros.package.package import Package
 from grader.ros.package.robot_file import Absent, Read, Surroundings, Unreadable, read_as_ros
 from grader.ros.package.robots import RobotFile, find_robots, parts_of
 from grader.ros.python.budget import READING, Budget
-from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME
+from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME, UNKNOWN_LINK
 from grader.ros.workspace.model.known_robots import INCLUDED
 from grader.ros.workspace.model.stated_releases import stated_releases
 from grader.ros.workspace.opened import OpenedWorkspace
@@ -90,6 +91,7 @@ def _read_robots(
     launched = launched_paths(tree, packages, robot_files)
     included = parts_of(robot_files) | _chosen_parts(tree, robot_files)
     whole = Budget(READING + (packages[0].work.limit if packages else 0))
+    counts = Counter(file.name for file in robot_files)
     robots: list[Read | Unreadable] = []
     parts: list[Read | Unreadable] = []
     for file in _whole(robot_files, launched, included)[:_MAX_ROBOTS]:
@@ -108,7 +110,8 @@ def _read_robots(
         )
         robot = _read(tree, file, max_size, surroundings)
         is_loaded = file.path in launched and file.path not in included
-        is_whole = not _is_empty(robot) and (is_loaded or not _is_part(robot))
+        is_piece = _is_part(robot) or (counts[file.name] > 1 and _is_without_parents(robot))
+        is_whole = not _is_empty(robot) and (is_loaded or not is_piece)
         (robots if is_whole else parts).append(robot)
     return robots or [part for part in parts if not _is_empty(part)]
 
@@ -158,6 +161,18 @@ def _is_part(robot: Read | Unreadable) -> bool:
         return False
     model = robot.reading.robot
     return _is_empty(robot) or (model is not None and not model.name)
+
+
+def _is_without_parents(robot: Read | Unreadable) -> bool:
+    """Return whether a file of xacro lacks only links that its joints name.
+
+    One of several with a name, which belong to states of a robot, is then a piece of one of them.
+    """
+    if not _is_xacro(robot):
+        return False
+    return {problem.kind for problem in robot.problems if problem.severity == "error"} == {
+        UNKNOWN_LINK
+    }
 
 
 def _is_empty(robot: Read | Unreadable) -> bool:

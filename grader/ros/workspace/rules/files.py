@@ -2,6 +2,7 @@
 
 import posixpath
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
@@ -112,21 +113,25 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
 
 
 def _robots_left_out(workspace: Workspace, package: Package) -> frozenset[str]:
-    """Return the robots that a build of a package does not install, while it installs others.
+    """Return the robots that a build of a package does not install, while it has others.
 
-    They are copied to where they are needed, or are of an older state. What launch files read is
-    not among them.
+    It installs others, or has several of one name, of which one is copied to where it is needed.
+    What launch files read is not among them.
     """
     installed = set(package.installed.values())
     robots = [path for path in package.tree.files if path.endswith((".urdf", ".xacro"))]
-    if installed.isdisjoint(robots) or not are_installs_known(package):
+    if not are_installs_known(package):
         return frozenset()
+    counts = Counter(map(posixpath.basename, robots))
+    are_others_installed = not installed.isdisjoint(robots)
     launched: set[str] = set()
     for _, _, launch in workspace.launches.files:
         launched |= {posixpath.basename(named.path or "") for named in launch.named("urdf")}
     left_out: set[str] = set()
     for path in robots:
-        if path not in installed and posixpath.basename(path) not in launched:
+        name = posixpath.basename(path)
+        has_others = are_others_installed or counts[name] > 1
+        if has_others and path not in installed and name not in launched:
             left_out.add(package.path(path))
     return frozenset(left_out)
 
