@@ -45,7 +45,7 @@ class SurroundingFiles(Protocol):
 
     @property
     def called(self) -> str:
-        """What messages call the files: a submission, or a workspace."""
+        """What messages call the files, such as a workspace."""
 
     def read(self, path: str) -> bytes:
         """Return the bytes of a file. Raises InputError, NotDecided."""
