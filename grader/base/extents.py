@@ -100,8 +100,10 @@ def end_offset(source: Source, start: int) -> int:
 def ended(where: Location, source_of: Callable[[str], Source | None]) -> Location:
     """Return a location with its end, and those of the macro calls that led to it.
 
-    Without the file it ends where it begins.
+    Without the file it ends where it begins. An end that is known stays.
     """
+    if where.end_line:
+        return where
     source = source_of(where.path)
     line, column = (where.line, where.column) if source is None else end_of(source, where)
     calls = tuple((macro, ended(at, source_of)) for macro, at in where.calls)

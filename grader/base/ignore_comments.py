@@ -40,10 +40,15 @@ class IgnoreComment(NamedTuple):
 
     def matching(self, problem: Problem) -> list[str]:
         """Return the codes by which it ignores a problem."""
-        where = problem.location
-        if where.path != self.location.path or not self.location.line <= where.line <= self.last:
+        if not self._is_beside(problem.location) and not self._is_beside(problem.around):
             return []
         return [code for code in self.codes if problem.is_meant_by(code)]
+
+    def _is_beside(self, where: Location | None) -> bool:
+        """Return whether a place is in the lines of which it ignores problems."""
+        if where is None or where.path != self.location.path:
+            return False
+        return self.location.line <= where.line <= self.last
 
     def useless_problem(self, codes: list[str]) -> Problem:
         """Return the problem that codes of it ignore nothing."""

@@ -91,6 +91,8 @@ class Problem(NamedTuple):
     rule: str = ""  # the name of the rule of a workspace that found it
     related: Location | None = None  # of what it is compared with
     fixes: Fixes = NO_FIXES
+    # the call or element in which its location is, whose first line comments are beside
+    around: Location | None = None
 
     @property
     def code(self) -> str:

@@ -16,7 +16,7 @@ _NOT_FACTS = ("known/index.toml", "known/tables.toml")  # made of others
 
 def test_each_file_of_facts_says_when_it_was_read() -> None:
     """Each is of a table, each table has files, and the command shows all."""
-    files = [*_ROS.glob("known/**/*.toml"), *_ROS.glob("launch/*.json")]
+    files = [*_ROS.glob("known/**/*.toml"), *_ROS.glob("launch/*.json"), *_ROS.glob("known/*.xz")]
     paths = {path.relative_to(_ROS).as_posix() for path in files} - {*_NOT_FACTS}
     for table in known_tables():
         of_table = {path for path in paths if any(map(PurePath(path).match, table.files))}

@@ -14,7 +14,7 @@ _ALARM, _LAUNCH, _ROBOT_LAUNCH = (
 )
 _SPAWNER = 'Node(package="controller_manager", executable="spawner", arguments=["joint_state_broadcaster"]),'
 _CONTROL = 'Node(package="controller_manager", executable="ros2_control_node", remappings=[("{}", "/cmd_vel")]),\n        '
-_AT = "cart_bringup/config/controllers.yaml:7"
+_AT = "cart_bringup/config/controllers.yaml:6"
 _STAMPED = "geometry_msgs.msg.TwistStamped"
 
 

@@ -155,7 +155,7 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
         "controllers",
         (
             "spawner: there is no controller 'cart_controller'; did you mean 'wheel_controller'"
-            " (cart_bringup/config/controllers.yaml:7)?"
+            " (cart_bringup/config/controllers.yaml:6)?"
         ),
         [(_ROBOT_LAUNCH, '"wheel_controller"', '"cart_controller"')],
     ),

@@ -79,14 +79,14 @@ WRONG: list[tuple[str, list[Edit]]] = [
     (
         (
             "REF021 launch/rover.launch.py:24 imu0 reads /wheels/odom with sensor_msgs.msg.Imu, but it "
-            "is published with nav_msgs.msg.Odometry (rover/config/controllers.yaml:7)"
+            "is published with nav_msgs.msg.Odometry (rover/config/controllers.yaml:6)"
         ),
         _with(_EKF.format("'imu0': '/wheels/odom'")),
     ),
     (
         (
             "REF021 launch/rover.launch.py:24 odom0 reads /odom, which nothing publishes; did you mean "
-            "/wheels/odom (rover/config/controllers.yaml:7)?"
+            "/wheels/odom (rover/config/controllers.yaml:6)?"
         ),
         _with(_EKF.format("'odom0': 'odom'")),
     ),

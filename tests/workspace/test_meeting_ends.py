@@ -47,14 +47,14 @@ WRONG: list[tuple[str, list[Edit]]] = [
     (
         (
             "REF007 rover/horn.py:9 the topic /joint_states is subscribed to with geometry_msgs.msg.Twist, but "
-            "published with sensor_msgs.msg.JointState (rover/config/controllers.yaml:5)"
+            "published with sensor_msgs.msg.JointState (rover/config/controllers.yaml:4)"
         ),
         _with(_HORN, _heard("joint_states")),
     ),
     (
         (
             "REF007 launch/rover.launch.py:24 the topic /wheels/cmd_vel is published with geometry_msgs.msg.Twist, "
-            "but the controller subscribes to it with geometry_msgs.msg.TwistStamped (rover/config/controllers.yaml:7)"
+            "but the controller subscribes to it with geometry_msgs.msg.TwistStamped (rover/config/controllers.yaml:6)"
         ),
         _with(_BRIDGE.replace("ROW", "/wheels/cmd_vel@geometry_msgs/msg/Twist[gz.msgs.Twist")),
     ),

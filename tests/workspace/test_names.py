@@ -40,14 +40,21 @@ def test_a_name_that_is_not_defined_is_wrong_and_the_similar_one_is_named() -> N
     said = "wheels: there is no joint 'wheel_left_joint'; did you mean 'left_wheel_joint' (robot.urdf:7)?"
     use = Correction(_HERE, "wheel_left_joint", "left_wheel_joint")
     assert found == Mismatch(
-        JOINT_DEFINED, said, _HERE, _THERE, corrections=(use, Correction(_THERE, use.new, use.old))
+        JOINT_DEFINED,
+        said,
+        _HERE,
+        _THERE,
+        corrections=(use, Correction(_THERE, use.new, use.old)),
+        word="wheel_left_joint",
     )
 
 
 def test_a_name_like_no_other_is_wrong_where_everything_was_read() -> None:
     """Without a similar name there is no suggestion."""
     [found] = agreement([_WHEEL, _use("elbow")]).mismatches
-    assert found == Mismatch(JOINT_DEFINED, "wheels: there is no joint 'elbow'", _HERE)
+    assert found == Mismatch(
+        JOINT_DEFINED, "wheels: there is no joint 'elbow'", _HERE, word="elbow"
+    )
 
 
 def test_an_open_kind_makes_a_near_name_a_warning_and_says_nothing_of_others() -> None:

@@ -293,21 +293,21 @@ WRONG: list[tuple[str, list[Edit]]] = [
     ),
     (
         (
-            "REF020 config/controllers.yaml:7 wheels publishes the transform from 'odom' to "
+            "REF020 config/controllers.yaml:6 wheels publishes the transform from 'odom' to "
             "'base_link', and so does static_transform_publisher (rover/launch/rover.launch.py:24)"
         ),
         _with(_STATIC.format("odom", "base_link")),
     ),
     (
         (
-            "REF020 config/controllers.yaml:7 wheels publishes the transform from 'odom' to "
+            "REF020 config/controllers.yaml:6 wheels publishes the transform from 'odom' to "
             "'base_link', and so does ekf_node (rover/launch/rover.launch.py:24)"
         ),
         _with(_EKF.format("'publish_tf': True, 'odom0': '/wheels/odom'")),
     ),
     (
         (
-            "REF019 config/controllers.yaml:7 wheels publishes 'laser' in 'odom', but the joint "
+            "REF019 config/controllers.yaml:6 wheels publishes 'laser' in 'odom', but the joint "
             "'laser_joint' of the robot places it in 'base_link': a frame has one parent"
         ),
         [(CONTROLLERS, "base_frame_id: base_link", "base_frame_id: laser")],

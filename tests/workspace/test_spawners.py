@@ -40,11 +40,11 @@ NO_TYPE = "the controller manager is not given the parameters with the type of"
             [],
         ),
         (", parameters=[LaunchConfiguration('sim_time')]", [], []),  # a file that is not known
-        ("", [], [f"{NO_TYPE} 'joint_state_broadcaster' and 'wheel_controller' ({_AT}:5)"]),
+        ("", [], [f"{NO_TYPE} 'joint_state_broadcaster' and 'wheel_controller' ({_AT}:4)"]),
         (
             "",
             [(_LAUNCH, '["joint_state_broadcaster"', '["joint_state_broadcaster", "-t", "a/A"')],
-            [f"{NO_TYPE} 'wheel_controller' ({_AT}:7)"],
+            [f"{NO_TYPE} 'wheel_controller' ({_AT}:6)"],
         ),
         (
             "",
@@ -55,7 +55,7 @@ NO_TYPE = "the controller manager is not given the parameters with the type of"
                     "type: diff_drive_controller/DiffDriveController\n    left_wheel_names:",
                 )
             ],
-            [f"{NO_TYPE} 'joint_state_broadcaster' ({_AT}:5)"],
+            [f"{NO_TYPE} 'joint_state_broadcaster' ({_AT}:4)"],
         ),
         (
             GIVEN,
@@ -104,7 +104,7 @@ def test_a_manager_knows_the_controllers(given: str, more: list[Edit], found: li
         (
             [(_LAUNCH, '["wheel_controller"', '["wheel_controler"')],
             [
-                f"spawner: there is no controller 'wheel_controler'; did you mean 'wheel_controller' ({_AT}:7)?"
+                f"spawner: there is no controller 'wheel_controler'; did you mean 'wheel_controller' ({_AT}:6)?"
             ],
         ),
     ],

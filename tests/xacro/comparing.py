@@ -24,6 +24,7 @@ class _Workspace(NamedTuple):
     paths: list[str]
     asked: list[str]
     is_part: bool = False
+    called: str = "submission"
 
     def read(self, path: str) -> bytes:
         self.asked.append(path)

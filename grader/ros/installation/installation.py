@@ -111,6 +111,7 @@ class CmakeTarget(NamedTuple):
     at: Position
     is_installed: bool
     is_certain: bool
+    program: str = ""  # the name of its file; empty for a library, or where it is not known
 
 
 class KnownPrograms(NamedTuple):

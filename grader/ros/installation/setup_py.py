@@ -694,13 +694,26 @@ def _entry_point_findings(kwargs: Mapping[str, Value], at: Position) -> Iterator
             yield f"the entry point {line!r} is not valid: write name = package.module:function"
 
 
+def _folder_of_package(name: str, package_dir: Value) -> str | None:
+    """Return the folder of a package, as setuptools finds it by package_dir; None if not known."""
+    path = name.replace(".", "/")
+    if package_dir is None:
+        return path
+    if not isinstance(package_dir, dict) or not isinstance(package_dir.get("", ""), str):
+        return None
+    if any(key for key in package_dir):
+        return None  # some packages have folders of their own
+    return posixpath.normpath(posixpath.join(str(package_dir.get("", "")), path))
+
+
 def _package_findings(
     kwargs: Mapping[str, Value], listing: PackageListing, at: Position
 ) -> Iterator[_Finding]:
     packages = kwargs.get("packages")
     if isinstance(packages, list | tuple) and all(isinstance(package, str) for package in packages):
         for name in packages:
-            if name.replace(".", "/") not in listing.folders:
+            folder = _folder_of_package(name, kwargs.get("package_dir"))
+            if folder is not None and folder not in listing.folders:
                 yield f"packages lists {name!r}, but there is no such folder"
     elif packages is not None and not isinstance(packages, Unknown):
         yield Unknown("this value of packages is not evaluated", at)

@@ -19,6 +19,8 @@ class CMakeWords(NamedTuple):
     """Commands, keywords and variables of CMake and ament; the file says what each is."""
 
     harmless: frozenset[str]  # commands
+    target_makers: frozenset[str]  # commands that add targets of other projects
+    named_targets: frozenset[str]  # commands that add a target, which is called as the first word
     opaque: frozenset[str]  # harmless commands that set unknown variables
     install_keywords: frozenset[str]
     artifacts: frozenset[str]  # the keywords that name a kind of target
@@ -26,6 +28,7 @@ class CMakeWords(NamedTuple):
     python_keywords: frozenset[str]
     auto_keywords: frozenset[str]
     target_keywords: frozenset[str]
+    source_endings: tuple[str, ...]  # that a source may lack
     foreign: frozenset[str]  # how variables of CMake begin
     modules: frozenset[str]  # that only define commands
     providers: Mapping[str, str]  # packages by their commands

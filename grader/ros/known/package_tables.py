@@ -30,6 +30,7 @@ class _CppTable(NamedTuple):
 
     nodes: frozenset[str]  # classes
     other_bases: frozenset[str]
+    without_nodes: frozenset[str]  # how the names of classes begin
     reading: frozenset[str]
     harmless: frozenset[str]
     macros: frozenset[str]  # how their names begin

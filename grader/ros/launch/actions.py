@@ -171,7 +171,8 @@ class ActionVisitor:
         """
         at, is_silent = signal.at or at, self.findings.is_silent
         if not isinstance(signal, EvaluationFails):
-            self.findings.add_unknown(str(signal), at)
+            follows = isinstance(signal, Undetermined) and signal.follows_error
+            self.findings.add_unknown(str(signal), at, follows_error=follows)
             if not is_silent:
                 self.findings.add_doubt(str(signal), at)
         elif when and not is_silent:
@@ -205,7 +206,8 @@ class ActionVisitor:
                 and kind not in _PROCESSES
                 and when is not False
             ):
-                self.findings.add_unknown(str(signal), signal.at or call.at)
+                follows = isinstance(signal, Undetermined) and signal.follows_error
+                self.findings.add_unknown(str(signal), signal.at or call.at, follows_error=follows)
         if when:
             for contents, at in context.reads[start:]:
                 self.findings.refer("read", contents, Call("", [], {}, at))

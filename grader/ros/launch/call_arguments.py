@@ -157,7 +157,8 @@ def _record_constructor(cls: LaunchClass, evaluation: Evaluation, call: Call) ->
     for name in [name for name in call.kwargs if name != _KEPT_AS_IT_IS.get(cls.short)]:
         call.kwargs[name] = _copied(call.kwargs[name], evaluation)
     if doubt is not None:
-        evaluation.doubted(Unknown(not_evaluated(doubt.reason), doubt.at))
+        reason = not_evaluated(doubt.reason)
+        evaluation.doubted(Unknown(reason, doubt.at, follows_error=doubt.follows_error))
     return record(evaluation, call)
 
 
@@ -202,7 +203,7 @@ def check(cls: LaunchClass, call: Call) -> Unknown | None:
             if message := _wrong_argument(cls, call, name, value):
                 raise EvaluationFails(message, call.at)
         except Undetermined as error:
-            doubt = doubt or Unknown(str(error), call.at)
+            doubt = doubt or error.as_unknown(call.at)
     return doubt
 
 

@@ -14,6 +14,7 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from grader.base.merge_conflicts import resolve_conflicts
+from grader.base.names import closest
 from grader.base.reuse import Answers, Memory
 from grader.base.source import Location, Source
 from grader.ros.config.yaml_nodes import yaml_value
@@ -72,7 +73,7 @@ from grader.ros.python.values import (
 
 _MODULE_NAME = "python_launch_file"  # the __name__ of a launch file
 _AMENT_INDEX = ("ament_index_python", "ament_index_python.packages")
-_RECORDED = ("builtins.open.close", "builtins.open.__enter__", "xacro.process_doc")
+_RECORDED = ("builtins.open.close", "builtins.open.__enter__")
 _TEXTS = [
     f"{name}.{method}"
     for name in ("xacro.process_file", "xacro.parse")
@@ -257,20 +258,32 @@ def _add_missing_entry(file: "_PythonLaunchFile", findings: Findings, *, is_boun
         findings.add_undecided(message, START)
     else:
         message = f"the file does not define the function {_ENTRY}, which ros2 launch calls"
-        findings.add_fault(message, START)
+        functions = {
+            name: value.at
+            for name, value in file.interpreter.module.names.items()
+            if isinstance(value, Function)
+        }
+        meant = closest(_ENTRY, functions)
+        if meant is None:
+            findings.add_fault(message, START)
+        else:
+            at = functions[meant]._replace(column=functions[meant].column + len("def "))
+            findings.add_fault(message, at, hint=f"; did you mean it by {meant!r}?")
 
 
 def _add_python(findings: Findings, file: "_PythonLaunchFile") -> None:
     """Add what Python raises, what is not evaluated, and what the file reads."""
     interpreter = file.interpreter
     if interpreter.doubt is not None:
-        findings.add_undecided(interpreter.doubt.reason, interpreter.doubt.at)
+        doubt = interpreter.doubt
+        findings.add_unknown(doubt.reason, doubt.at, follows_error=doubt.follows_error)
+        findings.add_doubt(doubt.reason, doubt.at)
     if (
         interpreter.errors
     ):  # the description is not loaded, so what is wrong with the rest of it does not count
         findings.faults, findings.doubts = [], []
     for fault in interpreter.errors:
-        findings.add_fault(fault.message, fault.at, argument=fault.argument)
+        findings.add_fault(fault.message, fault.at, fault.lacks, fault.argument)
     for contents, at in file.reads:
         findings.refer("read", contents, Call("", [], {}, at))
     for call in interpreter.calls:
@@ -417,6 +430,7 @@ class _PythonLaunchFile:
             "xacro.process_file": self._xacro,
             "xacro.process": self._xacro,
             "xacro.parse": self._xacro,
+            "xacro.process_doc": _process_doc,
             **dict.fromkeys(_TEXTS, self._text),
             **dict.fromkeys(("yaml.safe_load", "yaml.load"), self._load_yaml),
             "subprocess.check_output": self._check_output,
@@ -608,6 +622,14 @@ def _add_action(evaluation: Evaluation, call: Call) -> Value:
     """Record an action that is added to a description."""
     if len(call.args) + len(call.kwargs) != 1:
         raise EvaluationFails(f"{call.short} takes one action")
+    record(evaluation, call)
+
+
+def _process_doc(evaluation: Evaluation, call: Call) -> Value:
+    """Give the document that xacro.parse() returns the arguments with which it is expanded."""
+    document, mappings = call.argument(0, "doc"), call.argument(1, "mappings")
+    if isinstance(document, Call) and mappings is not None:
+        document.kwargs["mappings"] = mappings
     record(evaluation, call)
 
 

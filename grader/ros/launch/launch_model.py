@@ -312,6 +312,8 @@ class LaunchFault(NamedTuple):
     location: Location
     lacks: Lacking = ""  # what another launch file, or the user, may give
     argument: str = ""  # that a function does not have
+    hint: str = ""  # what may be meant, for the end of the message
+    follows_error: bool = False  # unknown because an error before certainly stops Python
 
 
 class _LaterWord(NamedTuple):
@@ -417,14 +419,20 @@ class Findings:
     is_silent: bool = False  # while what may never be executed is visited
 
     def add_fault(
-        self, message: str, at: Position, lacks: Lacking = "", argument: str = ""
+        self,
+        message: str,
+        at: Position,
+        lacks: Lacking = "",
+        argument: str = "",
+        hint: str = "",
     ) -> None:
         """Add an error that stops the launch."""
-        self.faults.append(LaunchFault(message, self.locate(at), lacks, argument))
+        self.faults.append(LaunchFault(message, self.locate(at), lacks, argument, hint))
 
-    def add_unknown(self, reason: str, at: Position) -> None:
+    def add_unknown(self, reason: str, at: Position, *, follows_error: bool = False) -> None:
         """Add what may start more than is found."""
-        self.unknown.append(LaunchFault(reason, self.locate(at)))
+        fault = LaunchFault(reason, self.locate(at), follows_error=follows_error)
+        self.unknown.append(fault)
 
     def add_doubt(self, reason: str, at: Position) -> None:
         """Add what may stop the launch."""

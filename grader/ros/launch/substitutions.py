@@ -24,6 +24,7 @@ from grader.ros.python.values import (
     Call,
     EvaluationFails,
     MissingDeclaration,
+    MissingValue,
     Namespace,
     Undetermined,
     Unknown,
@@ -414,6 +415,8 @@ def _command_output(texts: Sequence[Resolved], at: Position, *, stops_at_stderr:
     words = _split_command(command[:MAX_TEXT], at)
     if words[:3] == ["ros2", "run", "xacro"]:
         words = words[3:]
+    if words == ["xacro"] and "" in texts:
+        raise MissingValue("xacro is given no file: the text of a launch argument is empty", at)
     check_xacro_words(words, at)
     contents = printed_file(words)
     if contents is None:

@@ -72,6 +72,7 @@ class NodeParameter(NamedTuple):
     is_plain: bool = True  # without a descriptor, which may allow values of other types
     is_needed: bool = True  # False where it is read, and need not be declared
     is_unset: bool = False  # declared with a type and no value, so that it has to be given one
+    is_guard: bool = False  # asked for whether it is declared, which need not be so
 
 
 FrameUse = Literal["publishes", "is above", "looks up", "names"]
@@ -191,6 +192,7 @@ class NodeProgram(NamedTuple):
     path: str  # of its file in the package
     function: str  # that setup.py names; empty for a file that is a program
     syntax: SyntaxFault | None = None  # why Python cannot read the file
+    may_have_more: bool = False  # nodes in its process, of classes of another package
 
 
 class PackageNodes(NamedTuple):

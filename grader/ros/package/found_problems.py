@@ -140,7 +140,7 @@ def _launch_problems(launch: Launch) -> Iterator[Problem]:
     if launch.syntax is not None:
         yield launch_syntax(launch, launch.syntax)
     for fault in launch.faults:
-        yield Problem(kinds.LAUNCH_FAULT, fault.message, fault.location)
+        yield Problem(kinds.LAUNCH_FAULT, f"{fault.message}{fault.hint}", fault.location)
     for unknown in launch.unknown:
         yield Problem(kinds.LAUNCH_UNKNOWN, unknown.message, unknown.location)
     for reference in launch.references:

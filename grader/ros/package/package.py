@@ -523,11 +523,13 @@ class Package:
         The name is that of a package that certainly is not on the machine.
         """
         from grader.ros.known.package_rows import is_known_package  # late: as above
+        from grader.ros.known.released import is_released  # late: as above
 
         # Where a package does not have the wanted name, that of the package is wrong.
         if name == self.wanted_name or self.has_package(name) or is_known_package(name):
             return None
-        return near(name, [package.name for package in self._all])
+        meant = near(name, [package.name for package in self._all])
+        return None if meant is not None and is_released(name) else meant
 
     def has_program(self, package: str, name: str) -> bool | None:
         """Return whether a package has a program, as far as its setup.py tells.

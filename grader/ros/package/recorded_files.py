@@ -31,6 +31,11 @@ class RecordedFiles:
         """Whether the files may be a part of any package."""
         return self._answers.ask(lambda files: files.is_part)
 
+    @property
+    def called(self) -> str:
+        """What messages call the files."""
+        return self._answers.ask(lambda files: files.called)
+
     def ask(self, name: str) -> object:
         """Note the name of a file that is looked for."""
         return self._answers.ask(lambda files: files.ask(name))

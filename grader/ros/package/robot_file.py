@@ -149,6 +149,7 @@ class Surroundings(NamedTuple):
     )  # is called with the name of each other file that xacro reads
     memory: Memory | None = None  # of robots that were read before
     releases: Collection[Release] = ()  # of ROS 2 that read the robot; Jazzy without any
+    called: str = "submission"  # what messages call the files
 
     def robot_references(self, path: str) -> "list[NamedFile]":
         """Return where launch files of the graded package, else of others, read a URDF.
@@ -277,7 +278,7 @@ class Surroundings(NamedTuple):
                 f"there is no file {path} in the folder of this single file: give the "
                 "folder with both"
             )
-        return InputError(f"there is no file {path} in the submission")
+        return InputError(f"there is no file {path} in the {self.called}")
 
     def installed(self, package: str, inside: str) -> str | None:
         """Return the file at a path in a package once it is built.

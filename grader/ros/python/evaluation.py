@@ -31,6 +31,7 @@ class PythonError(NamedTuple):
     at: Position
     name: str = ""  # that is undefined
     argument: str = ""  # that a function does not have
+    lacks: py.Lacking = ""  # what another launch file, or the user, may give
 
 
 NOT_EVALUATED = "is not evaluated"
@@ -99,6 +100,7 @@ class Evaluation(Expressions):
         *,
         name: str = "",
         argument: str = "",
+        lacks: py.Lacking = "",
     ) -> None:
         """Record once an error that certainly stops Python, such as an undefined name.
 
@@ -109,7 +111,7 @@ class Evaluation(Expressions):
         if len(self.errors) < _MAX_ERRORS and all(
             message != error.message for error in self.errors
         ):
-            self.errors.append(PythonError(message, at, name, argument))
+            self.errors.append(PythonError(message, at, name, argument, lacks))
 
     def evaluate(self, node: ast.expr, scope: py.Scope) -> py.Value:
         """Return the value of an expression.
@@ -133,7 +135,7 @@ class Evaluation(Expressions):
             return self.doubted(unknown)
         except py.EvaluationFails as error:
             at = error.at or position_of(node)
-            self.error(str(error), at, error.kind, argument=error.argument)
+            self.error(str(error), at, error.kind, argument=error.argument, lacks=error.lacks)
             return py.unknown_after_error(position_of(node))
 
     def _name(self, node: ast.Name, scope: py.Scope) -> py.Value:

@@ -157,7 +157,7 @@ class Interpreter(Evaluation):
                 kind(self, node, scope)
             except py.EvaluationFails as error:  # of the statement itself, such as an assignment
                 at = error.at or position_of(node)
-                self.error(str(error), at, error.kind, argument=error.argument)
+                self.error(str(error), at, error.kind, argument=error.argument, lacks=error.lacks)
             except py.Undetermined as error:
                 if error.is_final:
                     raise
@@ -368,7 +368,7 @@ class Interpreter(Evaluation):
             case py.Namespace():
                 return owner.find(name)
             case py.Unknown(is_text=False):
-                return owner.attribute(name)
+                return owner.attribute(name, position_of(node))
         if isinstance(owner, py.PLAIN) and not has_attribute(owner, name):
             raise py.EvaluationFails(f"{type(owner).__name__!r} has no attribute {name!r}")
         return py.BoundMethod(owner, name, node)

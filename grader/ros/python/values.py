@@ -142,9 +142,9 @@ class Unknown:
         """Return the signal that the value is needed at this place."""
         return Undetermined(self.reason, at, follows_error=self.follows_error)
 
-    def attribute(self, name: str) -> "Value":
-        """Return an attribute of it."""
-        return UnknownAttribute(self, name)
+    def attribute(self, name: str, at: "Position") -> "Value":
+        """Return an attribute of it, at this place."""
+        return UnknownAttribute(self, name, at)
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Unknown) and (self.reason, self.at) == (other.reason, other.at)
@@ -160,17 +160,17 @@ class ClassBody(Unknown):
         super().__init__("a class is not evaluated", at)
         self.names = names
 
-    def attribute(self, name: str) -> "Value":
+    def attribute(self, name: str, at: "Position") -> "Value":
         """Return what the body assigns to a name, if it is plain."""
         value = self.names.get(name)
-        return value if isinstance(value, PLAIN) else super().attribute(name)
+        return value if isinstance(value, PLAIN) else super().attribute(name, at)
 
 
 class UnknownAttribute(Unknown):
     """An attribute of a value that is not known: anything, or a method, if it is called."""
 
-    def __init__(self, owner: Unknown, name: str) -> None:
-        super().__init__(owner.reason, owner.at, follows_error=owner.follows_error)
+    def __init__(self, owner: Unknown, name: str, at: "Position") -> None:
+        super().__init__(owner.reason, at, follows_error=owner.follows_error)
         self.owner, self.name = owner, name
 
 

@@ -1,6 +1,7 @@
 """Read a workspace with all of its robots: every file that is one, and not a part of another."""
 
 import posixpath
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from typing import TypeGuard
 
@@ -21,12 +22,13 @@ from grader.ros.package.package import Package
 from grader.ros.package.robot_file import Absent, Read, Surroundings, Unreadable, read_as_ros
 from grader.ros.package.robots import RobotFile, find_robots, parts_of
 from grader.ros.python.budget import READING, Budget
-from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME
+from grader.ros.urdf.urdf_problems import NO_LINKS, ROBOT_WITHOUT_NAME, UNKNOWN_LINK
 from grader.ros.workspace.model.known_robots import INCLUDED
 from grader.ros.workspace.model.stated_releases import stated_releases
 from grader.ros.workspace.opened import OpenedWorkspace
 
 _MAX_PACKAGES, _MAX_ROBOTS = 1000, 200
+_NOTES = (".txt", ".md", ".rst", ".log")
 
 
 def read_workspace(
@@ -89,6 +91,7 @@ def _read_robots(
     launched = launched_paths(tree, packages, robot_files)
     included = parts_of(robot_files) | _chosen_parts(tree, robot_files)
     whole = Budget(READING + (packages[0].work.limit if packages else 0))
+    counts = Counter(file.name for file in robot_files)
     robots: list[Read | Unreadable] = []
     parts: list[Read | Unreadable] = []
     for file in _whole(robot_files, launched, included)[:_MAX_ROBOTS]:
@@ -103,10 +106,12 @@ def _read_robots(
             assumes_defaults=True,
             memory=memory,
             releases=releases,
+            called="workspace",
         )
         robot = _read(tree, file, max_size, surroundings)
         is_loaded = file.path in launched and file.path not in included
-        is_whole = not _is_empty(robot) and (is_loaded or not _is_part(robot))
+        is_piece = _is_part(robot) or (counts[file.name] > 1 and _is_without_parents(robot))
+        is_whole = not _is_empty(robot) and (is_loaded or not is_piece)
         (robots if is_whole else parts).append(robot)
     return robots or [part for part in parts if not _is_empty(part)]
 
@@ -114,12 +119,19 @@ def _read_robots(
 def _whole(
     robot_files: Sequence[RobotFile], launched: set[str], parts: frozenset[str]
 ) -> list[RobotFile]:
-    """Return the files that launch files load, and those that are neither backups nor included."""
-    return [
-        file
-        for file in robot_files
-        if file.path in launched or not (file.path in parts or is_backup(file.path))
-    ]
+    """Return the files that launch files load, and those that are no backups, parts or notes."""
+    whole = []
+    for file in robot_files:
+        is_other = file.path in parts or is_backup(file.path) or _is_note(file)
+        if file.path in launched or not is_other:
+            whole.append(file)
+    return whole
+
+
+def _is_note(file: RobotFile) -> bool:
+    """Return whether a file is a text with a piece of a robot in it, which no program loads."""
+    is_text = file.name.endswith(_NOTES)
+    return is_text and not any(word in file.name for word in ("urdf", "xacro"))
 
 
 def _chosen_parts(tree: Tree, robot_files: Sequence[RobotFile]) -> frozenset[str]:
@@ -151,9 +163,28 @@ def _is_part(robot: Read | Unreadable) -> bool:
     return _is_empty(robot) or (model is not None and not model.name)
 
 
-def _is_empty(robot: Read | Unreadable) -> bool:
-    """Return whether a file of xacro has no links, as one that only defines macros."""
+def _is_without_parents(robot: Read | Unreadable) -> bool:
+    """Return whether a file of xacro lacks only links that its joints name.
+
+    One of several with a name, which belong to states of a robot, is then a piece of one of them.
+    """
     if not _is_xacro(robot):
+        return False
+    return {problem.kind for problem in robot.problems if problem.severity == "error"} == {
+        UNKNOWN_LINK
+    }
+
+
+def _is_empty(robot: Read | Unreadable) -> bool:
+    """Return whether a file has no links, as one of xacro that only defines macros.
+
+    A file that is not called a URDF may be that of another program, which has a <robot> too; the
+    driver of Webots reads a URDF of its own form (webots_ros2_driver, WebotsNode).
+    """
+    if not isinstance(robot, Read):
+        return False
+    is_of_webots = b"<webots" in robot.data
+    if robot.path.endswith(".urdf") and not (is_of_webots or _is_xacro(robot)):
         return False
     errors = {problem.kind for problem in robot.problems if problem.severity == "error"}
     return NO_LINKS in errors and errors <= {NO_LINKS, ROBOT_WITHOUT_NAME}

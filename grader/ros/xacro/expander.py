@@ -91,7 +91,9 @@ class Expander:
             lambda name: self.texts.argument(name),  # noqa: PLW0108
             lambda name: self.texts.note(name),  # noqa: PLW0108
         )
-        self.texts = Texts(dict(arguments), self.budget, self.report, functions, files.has_package)
+        self.texts = Texts(
+            dict(arguments), self.budget, self.report, functions, files.require_package
+        )
         self.own_tags = [tag.removeprefix("xacro:") for tag in handlers]
         self.problems: list[Problem] = []
         self.warnings: list[Problem] = []  # what xacro writes to stderr, and notes

@@ -60,7 +60,12 @@ def _define_macro(expander: Expander, node: XacroNode, _: XacroNode, scopes: Sco
     if name != written:
         message = f"the macro is called {name}: write its name without xacro:"
         expander.warn(xacro_problems.XACRO_PREFIXED, message, node.place, "name")
-    macro = Macro(name, node, read_parameters(node.attributes.get("params", ""), expander.budget))
+    try:
+        parameters = read_parameters(node.attributes.get("params", ""), expander.budget)
+    except Undetermined as error:
+        expander.texts.names_open = expander.texts.names_open or error  # calls of it are open too
+        raise
+    macro = Macro(name, node, parameters)
     scopes.macros.bind(
         name, macro, definition=XacroDefinition(name, "", node.place, "name", scopes.symbols)
     )

@@ -84,11 +84,11 @@ class Texts:
         budget: Budget,
         report: ReportFailure,
         functions: dict[str, Value],
-        is_own: Callable[[str], bool],
+        require_package: Callable[[str], None],
     ) -> None:
         """`own` are functions that need the document, such as load_yaml.
 
-        `is_own`: whether a package is in the workspace.
+        `require_package` raises Undetermined for a package that is not in the workspace.
         """
         self.arguments = arguments
         self.other_arguments: OtherArguments = "default"
@@ -96,7 +96,7 @@ class Texts:
         # why a name may be bound that is not known
         self.names_open: EvaluationFails | Undetermined | None = None
         self._budget = budget
-        self._is_own = is_own
+        self._require_package = require_package
         self._report = report
         self._globals = {**GLOBALS, **functions}
         self.noted: dict[
@@ -259,8 +259,7 @@ class Texts:
 
     def share(self, package: str) -> str:
         """Return the text that $(find package) gives."""
-        if not self._is_own(package):
-            raise Undetermined(f"the package {package} is not part of the submission")
+        self._require_package(package)
         return f"{INSTALLED}/{package}/share/{package}"
 
     def argument(self, name: str) -> str:

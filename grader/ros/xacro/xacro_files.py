@@ -43,6 +43,10 @@ class SurroundingFiles(Protocol):
     def is_part(self) -> bool:
         """Whether the files may be a part of any package, because there is none among them."""
 
+    @property
+    def called(self) -> str:
+        """What messages call the files, such as a workspace."""
+
     def read(self, path: str) -> bytes:
         """Return the bytes of a file. Raises InputError, NotDecided."""
 
@@ -80,6 +84,15 @@ class Files:
             tuple[str, int], list[str]
         ] = {}  # the tags that include files, and the paths of these
 
+    def require_package(self, name: str) -> None:
+        """Raise Undetermined for a package that is not among the files."""
+        if not self.has_package(name):
+            raise self._absent(name)
+
+    def _absent(self, package: str) -> Undetermined:
+        called = self._workspace.called
+        return Undetermined(f"the package {package} is not part of the {called}")
+
     def has_package(self, name: str) -> bool:
         """Return whether a package is, or may be, part of the workspace."""
         return (
@@ -108,7 +121,7 @@ class Files:
                 "$(find ...)?"
             )
         if path.startswith(("/", "../")) or path == "..":
-            raise Undetermined(f"{text} is outside the submission")
+            raise Undetermined(f"{text} is outside the {self._workspace.called}")
         renamed = path + self._extra_ending()
         if path not in self._workspace.paths and renamed in self._workspace.paths:
             return renamed
@@ -130,7 +143,7 @@ class Files:
         folder = self._workspace.package(package)
         source = self._workspace.installed(package, inside)
         if folder is None and source is None:
-            raise Undetermined(f"the package {package} is not part of the submission")
+            raise self._absent(package)
         if source is not None:
             return source
         return posixpath.normpath(posixpath.join(folder or "", inside))

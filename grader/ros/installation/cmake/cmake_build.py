@@ -2,7 +2,7 @@
 
 import posixpath
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from fnmatch import translate
 from itertools import pairwise, takewhile
@@ -29,6 +29,7 @@ from grader.ros.python.parse import START, Position
 from grader.ros.python.values import Undetermined, Unknown
 
 _MANIFEST = "package.xml"
+_GENERATE = "rosidl_generate_interfaces"
 _Options = Mapping[str, list[str]]
 _Groups = Sequence[tuple[str, list[str]]]  # arguments by the keyword before them
 
@@ -54,6 +55,11 @@ class Build:
         self._package_at: Position | None = None  # where ament_package() is called
         self._automatic: list[str] = []  # targets that ament_auto_package() installs
         self._guesses = 0
+        # The folders below the prefix of installed programs, each with the target.
+        self._installed: list[tuple[str, str]] = []
+        self.may_make_files = False  # by programs that run while CMake reads the file
+        self._may_find_more = False  # in a search after that
+        self.may_have_other_targets = False  # of projects that CMake adds
 
     def result(self, source: Source) -> Installation:
         """Return what is known at the end."""
@@ -62,6 +68,7 @@ class Build:
                 "CMakeLists.txt does not call ament_package(), so ROS 2 does not find the package",
                 self.last,
             )
+        self._name_programs()
         project = self.values.variables.get("PROJECT_NAME")
         first_stops = {stop.reason: stop for stop in reversed(self.later_stops)}
         return Installation(
@@ -81,11 +88,20 @@ class Build:
             interfaces=tuple(self.interfaces),
             targets=self.made.all(
                 {
-                    written_path: self.inside(written_path)
+                    written_path: self._source(written_path)
                     for written_path in self.made.written_sources
                 }
             ),
         )
+
+    def _name_programs(self) -> None:
+        """Add the installed programs of targets under the names of their files."""
+        for folder, target in self._installed:
+            name = self.made.file_name(target)
+            if isinstance(name, Unknown):
+                self._leave_open(name)
+            else:
+                self.programs.add(f"{folder}/{name}")
 
     def give_up(self, reason: str, at: Position) -> None:
         """Note that something is not evaluated.
@@ -124,6 +140,16 @@ class Build:
         if path == ".":
             return ""
         return None if path.startswith(("/", "..")) else path
+
+    def _source(self, text: str) -> str | None:
+        """Return the path of a source, whose ending may lack (policy CMP0115 of CMake)."""
+        path = self.inside(text)
+        if path is None or posixpath.splitext(path)[1] or path in self.listing.files:
+            return path
+        for ending in cmake_words().source_endings:
+            if path + ending in self.listing.files:
+                return path + ending
+        return path
 
     def _has(self, path: str) -> bool | None:
         """Return whether the package has a file or folder at a path.
@@ -167,7 +193,8 @@ class Build:
             if pattern is None or words[0] == "LIST_DIRECTORIES":
                 return Unknown("a search is not evaluated", at)
             paths = self._matching(pattern, recursive=recursive)
-            if not paths:
+            self._may_find_more = self._may_find_more or self.may_make_files
+            if not paths and not self.may_make_files:
                 self.listing.empty[EmptyGlob(pattern, at)] = None
             found_paths.update(paths)
         text = ";".join(f"{start}{path}" for path in sorted(found_paths))
@@ -208,6 +235,30 @@ class Build:
         words = [text for text in texts[1:] if isinstance(text, str)]
         if {"IMPORTED", "ALIAS", "DIRECTORY"}.isdisjoint(words):
             self._require_sources(words, command)
+
+    def name_target(self, command: Command) -> None:
+        """Add a target that tests have, or that is made by a command of its own."""
+        name = self.values.first(command)
+        if isinstance(name, str):
+            self.targets[name] = "executable" if self.values.uncertain is None else "unknown"
+        else:
+            self.may_have_other_targets = True
+
+    def set_properties(self, command: Command) -> None:
+        """Note the properties that name the files of targets."""
+        texts = self.values.texts(command.arguments)
+        if command.name == "set_property":
+            if texts[:1] != ["TARGET"]:
+                return
+            texts = texts[1:]
+        word = "PROPERTY" if command.name == "set_property" else "PROPERTIES"
+        if word not in texts:
+            return
+        end = texts.index(word)
+        for key, value in pairwise(texts[end + 1 :]):
+            for target in texts[:end]:
+                given = self.values.uncertain or value
+                self.made.set_property(str(target), str(key), given)
 
     def _require_sources(self, sources: Sequence[str], command: Command) -> None:
         for source in sources:
@@ -254,6 +305,9 @@ class Build:
                 )
 
     def _stop_target(self, command: Command, name: str) -> None:
+        if self.may_have_other_targets and near(name, self.targets) is None:
+            self._leave_open(Unknown(f"another project may have the target {name}", command.at))
+            return
         hint = self._guess(name, self.targets)
         self.stop(
             f"{command.name}() names the target {name!r}, which is not defined",
@@ -315,10 +369,20 @@ class Build:
             command.at,
             tuple(made),
             tuple(groups.get("DEPENDENCIES", ())),
-            is_certain=is_known and self.values.uncertain is None,
+            is_certain=is_known and self.values.uncertain is None and not self._may_find_more,
             needs_group=groups.keys().isdisjoint(("SKIP_INSTALL", "SKIP_GROUP_MEMBERSHIP_CHECK")),
         )
         self.interfaces.append(interfaces)
+
+    def note_calls(self, commands: Iterable[Command]) -> None:
+        """Note the calls of rosidl_generate_interfaces() in branches that are not taken here.
+
+        Variables that the command line of the build sets may decide it.
+        """
+        evaluated = {interfaces.at for interfaces in self.interfaces}
+        for command in commands:
+            if command.name == _GENERATE and command.at not in evaluated:
+                self.interfaces.append(GeneratedInterfaces(command.at, is_certain=False))
 
     def _copy_interfaces(self, texts: Sequence[str], command: Command) -> list[str]:
         """Install the files of interfaces, and return those that are known."""
@@ -341,6 +405,8 @@ class Build:
             return None
         if self._has(path) is not False:
             return path
+        if self.may_make_files:
+            return None
         self._stop_missing(command, path)
         self.listing.budget.charge(len(self.listing.files))
         meant = closest(path, self.listing.files)
@@ -375,8 +441,9 @@ class Build:
         if texts is None:
             self.give_up("the arguments of ament_auto_package() are not known", command.at)
             return
-        executables = (name for name in self._automatic if self.targets[name] == "executable")
-        self.programs.update(f"lib/{self._project()}/{name}" for name in executables)
+        for name in self._automatic:
+            if self.targets[name] == "executable":
+                self._installed.append((f"lib/{self._project()}", name))
         groups = _groups(texts, cmake_words().auto_keywords)
         for keyword, folders in groups[1:]:
             target = self._share() if keyword == "INSTALL_TO_SHARE" else "bin"
@@ -482,7 +549,7 @@ class Build:
             elif known in (None, "unknown") or self.values.uncertain is not None:
                 self._leave_open(Unknown(f"the target {name} is not known", command.at))
             elif known == "executable":
-                self.programs.add(f"{target}/{name}")
+                self._installed.append((target, name))
 
     def _copy_files(
         self, texts: Sequence[str], target: str, command: Command, options: _Options
@@ -612,11 +679,12 @@ BUILD_COMMANDS: dict[str, Callable[[Build, Command], None]] = {
         Build.add_target,
     ),
     **dict.fromkeys(("target_link_libraries", "ament_target_dependencies"), Build.use_target),
+    **dict.fromkeys(("set_target_properties", "set_property"), Build.set_properties),
     "generate_parameter_library": Build.add_target,  # its YAML file is a source
     "rclcpp_components_register_node": Build.register_component,
     "rclcpp_components_register_nodes": Build.register_components,
     "target_sources": Build.add_sources,
-    "rosidl_generate_interfaces": Build.generate_interfaces,
+    _GENERATE: Build.generate_interfaces,
     "ament_package": Build.package,
     "ament_auto_package": Build.auto_package,
     "ament_python_install_package": Build.python_package,
@@ -626,11 +694,14 @@ BUILD_COMMANDS: dict[str, Callable[[Build, Command], None]] = {
 
 
 def _folder_of_programs(groups: _Groups) -> str:
-    """Return the folder below the prefix to which install(TARGETS ...) copies executables."""
+    """Return the folder below the prefix to which install(TARGETS ...) copies executables.
+
+    Of several destinations of one kind, the last counts (CMake 3.25, run).
+    """
     kind, places = "", dict[str, str]()
     for keyword, values in groups[1:]:
         if keyword in cmake_words().artifacts:
             kind = keyword
         elif keyword == "DESTINATION" and values:
-            places.setdefault(kind, posixpath.normpath(values[0].removeprefix(f"{PREFIX}/")))
+            places[kind] = posixpath.normpath(values[0].removeprefix(f"{PREFIX}/"))
     return places.get("RUNTIME") or places.get("") or "bin"

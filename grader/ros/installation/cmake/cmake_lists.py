@@ -19,10 +19,17 @@ from grader.ros.installation.cmake.cmake_values import (
     split_list,
 )
 from grader.ros.installation.cmake.conditions import Condition
-from grader.ros.installation.cmake.language import BLOCK_WORDS, CMakeFault, Command, parse_cmake
+from grader.ros.installation.cmake.language import (
+    BLOCK_WORDS,
+    CMakeFault,
+    Command,
+    all_commands,
+    parse_cmake,
+)
 from grader.ros.installation.file_search import PackageListing
 from grader.ros.installation.installation import Installation
 from grader.ros.known.cmake_words import cmake_words
+from grader.ros.known.released import is_released
 from grader.ros.known.releases import RELEASES
 from grader.ros.python.budget import Budget, OutOfBudget
 from grader.ros.python.parse import START, Position, SyntaxFault, location_in
@@ -53,11 +60,15 @@ def read_cmake(
         )
     listing = PackageListing(tree, budget)
     build = Build(listing, Values(listing.budget), name)
+    every_command = [*all_commands(commands)]
+    names = {command.name for command in every_command}
+    build.may_have_other_targets = not names.isdisjoint(cmake_words().target_makers)
     try:
         with suppress(_Returns):
             _Evaluation(build).run(commands)
     except OutOfBudget:
         build.give_up("the file is too long to evaluate", START)
+    build.note_calls(every_command)
     return build.result(source)
 
 
@@ -107,6 +118,8 @@ class _Evaluation:
                 _COMMANDS[command.name](self, command)
             elif command.name in BUILD_COMMANDS:
                 BUILD_COMMANDS[command.name](self.build, command)
+            elif command.name in cmake_words().named_targets:
+                self.build.name_target(command)
             elif command.name in self.own:
                 self._call(command)
             elif command.name in cmake_words().harmless:
@@ -158,6 +171,7 @@ class _Evaluation:
         if command.name == "message" and texts[:1] in (["FATAL_ERROR"], ["SEND_ERROR"]):
             words = " ".join(text for text in texts[1:] if isinstance(text, str))
             self.build.stop(f"CMakeLists.txt stops with the message {words!r}", command.at)
+        self.build.may_make_files |= command.name == "execute_process"
         self.values.is_opaque |= command.name in cmake_words().opaque
         index = cmake_words().outputs.get(command.name, len(texts))
         names = texts if index < 0 else texts[index : index + 1]
@@ -323,7 +337,7 @@ class _Evaluation:
             return
         known = cmake_words().exports
         meant = near(name, known) if name.lower() not in known else None
-        if meant is not None:
+        if meant is not None and not is_released(name):
             if "REQUIRED" not in words:
                 return
             hint = f"; did you mean {meant!r}?"
@@ -367,4 +381,6 @@ _COMMANDS: dict[str, Callable[[_Evaluation, Command], None]] = {
 
 def known_commands() -> frozenset[str]:
     """Return the names of the commands that are known of CMake and ament_cmake."""
-    return frozenset({*_COMMANDS, *BUILD_COMMANDS, *cmake_words().harmless, *BLOCK_WORDS})
+    words = cmake_words()
+    known = {*_COMMANDS, *BUILD_COMMANDS, *words.harmless, *words.named_targets, *BLOCK_WORDS}
+    return frozenset(known)

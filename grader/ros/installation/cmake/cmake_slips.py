@@ -2,7 +2,6 @@
 
 import re
 from collections.abc import Collection, Iterable, Iterator
-from itertools import chain
 
 from grader.base.names import MAX_GUESSES, near
 from grader.base.slips import Slip
@@ -10,7 +9,13 @@ from grader.base.source import Source
 from grader.base.text import quoted
 from grader.files.tree import Tree
 from grader.ros.installation.cmake.cmake_lists import known_commands
-from grader.ros.installation.cmake.language import Argument, CMakeFault, Command, parse_cmake
+from grader.ros.installation.cmake.language import (
+    Argument,
+    CMakeFault,
+    Command,
+    all_commands,
+    parse_cmake,
+)
 from grader.ros.known.cmake_words import cmake_words
 from grader.ros.python.parse import Position, location_in
 
@@ -66,7 +71,7 @@ class _CMakeSlips:
 
     def found(self, commands: Iterable[Command]) -> Iterator[Slip]:
         """Yield the slips of commands, also of those in blocks."""
-        every_command = [*_flat(commands)]
+        every_command = [*all_commands(commands)]
         for command in every_command:
             if command.name in ("function", "macro", "set", "option") and command.arguments:
                 names = self._variables if command.name in ("set", "option") else self._commands
@@ -176,10 +181,3 @@ class _CMakeSlips:
     def _offset(self, at: Position) -> int:
         location = location_in(self._source, at)
         return self._source.offset(location.line, location.column)
-
-
-def _flat(commands: Iterable[Command]) -> Iterator[Command]:
-    """Yield commands with those in their blocks."""
-    for command in commands:
-        yield command
-        yield from _flat(chain(command.body, *(other.body for other in command.others)))

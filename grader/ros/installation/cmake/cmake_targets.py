@@ -5,12 +5,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 
-from grader.ros.installation.cmake.cmake_values import ROOT, Text
+from grader.ros.installation.cmake.cmake_values import ROOT, Text, joined
 from grader.ros.installation.file_search import PackageListing
 from grader.ros.installation.installation import CmakeComponent, CmakeTarget
 from grader.ros.python.parse import Position
 from grader.ros.python.values import Unknown
 
+_OF_FILE = ("PREFIX", "OUTPUT_NAME", "SUFFIX")
 _SCOPES = ("PUBLIC", "PRIVATE", "INTERFACE")
 _CPP = (".cpp", ".cc", ".cxx", ".c++", ".c")
 
@@ -27,6 +28,7 @@ class _Made:
     packages: list[str] = field(default_factory=list)
     components: list[CmakeComponent] = field(default_factory=list)
     is_installed: bool = False
+    properties: dict[str, Text] = field(default_factory=dict)  # that name its file
 
 
 class CmakeTargets:
@@ -88,6 +90,18 @@ class CmakeTargets:
         if name in self._made:
             self._made[name].is_installed = True
 
+    def set_property(self, name: str, key: str, value: Text) -> None:
+        """Note a property of a target, if it is one that names its file."""
+        if name in self._made and key in _OF_FILE:
+            self._made[name].properties[key] = value
+
+    def file_name(self, name: str) -> Text:
+        """Return the name of the file of an executable."""
+        made = self._made.get(name)
+        properties = made.properties if made is not None else {}
+        parts = [properties.get("PREFIX", ""), properties.get("OUTPUT_NAME", name)]
+        return joined([*parts, properties.get("SUFFIX", "")])
+
     def all(self, inside: Mapping[str, str | None]) -> tuple[CmakeTarget, ...]:
         """Return the targets; `inside` has the path in the package of each source."""
         targets = []
@@ -108,9 +122,14 @@ class CmakeTargets:
                     at=made.at,
                     is_installed=made.is_installed,
                     is_certain=made.is_certain,
+                    program=self._program(name, made),
                 )
             )
         return tuple(targets)
+
+    def _program(self, name: str, made: _Made) -> str:
+        file_name = self.file_name(name) if made.kind == "executable" else ""
+        return file_name if isinstance(file_name, str) else ""
 
     @property
     def written_sources(self) -> set[str]:

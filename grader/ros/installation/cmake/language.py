@@ -1,7 +1,8 @@
 """The commands of a CMakeLists.txt, with their blocks; the grammar is that of cmake-language(7)."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import chain
 from typing import Literal, NamedTuple
 
 from grader.base.source import Source
@@ -173,3 +174,10 @@ class _Columns:
         self._column += len(between.encode("utf-8", "surrogateescape"))
         self._offset = offset
         return Position(at.line, self._column)
+
+
+def all_commands(commands: Iterable[Command]) -> Iterator[Command]:
+    """Yield commands with those in their blocks."""
+    for command in commands:
+        yield command
+        yield from all_commands(chain(command.body, *(other.body for other in command.others)))

@@ -226,11 +226,17 @@ class _CppSearch:
                 yield from self._waiting_in(function)
 
     def _waiting_in(self, function: CppFunction) -> Iterator[CodeFault]:
-        """Yield where a method waits in a callback."""
-        for call in self._calls(function, "spin_until_future_complete"):
+        """Yield where a method waits in a callback.
+
+        What it spins raises an error, or is another node, which receives the response.
+        """
+        spins = [*self._calls(function, "spin_until_future_complete")]
+        for call in spins:
             if self._is_in_callback(call, function) and _is_given_itself(call):
                 message = "a callback must not spin its own node: rclcpp throws an error"
                 yield CodeFault("waits in a callback", message, call.location)
+        if spins:
+            return
         for call in self._calls(function, *_WAITING):
             if self._is_in_callback(call, function) and self._is_of_request(call, function):
                 message = (

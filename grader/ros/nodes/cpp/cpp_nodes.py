@@ -66,6 +66,7 @@ _SETTING = {"get_parameter": 1, "get_parameter_or": 1}
 _REGISTERED = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(\s*([\w:]+)\s*\)")
 _SUBSCRIBER = "message_filters::Subscriber"
 _FILTER = re.compile(r"(?P<class>(?<![\w:])[\w:]*\bSubscriber)\s*+<\s*+(?P<type>[\w:]++)\s*+[,>]")
+_MESSAGE_PART = re.compile(r"::(msg|srv|action)::")
 _LISTS = ("argument_list", "initializer_list")
 _OF_NODE = 20  # parts of a class that may be that of a node
 _SELF = ("shared_from_this", "weak_from_this", "get_node_base_interface")
@@ -608,9 +609,35 @@ class _Target:
             nodes = tuple(self._started_by(started) for started in self._created)
             at = mains[0].node.location if mains else self._start
             path = at.path.removeprefix(package.path(""))
-            yield NodeProgram(target.name, nodes if mains else (), at, path, "main")
+            name = target.program or target.name
+            program = NodeProgram(name, nodes if mains else (), at, path, "main")
+            yield program._replace(may_have_more=self._may_have_more)
         if package.installation is not None:
             yield from self._programs_of_components(package.installation)
+
+    @property
+    def _may_have_more(self) -> bool:
+        """Whether the target may have nodes of classes of other packages, which are not known."""
+        added = 0
+        for file in self._unit.files:
+            for node in file.calls:
+                if called_name(node) == "add_node" and node.kind == "call_expression":
+                    added += 1
+                elif self._is_of_other_package(class_written(node), node):
+                    return True
+        return added > len(self._created)
+
+    def _is_of_other_package(self, written: str, node: CppNode) -> bool:
+        """Return whether a class that is made is in the namespace of a package that is not read."""
+        function = self._unit.function_around(node)
+        scopes = self._unit.scopes_of(function) if function is not None else ()
+        if not written or _MESSAGE_PART.search(written):
+            return False
+        is_known = False
+        for meaning in self._unit.meanings(plain(written), scopes):
+            is_known = is_known or "::" not in meaning or meaning in self._unit.classes
+            is_known = is_known or meaning.startswith(tuple(cpp_table().without_nodes))
+        return not is_known
 
     def _programs_of_components(self, setup: Installation) -> Iterator[NodeProgram]:
         """Yield the programs that rclcpp_components makes of the target's components."""

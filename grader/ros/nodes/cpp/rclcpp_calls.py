@@ -67,13 +67,14 @@ _WITHOUT_EFFECT = (
     *("avoid_ros_namespace_conventions", "deadline", "lifespan", "liveliness"),
     "get_rmw_qos_profile",
 )
+_EMPTY: Mapping[str, Value] = {"string": "", "string_view": "", "double": 0.0, "float": 0.0}
+_INTEGERS = ("int", "uint", "size_t", "long", "unsigned", "short")  # how their names begin
 _VALUE_METHODS = frozenset(
     {
         *("as_string", "as_double", "as_int", "as_bool", "as_string_array", "get_value", "get"),
         *("get_parameter_value", "as_double_array", "as_integer_array", "as_bool_array"),
     }
 )
-_TEXTS = ("std::string", "string", "std::string_view")
 
 
 def endpoint_of(
@@ -174,9 +175,8 @@ def facts_of_method(
     else:
         # With a second argument, it returns false for what is not declared.
         is_needed = name == "get_parameter" and len(call.args) == 1
-        yield NodeParameter(
-            _text(call.argument(0)), None, at, is_declared=False, is_needed=is_needed
-        )
+        read = NodeParameter(_text(call.argument(0)), None, at, is_declared=False)
+        yield read._replace(is_needed=is_needed, is_guard=name == "has_parameter")
 
 
 def _duration(value: CppValue) -> float | None:
@@ -232,9 +232,22 @@ def _of_type(value: CppValue, written: str) -> Value:
     if isinstance(value, CppCall) and value.short == "vector":
         return _items_of_vector(value)
     if isinstance(value, list):
-        inner = written.partition("<")[2].rpartition(">")[0]
-        return [_scalar(item, plain(inner)) for item in value]
+        return _in_braces(value, written)
     return _scalar(value, plain(written).rpartition("::")[2])
+
+
+def _in_braces(items: Sequence[CppValue], written: str) -> Value:
+    """Return what is made of values in braces: one value of a plain type, or the items of a list.
+
+    Only the template argument says which: {"a"} may be a text or a list of texts.
+    """
+    kind = plain(written).rpartition("::")[2]
+    if (kind in _EMPTY or kind == "bool" or kind.startswith(_INTEGERS)) and len(items) <= 1:
+        return _scalar(items[0] if items else _EMPTY.get(kind, 0), kind)
+    inner = written.partition("<")[2].rpartition(">")[0]
+    if not inner:
+        return not_known("its type is not written")
+    return [_scalar(item, plain(inner)) for item in items]
 
 
 def _items_of_vector(vector: CppCall) -> list[Value]:
@@ -255,8 +268,7 @@ def _scalar(value: CppValue, kind: str) -> CppValue:
         return float(value)
     if name == "bool":
         return bool(value)
-    is_integer = name.startswith(("int", "uint", "size_t", "long", "unsigned", "short"))
-    return int(value) if is_integer else value
+    return int(value) if name.startswith(_INTEGERS) else value
 
 
 # --- Quality of service

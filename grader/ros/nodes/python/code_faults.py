@@ -210,12 +210,13 @@ class _Search:
     ) -> Iterator[CodeFault]:
         """Yield those of a method; what is said is added to what the module asks for."""
         own_names = {name for node in owner.body for name in _defined_by(node)}
+        read: list[ast.Attribute] = []
         for node in certain_nodes(part.node):
             match node:
-                case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Load()):
-                    pass
-                case _:
-                    continue
+                case ast.Attribute(value=ast.Name(id="self"), ctx=ast.Load()):
+                    read.append(node)
+        for node in sorted(read, key=position_of):  # the first use is said
+            name = node.attr
             if name in own_names or name in known or name in asked or name.startswith("_"):
                 continue
             asked.add(name)

@@ -7,6 +7,8 @@ What is opened under a condition is listed as well; actions and the topics of tf
 """
 
 import ast
+import re
+import sys
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cache, cached_property, partial
 from typing import NamedTuple
@@ -81,6 +83,8 @@ _ACTIONS: dict[str, EndpointKind] = {
     "ActionClient": "action client",
     "ActionServer": "action server",
 }
+_WITHOUT_NODES = ("rclpy", "tf2_ros", "message_filters", "numpy", "cv2", "cv_bridge", "yaml")
+_MESSAGE_PART = re.compile(r"\.(msg|srv|action)\.")
 _READS_IF_DECLARED = ("get_parameter_or", "has_parameter")
 _READS = ("get_parameter", *_READS_IF_DECLARED)
 _DECLARES = ("declare_parameter", "declare_parameters")
@@ -323,14 +327,16 @@ def _programs(
         by_key.setdefault(node.class_name, []).append(node)
     created_by = partial(_created_by, package.budget, modules, by_key)
     for entry in entry_points(package):
-        created = created_by(entry.module, entry.function)
+        created, has_more = created_by(entry.module, entry.function)
         path = module_path(package, entry.module) or ""
-        yield NodeProgram(entry.name, created, entry.location, path, entry.function)
+        program = NodeProgram(entry.name, created, entry.location, path, entry.function)
+        yield program._replace(may_have_more=has_more)
     for copy in _scripts(package):
         at = Location(package.path(copy.source), 1, 1)
         name = copy.target.rpartition("/")[2]
-        created = created_by(copy.source, "")
-        yield NodeProgram(name, created, at, copy.source, "")
+        created, has_more = created_by(copy.source, "")
+        program = NodeProgram(name, created, at, copy.source, "")
+        yield program._replace(may_have_more=has_more)
 
 
 def _created_by(
@@ -339,16 +345,17 @@ def _created_by(
     nodes: Mapping[object, Sequence[NodeFacts]],
     module: str,
     function: str,
-) -> tuple[NodeFacts, ...]:
-    """Return the nodes that a function creates, also in those that it calls.
+) -> tuple[tuple[NodeFacts, ...], bool]:
+    """Return the nodes that a function creates, and whether it may create others.
 
-    Without a name, the function is the module's body. None are known where too many functions
-    call others.
+    Those of the functions that it calls count. Classes that are not of the package may be those of
+    nodes. Without a name, the function is the module's body. None are known where too many
+    functions call others.
 
     `nodes` are those at a place, and those of a class by its full name.
     """
     created: dict[Location, NodeFacts] = {}
-    pending, seen = [f"{module}.{function}"], set[str]()
+    pending, seen, has_more = [f"{module}.{function}"], set[str](), False
     while pending:
         name = pending.pop(0)
         owner = next(
@@ -359,18 +366,27 @@ def _created_by(
             ),
             None,
         )
+        has_more = has_more or (owner is None and _may_be_node_class(name))
         if name in seen or owner is None:
             continue
         seen.add(name)
         calls = owner.calls_in(name.rpartition(".")[2])
         if not budget.take_of_whole(_OF_CALL * (1 + len(calls))):
-            return ()
+            return (), True
         for called, at in calls:
             created |= {
                 node.location: node for node in (*nodes.get(at, ()), *nodes.get(called, ()))
             }
             pending.append(called)
-    return tuple(created.values())
+    return tuple(created.values()), has_more
+
+
+def _may_be_node_class(name: str) -> bool:
+    """Return whether a full name may be that of a class of nodes of another package."""
+    package, _, rest = name.partition(".")
+    last = rest.rpartition(".")[2]
+    is_other = package not in sys.stdlib_module_names and package not in _WITHOUT_NODES
+    return is_other and last[:1].isupper() and not _MESSAGE_PART.search(name)
 
 
 def _find_calls(nodes: Sequence[ast.AST]) -> list[ast.Call]:
@@ -755,6 +771,7 @@ class _Module:
             is_declared,
             is_plain,
             is_needed=method not in _READS_IF_DECLARED,
+            is_guard=method == "has_parameter",
             is_unset=isinstance(default, QualifiedName) and _default(default) is None,
         )
 

@@ -65,14 +65,17 @@ def defined_controllers(workspace: Workspace) -> tuple[Controller, ...]:
         name = keys[-1].rpartition("/")[2]
         # The type is in a section of the controller manager, or in their own, for a spawner.
         if name == MANAGER and isinstance(section.value, dict):
-            defined = section.value
+            defined, around = section.value, section
         else:
-            defined = {name: section}
+            defined, around = {name: section}, None
         for controller, node in defined.items():
             kind = node.get("type")
             if kind is not None and kind.text is not None and "/" in kind.text:
                 has_file = node.get("params_file") is not None
-                controllers.append(Controller(controller, kind, kind.location, has_file))
+                at = kind.location
+                if around is not None and controller in around.key_marks:
+                    at = around.key_location(controller)
+                controllers.append(Controller(controller, kind, at, has_file))
     return tuple(controllers)
 
 

@@ -2,7 +2,7 @@
 
 import posixpath
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,6 +17,12 @@ from grader.ros.workspace.model.workspace_folder import WorkspaceFolder
 from grader.ros.xml.elements import readable
 from grader.ros.xml.parsing import Element
 
+# Plugins of hardware that have the interfaces which <ros2_control> lists, and no others.
+_LISTED_HARDWARE = (
+    *("mock_components/GenericSystem", "fake_components/GenericSystem"),
+    *("gz_ros2_control/GazeboSimSystem", "ign_ros2_control/IgnitionSystem"),
+    *("gazebo_ros2_control/GazeboSystem", "topic_based_ros2_control/TopicBasedSystem"),
+)
 _SYSTEM = re.compile(r"<ros2_control\b")
 _NAME = re.compile(r"\bname=[\"'](?:xacro:)?([\w.-]+)[\"']")
 _CALLED = re.compile(r"<xacro:(?:[\w-]+\.)*([\w-]+)")
@@ -39,6 +45,12 @@ class KnownRobot:
     def systems(self) -> list[Element]:
         """The <ros2_control> elements."""
         return list(self.root.iterchildren("ros2_control"))
+
+    @property
+    def has_controller_manager(self) -> bool:
+        """Whether it has one in Gazebo."""
+        plugins = self.root.iter("plugin")
+        return any("ros2_control" in plugin.get("filename", "") for plugin in plugins)
 
     def place(self, element: Element) -> Location:
         """Return where an element is written."""
@@ -93,33 +105,11 @@ class Robots:
     @cached_property
     def has_controllers_in_gazebo(self) -> bool:
         """Whether a robot has a controller manager in Gazebo."""
-        for robot in self.known:
-            if any(
-                "ros2_control" in plugin.get("filename", "") for plugin in robot.root.iter("plugin")
-            ):
-                return True
-        return False
-
-    @cached_property
-    def command_interfaces(self) -> Mapping[str, tuple[frozenset[str], Location]] | None:
-        """The command interfaces of joints in <ros2_control>, of all robots; None without one."""
-        if not any(robot.systems for robot in self.known):
-            return None
-        interfaces: dict[str, tuple[frozenset[str], Location]] = {}
-        for robot in self.known:
-            for joint in [
-                joint_element
-                for system in robot.systems
-                for joint_element in system.iterchildren("joint")
-            ]:
-                name, added = joint.get("name", ""), joint.iterchildren("command_interface")
-                before, at = interfaces.get(name, (frozenset[str](), robot.place(joint)))
-                interfaces[name] = (before.union(each.get("name", "") for each in added), at)
-        return interfaces
+        return any(robot.has_controller_manager for robot in self.known)
 
     @property
     def has_all_interfaces(self) -> bool:
-        """Return whether `command_interfaces` are those of every robot.
+        """Return whether the command interfaces of every robot are known.
 
         This includes the robots under other arguments of xacro.
         """
@@ -170,11 +160,38 @@ class Robots:
     @property
     def given_in_gazebo(self) -> Iterator[GivenParameters]:
         """The files that the robots give to the controller manager in Gazebo."""
+        for _, given in self.files_in_gazebo:
+            yield given
+
+    @property
+    def files_in_gazebo(self) -> Iterator[tuple[KnownRobot, GivenParameters]]:
+        """The same files, each with the robot that gives it."""
         for robot in self.known:
             for element in robot.root.iter("parameters"):
                 path = _FOUND.sub(rf"{SHARE}/\1/", readable((element.text or "").strip()))
                 if path.startswith(SHARE):
-                    yield GivenParameters(robot.place(element), path)
+                    yield robot, GivenParameters(robot.place(element), path)
+
+
+def command_interfaces(
+    robots: Sequence[KnownRobot],
+) -> Mapping[str, tuple[frozenset[str], Location]]:
+    """Return the command interfaces of the joints in <ros2_control> of some robots.
+
+    A joint without any is left to its hardware, unless that is known to have what is listed.
+    """
+    interfaces: dict[str, tuple[frozenset[str], Location]] = {}
+    for robot in robots:
+        for system in robot.systems:
+            plugin = next(system.iterfind("hardware/plugin"), None)
+            is_own = plugin is not None and (plugin.text or "").strip() not in _LISTED_HARDWARE
+            for joint in system.iterchildren("joint"):
+                if is_own and next(joint.iterchildren("command_interface"), None) is None:
+                    continue
+                name, added = joint.get("name", ""), joint.iterchildren("command_interface")
+                before, at = interfaces.get(name, (frozenset[str](), robot.place(joint)))
+                interfaces[name] = (before.union(each.get("name", "") for each in added), at)
+    return interfaces
 
 
 def _known_robot(urdf: Read) -> KnownRobot | None:

@@ -81,6 +81,16 @@ class OwnCode:
                 nodes[key] = of_programs[0][0]
         return nodes
 
+    def has_other_nodes(self, node: StartedNode) -> bool:
+        """Return whether the program of a node may have others, which are not known.
+
+        Each node of a process reads its own section of the parameter files of that.
+        """
+        owner = self.folder.package_of(node)
+        code = self.by_package.get(owner.name) if owner is not None else None
+        programs = code.programs if code is not None else ()
+        return any(program.may_have_more for program in programs if program.name == node.executable)
+
     def is_read(self, node: StartedNode) -> bool:
         """Return whether all is known that the code of a node opens."""
         facts = self.own_node(node)

@@ -96,6 +96,16 @@ class TextFiles:
         self.folder.charge(1 + sum(map(len, self.launch_texts)) // _SEARCHED_A_PART)
         return self.launch_texts
 
+    def loose_texts(self, endings: tuple[str, ...]) -> Iterator[str]:
+        """Yield the texts of the files with these endings that are in no package, as a README."""
+        folders = tuple(package.path("") for package in self.folder.found_packages)
+        paths = [path for path in self.folder.tree.files if path.endswith(endings)]
+        loose = [path for path in paths if not path.startswith(folders)]
+        for path in loose[:_MAX_FILES]:
+            data = self.folder.tree.read(path, MAX_YAML) or b""
+            self.folder.charge(1 + len(data) // _SEARCHED_A_PART)
+            yield data.decode("utf-8", "replace")
+
     @cached_property
     def python_texts(self) -> tuple[str, ...]:
         """The texts of the Python files."""

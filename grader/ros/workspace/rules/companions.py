@@ -41,6 +41,7 @@ _JOINT_STATE, _CLOCK = "sensor_msgs.msg.JointState", "rosgraph_msgs.msg.Clock"
 _JOINT_STATE_WORDS = ("joint_state", "JointState")
 _TIME = "use_sim_time"
 _CODE, _PAGES = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h"), (".md", ".sh")
+_LOOSE = (*_PAGES, ".rst", ".txt", ".yaml", ".yml", "Dockerfile")  # outside of packages
 _SOURCES = (*_CODE, *_PAGES, ".yaml")
 _WORD = re.compile(r"[a-z0-9]+")
 
@@ -253,6 +254,8 @@ def _is_told(workspace: Workspace) -> bool:
 
     A page or a script says it, or a program that is not started uses the type of the time.
     """
+    if any(map(_says_clock, workspace.texts.loose_texts(_LOOSE))):
+        return True
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, _PAGES):
             if _says_clock(source.text):

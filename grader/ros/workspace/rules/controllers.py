@@ -13,12 +13,14 @@ from grader.ros.known.package_rows import (
     is_known_controller,
 )
 from grader.ros.known.releases import releases_with
+from grader.ros.workspace.graph.compared_robots import robots_for_file
 from grader.ros.workspace.graph.started_controllers import (
     Controller,
     defined_controllers,
     named_sections,
     parameters_of_controllers,
 )
+from grader.ros.workspace.model.known_robots import KnownRobot, command_interfaces
 from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER
 from grader.ros.workspace.model.under_arguments import may_be_offered
 from grader.ros.workspace.model.workspace import Workspace
@@ -75,7 +77,7 @@ def _no_hardware(workspace: Workspace) -> Iterator[Mismatch]:
     Nothing is said where a robot may have more than is read.
     """
     robots = workspace.robots
-    if robots.command_interfaces is not None or not robots.has_all_interfaces:
+    if any(robot.systems for robot in robots.known) or not robots.has_all_interfaces:
         return
     for _, node in workspace.launches.nodes:
         if node.executable == CONTROL_NODE:
@@ -103,7 +105,7 @@ def _other_type(workspace: Workspace, controller: Controller) -> Iterator[Mismat
     guess = f"; did you mean {meant!r}?" if meant is not None else ""
     message = f"{controller.name}.type: there is no controller of the type {written!r}{guess}"
     is_certain = is_known or near(written, same_class) is not None
-    at = controller.location
+    at = controller.type.location
     either = corrections(written, at, meant)
     yield Mismatch(CONTROLLER_TYPE, message, at, is_certain=is_certain, corrections=either)
 
@@ -250,31 +252,38 @@ def _no_interface(
     Names that are no joints of a robot are mistakes of frames. A joint without <ros2_control> is
     said only where the robot has no more than is read.
     """
-    interfaces = workspace.robots.command_interfaces or {}
-    are_comparable = _are_all_joints(workspace, interfaces)
+    robots = robots_for_file(workspace, section.source.path).robots
+    interfaces = command_interfaces(robots)
+    are_comparable = _are_all_joints(workspace, robots, interfaces)
     for joint, needed in _needed_in(section, controller_row(controller.type.text).joints):
         name = joint.text or ""
         message = f"{controller.name} needs the command interface {name}"
         if name in interfaces:
-            yield from _missing_interfaces(workspace, joint, needed, message)
-        elif are_comparable and needed and _are_all_joints(workspace, [name]):
+            yield from _missing_interfaces(workspace, joint, needed, message, interfaces[name])
+        elif are_comparable and needed and _are_all_joints(workspace, robots, [name]):
             text = f"{message}/{needed[0]}; <ros2_control> has no joint {name!r}"
             yield Mismatch(CONTROLLER_INTERFACE, text, joint.location)
 
 
-def _are_all_joints(workspace: Workspace, names: Collection[str]) -> bool:
+def _are_all_joints(
+    workspace: Workspace, robots: Sequence[KnownRobot], names: Collection[str]
+) -> bool:
     """Return whether all of some names, if any, are joints of robots that are read whole."""
     joints: set[str] = set()
-    for known_robot in workspace.robots.known:
+    for known_robot in robots:
         joints |= {joint.name for joint in known_robot.robot.joints}
     return bool(names) and joints.issuperset(names) and workspace.robots.has_all_interfaces
 
 
 def _missing_interfaces(
-    workspace: Workspace, joint: YamlNode, needed: Sequence[str], message: str
+    workspace: Workspace,
+    joint: YamlNode,
+    needed: Sequence[str],
+    message: str,
+    interfaces: tuple[frozenset[str], Location],
 ) -> Iterator[Mismatch]:
     """Yield the command interfaces that <ros2_control> does not have of a joint that it has."""
-    offered, at = (workspace.robots.command_interfaces or {})[joint.text or ""]
+    offered, at = interfaces
     there = f"<ros2_control> has {', '.join(sorted(offered)) or 'none'} ({at.file_and_line})"
     for missing in needed:
         if missing not in offered and not may_be_offered(workspace, missing):

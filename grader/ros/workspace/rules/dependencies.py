@@ -12,6 +12,7 @@ from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.installation.manifest import Manifest
 from grader.ros.known.package_rows import controller_row, is_known_controller, package_row
+from grader.ros.known.released import is_released, packages_brought_by
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
 from grader.ros.workspace.model.workspace import Workspace
@@ -49,17 +50,20 @@ def _undeclared(
     Those that packages of the workspace bring, which are declared, rosdep installs.
     """
     declared = _declared(package)
-    brought: set[str] = set()
-    for name in declared:
+    brought: dict[str, str] = {}  # what each is brought by
+    for name in sorted(declared):
         dependency = package.find(name)
         if dependency is not None and dependency.manifest:
-            brought |= {*dependency.manifest.dependencies}
+            for inner in dependency.manifest.dependencies:
+                brought.setdefault(inner, name)
     start = manifest.name_location
     for name, at in used.items():
         if name in declared:
             continue
         workspace.charge(cost_of_guess(len(declared)))
         meant = near(name, declared)
+        if meant is not None and _is_there(package, name) and _is_there(package, meant):
+            meant = None  # another package
         misplaced = manifest.misplaced.get(name)
         guess = ""
         if misplaced is not None:
@@ -69,9 +73,19 @@ def _undeclared(
         message = (
             f"package.xml of {package.name!r} does not declare {name!r}, which is used here{guess}"
         )
-        either = corrections(name, at, meant, start if meant not in used else None)
         is_certain = name not in brought
-        yield Mismatch(DEPENDENCY_DECLARED, message, at, start, is_certain, either)
+        if not is_certain:
+            message = (
+                f"package.xml of {package.name!r} does not declare {name!r}, which only "
+                f"{brought[name]!r} brings: the package builds and runs as long as that needs it"
+            )
+        either = corrections(name, at, meant, start if meant not in used else None)
+        yield Mismatch(DEPENDENCY_DECLARED, message, at, start, is_certain, either, word=name)
+
+
+def _is_there(package: Package, name: str) -> bool:
+    """Return whether the workspace or a release has a package."""
+    return package.find(name) is not None or is_released(name)
 
 
 def _declared(package: Package) -> set[str]:
@@ -79,7 +93,7 @@ def _declared(package: Package) -> set[str]:
     assert package.manifest is not None
     declared = {*package.manifest.dependencies, *package.names}
     for name in [*declared]:
-        declared.update(package_row(name).members)
+        declared.update(package_row(name).members, packages_brought_by(name))
     return declared
 
 

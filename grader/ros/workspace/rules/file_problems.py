@@ -10,6 +10,7 @@ from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.base.text import counted
 from grader.ros.installation import package_problems as kinds
+from grader.ros.installation.places import is_of_one_machine
 from grader.ros.known.releases import releases_with
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.found_problems import (
@@ -54,9 +55,31 @@ def _launch_problems(workspace: Workspace) -> Iterator[Problem]:
         if launch.syntax is not None:
             yield launch_syntax(launch, launch.syntax)
         is_root = id(launch) in roots
+        hard_coded: set[Location] = set()  # where paths of one machine are written
         for problem in launch_problems(_started(workspace, path, launch)) if is_root else ():
+            if problem.kind is kinds.HARD_CODED:
+                place = _where_written(launch, problem.location)
+                if place is not None and place in hard_coded:
+                    continue  # several files of one folder
+                if place is not None:
+                    hard_coded.add(place)
+                    problem = problem._replace(location=place, around=problem.location)  # noqa: PLW2901
             if problem.location not in wrong_programs:
                 yield problem
+
+
+def _where_written(launch: Launch, at: Location) -> Location | None:
+    """Return where a launch file writes the path that it names at a place, or its beginning."""
+    source = launch.source
+    named = [reference.path or "" for reference in launch.references if reference.location == at]
+    path = next(filter(is_of_one_machine, named), "")
+    while at.path == source.path and path.count("/") > 1:
+        for quote in "\"'":
+            start = source.text.find(f"{quote}{path}")
+            if start >= 0:
+                return source.at(start + 1)
+        path = path.rpartition("/")[0]
+    return None
 
 
 def _uninstalled_launch_files(workspace: Workspace) -> Iterator[Problem]:
@@ -133,7 +156,10 @@ def _may_be_included(workspace: Workspace, name: str, launch: Launch) -> bool:
         return True
     if count > (name in launch.source.text):
         return True
-    return any(any_launch.unknown for _, _, any_launch in workspace.launches.files)
+    for _, _, other in workspace.launches.files:
+        if not all(unknown.follows_error for unknown in other.unknown):
+            return True
+    return False
 
 
 def _rviz_problems(package: Package, path: str) -> Iterator[Problem]:

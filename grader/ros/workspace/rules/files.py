@@ -2,6 +2,7 @@
 
 import posixpath
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
@@ -98,16 +99,41 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
     for package, own_path, launch in workspace.launches.files:
         yield from _paths_in_launch_file(workspace, package, own_path, launch)
     for package in workspace.packages:
+        left_out = _robots_left_out(workspace, package)
         for source in workspace.texts.sources_of(package, (".xacro", ".urdf", ".yaml")):
             is_read = (
                 source.path.endswith(".yaml")
                 or not workspace.robots.known
                 or source.path in workspace.robots.files
-            )
+            ) and source.path not in left_out
             for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
                 path = f"{SHARE}/{match[1]}/{match[2]}"
                 is_used = is_read and not _is_unused_property(workspace, source, match.start())
                 yield _NamedPath(package, path, source.at(match.start()), is_used)
+
+
+def _robots_left_out(workspace: Workspace, package: Package) -> frozenset[str]:
+    """Return the robots that a build of a package does not install, while it has others.
+
+    It installs others, or has several of one name, of which one is copied to where it is needed.
+    What launch files read is not among them.
+    """
+    installed = set(package.installed.values())
+    robots = [path for path in package.tree.files if path.endswith((".urdf", ".xacro"))]
+    if not are_installs_known(package):
+        return frozenset()
+    counts = Counter(map(posixpath.basename, robots))
+    are_others_installed = not installed.isdisjoint(robots)
+    launched: set[str] = set()
+    for _, _, launch in workspace.launches.files:
+        launched |= {posixpath.basename(named.path or "") for named in launch.named("urdf")}
+    left_out: set[str] = set()
+    for path in robots:
+        name = posixpath.basename(path)
+        has_others = are_others_installed or counts[name] > 1
+        if has_others and path not in installed and name not in launched:
+            left_out.add(package.path(path))
+    return frozenset(left_out)
 
 
 def _paths_in_launch_file(

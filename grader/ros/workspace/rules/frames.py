@@ -18,6 +18,11 @@ from grader.ros.package.package import Package
 from grader.ros.package.static_transforms import STATIC_PUBLISHER, frames_named
 from grader.ros.urdf.model import Robot
 from grader.ros.workspace.graph.code_ends import frames_of
+from grader.ros.workspace.graph.compared_robots import (
+    ComparedRobots,
+    robots_for_file,
+    robots_for_launch,
+)
 from grader.ros.workspace.graph.gazebo_topics import roots, system_of
 from grader.ros.workspace.model.known_robots import KnownRobot
 from grader.ros.workspace.model.under_arguments import names_under_arguments
@@ -29,7 +34,9 @@ from grader.ros.workspace.rules.names import (
     Open,
     Pattern,
     Use,
+    among,
     corrections,
+    cost_of_guess,
 )
 from grader.ros.workspace.rules.rule_table import (
     FRAME_PARENT,
@@ -37,6 +44,7 @@ from grader.ros.workspace.rules.rule_table import (
 )
 from grader.ros.xml.parsing import Element
 
+_MIN_OF_ROBOT = 2  # joints that a file names, from which on it is for another robot
 _JOINTS = re.compile(r"(^|_)joints?$|(wheels?|joints?)_names?$")
 _FRAMES = re.compile(r"(^|_)(frame|frame_id)$")
 _BROADCASTING = ("TransformBroadcaster", "TFMessage")
@@ -60,8 +68,8 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
     ]
     if not robots:
         return
-    for robot in robots:
-        yield from _defined_in(robot)
+    for known_robot in workspace.robots.known:
+        yield from _defined_in(known_robot)
     start = _place(robots[0].links[0].location)
     yield from (Definition("frame", name, start) for name in shared_names().frames)
     yield from openings(workspace)
@@ -69,23 +77,32 @@ def frame_facts(workspace: Workspace) -> Iterator[Fact]:
     yield from _second_parents(workspace, robots)
     yield from _frames_in_code(workspace, robots)
     controllers = workspace.installed.typed_sections
-    for _, tree in workspace.installed.trees:
+    for path, tree in workspace.installed.trees:
         if is_parameters(tree):
-            for value in values_in(tree):
-                yield from _in_yaml(value, is_of_controller=not controllers.isdisjoint(value.keys))
+            compared = robots_for_file(workspace, path)
+            values = [*values_in(tree)]
+            joints = compared
+            if _is_of_absent_robot(workspace, path, values):
+                joints = ComparedRobots()
+            for value in values:
+                is_of_controller = not controllers.isdisjoint(value.keys)
+                for fact in _in_yaml(value, is_of_controller=is_of_controller):
+                    is_joint = isinstance(fact, Use) and fact.kind == "joint"
+                    yield among(fact, joints if is_joint else compared)
     for known_robot in workspace.robots.known:
         yield from _in_robot(known_robot)
     yield from _odometry_frames(workspace, robots)
     yield from _sensor_frames(workspace, robots)
 
 
-def _defined_in(robot: Robot) -> Iterator[Definition]:
+def _defined_in(known_robot: KnownRobot) -> Iterator[Definition]:
     """Yield the frames, links and joints of a robot."""
+    robot, path = known_robot.robot, known_robot.path
     for link in robot.links:
-        yield Definition("frame", link.name, _place(link.location))
-        yield Definition("link", link.name, _place(link.location))
+        yield Definition("frame", link.name, _place(link.location), robot=path)
+        yield Definition("link", link.name, _place(link.location), robot=path)
     for joint in robot.joints:
-        yield Definition("joint", joint.name, _place(joint.location))
+        yield Definition("joint", joint.name, _place(joint.location), robot=path)
 
 
 def _place(location: LazyLocation | None) -> Location:
@@ -118,7 +135,7 @@ def _named_in_code(named: Sequence["_NamedFrame"], above: Collection[str]) -> It
     """Yield frames of code, but for those that are looked up above a static transform."""
     for each in named:
         if each.frame.use != "looks up" or each.name not in above:
-            yield _definition_or_use(each)
+            yield among(_definition_or_use(each), each.compared)
 
 
 def _may_be_published(workspace: Workspace) -> bool:
@@ -184,12 +201,13 @@ def _frames_in_code(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[F
     """Yield the frames that own nodes publish, look up and name in messages."""
     named: list[_NamedFrame] = []
     above = set()  # the frames that static transforms have as their parent: the root of a map
-    for _, node in workspace.launches.nodes:
+    for number, node in workspace.launches.launched:
         if _is_static(node):
             above.add(frames_named(node)[0])
         for name, frame in frames_of(workspace, node) if node.when is not False else ():
             if name is not None and name.strip("/"):
-                named.append(_NamedFrame(name.removeprefix("/"), frame, node))
+                compared = robots_for_launch(workspace, number)
+                named.append(_NamedFrame(name.removeprefix("/"), frame, node, compared))
             elif name is None and frame.use == "publishes":
                 yield Open("frame", reason=f"the frames of {node.executable} are computed")
     if named:
@@ -256,6 +274,7 @@ class _NamedFrame(NamedTuple):
     name: str
     frame: NodeFrame
     node: StartedNode
+    compared: ComparedRobots
 
 
 def _misspelt_roots(named: Sequence[_NamedFrame], robots: Sequence[Robot]) -> Iterator[Mismatch]:
@@ -293,7 +312,7 @@ def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Iterato
     """Yield the frames of static transforms, those that they publish and those that they need."""
     children = {joint.child for robot in robots for joint in robot.joints}
     links = {link.name for robot in robots for link in robot.links}
-    for _, node in workspace.launches.nodes:
+    for number, node in workspace.launches.launched:
         if not _is_static(node):
             continue
         frames = _frames_of_static(node)
@@ -305,7 +324,9 @@ def _static_transforms(workspace: Workspace, robots: Sequence[Robot]) -> Iterato
         yield Definition("frame", child, node.location)
         # Above a robot, or a frame that others publish, it may be the root.
         is_root = child not in children and (child in links or child in shared_names().frames)
-        yield Use("frame", parent, node.location, STATIC_PUBLISHER[1], optional=is_root)
+        said = STATIC_PUBLISHER[1]
+        use = Use("frame", parent, node.location, said, optional=is_root)
+        yield among(use, robots_for_launch(workspace, number))
 
 
 def _frames_of_static(node: StartedNode) -> tuple[str, str] | None:
@@ -336,6 +357,25 @@ def _second_parents(workspace: Workspace, robots: Sequence[Robot]) -> Iterator[M
             is_certain = node.when is True and len(robots) == 1
             at = _place(joint.location)
             yield Mismatch(FRAME_PARENT, message, node.location, at, is_certain=is_certain)
+
+
+def _is_of_absent_robot(workspace: Workspace, path: str, values: Sequence[YamlValue]) -> bool:
+    """Return whether a file that nothing gives to a node is for a robot that is not there.
+
+    It names joints, and no robot of the workspace has one of them, or one that is nearly called so.
+    """
+    given = workspace.parameters.files.keys() | workspace.parameters.controller_files
+    joints: set[str] = set()
+    for known_robot in workspace.robots.known:
+        joints |= {joint.name for joint in known_robot.robot.joints}
+    named: set[str] = set()
+    for value in values:
+        if value.keys and _JOINTS.search(value.keys[-1]):
+            named |= {text for text, _ in value.texts() if text and "/" not in text}
+    if path in given or len(named) < _MIN_OF_ROBOT or not named.isdisjoint(joints):
+        return False
+    workspace.charge(len(named) * cost_of_guess(len(joints)))
+    return all(near(name, joints) is None for name in named)
 
 
 def _in_yaml(value: YamlValue, *, is_of_controller: bool) -> Iterator[Fact]:

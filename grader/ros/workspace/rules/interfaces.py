@@ -45,6 +45,9 @@ from grader.ros.workspace.rules.rule_table import (
 _GROUP = "rosidl_interface_packages"
 # What rosidl brings for services and actions without naming them.
 _IMPLICIT = ("service_msgs", "action_msgs", "builtin_interfaces", "unique_identifier_msgs")
+# What rosidl puts into messages, requests and goals without fields (rosidl_parser,
+# EMPTY_STRUCTURE_REQUIRED_MEMBER_NAME); the classes of Python do not have it.
+_OF_EMPTY = "structure_needs_at_least_one_member"
 _OF_PYTHON = ("get_fields_and_field_types", "SLOT_TYPES")  # besides what begins with _
 # Releases whose setters check the type of what is assigned: rosidl_generator_py of Foxy to Iron.
 _CHECKING = RELEASES[: RELEASES.index("jazzy")]
@@ -322,7 +325,8 @@ def _no_field(
 
     Items of lists, and what the classes of Python have besides, are no fields.
     """
-    if attribute == ITEM or _is_of_python(section, attribute):
+    is_of_empty = attribute == _OF_EMPTY and not section.fields and not at.path.endswith(".py")
+    if attribute == ITEM or is_of_empty or _is_of_python(section, attribute):
         return
     names, noun = [*section.fields], "field"
     if attribute.isupper():

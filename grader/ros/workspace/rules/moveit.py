@@ -8,9 +8,10 @@ from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.package_tables import moveit_actions
+from grader.ros.workspace.graph.compared_robots import robots_for_file
 from grader.ros.workspace.graph.started_controllers import defined_controllers
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Fact, Mismatch, Use, corrections
+from grader.ros.workspace.rules.names import Fact, Mismatch, Use, among, corrections
 from grader.ros.workspace.rules.rule_table import (
     MOVEIT_ACTION,
     MOVEIT_CONTROLLER,
@@ -27,11 +28,14 @@ def moveit_facts(workspace: Workspace) -> Iterator[Fact]:
     if not workspace.robots.known:
         return
     left_out = _not_spawned(workspace)
-    for _, tree in workspace.installed.trees:
-        yield from _joints_and_groups(tree)
+    for path, tree in workspace.installed.trees:
+        compared = robots_for_file(workspace, path)
+        for use in _joints_and_groups(tree):
+            yield among(use, compared)
         manager = tree.get(_MANAGER)
         for controller in _controllers(manager) if manager is not None else ():
-            yield from _names_of(workspace, controller)
+            for use in _names_of(workspace, controller):
+                yield among(use, compared)
             yield from _not_started(controller, left_out)
             yield from _other_joints(workspace, controller)
             yield from _other_action(controller)

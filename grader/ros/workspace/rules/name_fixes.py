@@ -1,7 +1,7 @@
 """The fixes of names that do not agree: where they are used, or where they are defined."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from os.path import commonprefix
 
@@ -10,11 +10,15 @@ from grader.base.source import Edits, Location, Source
 from grader.base.text import quoted
 from grader.files.reading import URDF_LIMIT
 from grader.ros.package.package import CMAKE, MANIFEST, Package
+from grader.ros.python.call_extents import ends_of_calls
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Correction, Mismatch
+from grader.ros.workspace.rules.rule_table import DEPENDENCY_DECLARED
 
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".sdf", ".txt", ".cfg")
 _MAX_KEY = 400  # characters from a key to its value
+_MAX_ATTRIBUTE = 40  # characters before a text in which its attribute is
+_OF_PACKAGE = re.compile(r"\b(?:package|pkg)\s*=\s*[\"']$")
 _SEPARATED = re.compile(r".*[./:]")
 # Files in which a name stands several times for one thing.
 _WITH_ALL = (f"/{CMAKE}", f"/{MANIFEST}")
@@ -25,6 +29,7 @@ class NameFixes:
 
     def __init__(self, workspace: Workspace) -> None:
         self._workspace = workspace
+        self._calls: dict[str, Mapping[tuple[int, int], int]] = {}  # the ends of those in each file
 
     @cached_property
     def sources(self) -> list[Source]:
@@ -82,12 +87,68 @@ class NameFixes:
         if source is None:
             return ()
         for written, wanted in _as_written(old, new):
-            spans = _spans(source, written)
-            if not f"/{at.path}".endswith(_WITH_ALL):
-                spans = _meant(source.text, written, spans, source.offset(at.line, at.column))
+            spans = self._spans_at(source, at, written)
             if spans:
                 return tuple(source.edit(*span, wanted) for span in spans)
         return ()
+
+    def place_of_word(self, mismatch: Mismatch) -> Location | None:
+        """Return where the wrong word of a mismatch is, inside of the call or element of its place.
+
+        The result is None where it is not written there as a whole, or the place is the word's.
+        """
+        at, words = mismatch.location, [mismatch.word]
+        words += [each.old for each in mismatch.corrections if each.location == at]
+        source = self._source(at.path) if any(words) else None
+        if source is None:
+            return None
+        of_package = mismatch.rule is DEPENDENCY_DECLARED
+        for word in filter(None, words):
+            span = self._span_inside(source, at, word.strip("/"), of_package=of_package)
+            if span is not None:
+                start, end = source.at(span[0]), source.at(span[1])
+                return start._replace(end_line=end.line, end_column=end.column, calls=at.calls)
+        return None
+
+    def _span_inside(
+        self, source: Source, at: Location, word: str, *, of_package: bool = False
+    ) -> tuple[int, int] | None:
+        """Return where a word is in the call of Python, or the start tag, at a place.
+
+        A program may be called as its package: `of_package` says which is meant.
+        """
+        start = source.offset(at.line, at.column)
+        end = self._end_of_element(source, at, start)
+        inside = [span for span in _spans(source, word) if start <= span[0] and span[1] <= end]
+        if not inside or inside[0][0] <= start + 1:
+            return None  # the place is that of the word, or of its quote
+        texts = [span for span in inside if _is_whole_text(source.text, span)]
+        meant: list[tuple[int, int]] = []
+        for span in texts:
+            before = source.text[max(0, span[0] - _MAX_ATTRIBUTE) : span[0]]
+            if (_OF_PACKAGE.search(before) is not None) == of_package:
+                meant.append(span)
+        return (meant or texts or inside)[0]
+
+    def _end_of_element(self, source: Source, at: Location, start: int) -> int:
+        """Return where the call of Python or the start tag at a place ends; else the place."""
+        if source.text.startswith("<", start):
+            return source.text.find(">", start) + 1
+        if not at.path.endswith(".py"):
+            return start
+        if at.path not in self._calls:
+            self._calls[at.path] = ends_of_calls(source)
+        return self._calls[at.path].get((at.line, at.column), start)
+
+    def _spans_at(self, source: Source, at: Location, word: str) -> list[tuple[int, int]]:
+        """Return the occurrences of a word that a place is about."""
+        spans = _spans(source, word)
+        if f"/{at.path}".endswith(_WITH_ALL):
+            return spans
+        inside = self._span_inside(source, at, word)
+        if inside is not None:
+            return [inside]
+        return _meant(source.text, word, spans, source.offset(at.line, at.column))
 
     def _source(self, path: str) -> Source | None:
         """Return the text of a file; None if it cannot be read."""
@@ -109,6 +170,12 @@ class NameFixes:
             return ()
         [(source, span)] = places
         return (source.edit(*span, new),)
+
+
+def _is_whole_text(text: str, span: tuple[int, int]) -> bool:
+    """Return whether a word is all that stands in its quotes."""
+    start, end = span
+    return start > 0 and text[start - 1] in "\"'" and text[end : end + 1] == text[start - 1]
 
 
 def _spans(source: Source, name: str) -> list[tuple[int, int]]:

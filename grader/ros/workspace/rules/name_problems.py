@@ -16,7 +16,11 @@ def name_problems(workspace: Workspace) -> tuple[Problem, ...]:
     problems = []
     for wrong in agreement.mismatches:
         problem = wrong.rule.problem(wrong.message, wrong.location, is_certain=wrong.is_certain)
-        problems.append(problem._replace(related=wrong.related, fixes=name_fixes.of(wrong)))
+        problem = problem._replace(related=wrong.related, fixes=name_fixes.of(wrong))
+        place = name_fixes.place_of_word(wrong)
+        if place is not None:
+            problem = problem._replace(location=place, around=wrong.location)
+        problems.append(problem)
     for at in agreement.unused:
         message = "no other file of the workspace names this file"
         problems.append(FILE_USED.problem(message, at))

@@ -12,6 +12,7 @@ from grader.base.names import are_of_one_side, closest, near
 from grader.base.problems import NO_FIXES, Fixes
 from grader.base.source import Location
 from grader.base.text import counted, quoted
+from grader.ros.workspace.graph.compared_robots import ComparedRobots
 from grader.ros.workspace.rules.rule_table import DEFINED, FAMILIES, AnyFamily, DefinedKind, Rule
 
 _MAX_NEAR, _MAX_SIMILAR = 1000, 300  # known names that are compared in either way
@@ -20,19 +21,22 @@ _MAX_NEAR, _MAX_SIMILAR = 1000, 300  # known names that are compared in either w
 class Definition(NamedTuple):
     """A name that a file defines.
 
-    Those of one kind agree within one owner only, such as the arguments of a file.
+    Those of one kind agree within one owner only, such as the arguments of a file. What is of one
+    of several robots has the path of that robot.
     """
 
     kind: DefinedKind
     name: str
     location: Location
     owner: str = ""
+    robot: str = ""
 
 
 class Use(NamedTuple):
     """A name that a file uses, and what the file calls it.
 
-    Where it is `optional`, only a similar name is wrong.
+    Where it is `optional`, only a similar name is wrong. It does not stand for one that is `taken`,
+    such as another entry of the list that it is in, nor for that of another robot than `robots`.
     """
 
     kind: DefinedKind
@@ -41,6 +45,8 @@ class Use(NamedTuple):
     said: str
     owner: str = ""
     optional: bool = False
+    taken: frozenset[str] = frozenset()
+    robots: ComparedRobots | None = None  # None for all
 
 
 class Open(NamedTuple):
@@ -88,6 +94,7 @@ class Mismatch(NamedTuple):
         Correction, ...
     ] = ()  # with each of which it agrees: first of the use, then of the definition
     fixes: Fixes = NO_FIXES  # of what is no name
+    word: str = ""  # that is wrong, in the call or element at the location
 
     @property
     def family(self) -> AnyFamily:
@@ -179,7 +186,9 @@ def agreement(facts: Iterable[Fact], charge: Callable[[int], None] = lambda _: N
         if names.compares(use):
             compared.add(family)
         charge(1 + len(names.patterns))
-        if names.holds(use) or names.may_hold(use):
+        # A name in a file with which no robot has to do may be that of any robot.
+        is_open = use.robots is not None and not use.robots.robots
+        if is_open or names.holds(use) or names.may_hold(use):
             continue
         mismatches += _undefined(names, use, charge)
         if names.why_open(use):
@@ -192,6 +201,8 @@ def _undefined(
 ) -> Iterator[Mismatch]:
     """Yield that a name is not defined, unless what is not known may define it."""
     known = names.like(use)
+    if use.taken:
+        known = {name: at for name, at in known.items() if name not in use.taken}
     charge(cost_of_guess(len(known)))
     mismatch = _mismatch(use, known, is_open=names.are_open(use))
     if mismatch is not None:
@@ -215,13 +226,14 @@ class _DefinedNames:
 
     def __init__(self, facts: Iterable[Fact]) -> None:
         self.patterns: list[Pattern] = []
-        self._known: dict[tuple[DefinedKind, str], dict[str, Location]] = {}
+        # By kind and owner; each name with the robots that have it, and the place in each.
+        self._known: dict[tuple[DefinedKind, str], dict[str, dict[str, Location]]] = {}
         self._reasons: dict[tuple[DefinedKind, str], str] = {}  # why names are open
         for fact in facts:
             match fact:
                 case Definition():
                     names = self._known.setdefault((fact.kind, fact.owner), {})
-                    names.setdefault(fact.name, fact.location)
+                    names.setdefault(fact.name, {}).setdefault(fact.robot, fact.location)
                 case Open():
                     before = self._reasons.get((fact.kind, fact.owner))
                     self._reasons[fact.kind, fact.owner] = before or fact.reason
@@ -229,16 +241,24 @@ class _DefinedNames:
                     self.patterns.append(fact)
 
     def like(self, use: Use) -> Mapping[str, Location]:
-        """Return the names that are defined of the kind and the owner of a use."""
-        return self._known.get((use.kind, use.owner), {})
+        """Return the names that are defined of the kind, the owner and the robots of a use."""
+        similar: dict[str, Location] = {}
+        for name, places in self._known.get((use.kind, use.owner), {}).items():
+            for robot, place in places.items():
+                if use.robots is None or not robot or robot in use.robots.paths:
+                    similar.setdefault(name, place)
+        return similar
 
     def compares(self, use: Use) -> bool:
         """Return whether it is certain that a name is defined, or that it has to be."""
         return self.holds(use) or not (use.optional or self.are_open(use))
 
     def holds(self, use: Use) -> bool:
-        """Return whether a name is defined."""
-        return use.name in self.like(use)
+        """Return whether a name is defined, by a robot that counts or by none."""
+        places = self._known.get((use.kind, use.owner), {}).get(use.name, {})
+        if use.robots is None or not use.robots.are_started:
+            return bool(places)
+        return "" in places or not use.robots.paths.isdisjoint(places)
 
     def may_hold(self, use: Use) -> bool:
         """Return whether a name is computed, or one that may be defined."""
@@ -289,13 +309,28 @@ def _mismatch(use: Use, known: Mapping[str, Location], *, is_open: bool) -> Mism
         meant = closest(use.name, known, is_clear=True)
     if meant is None and (is_open or use.optional):
         return None
-    message = f"{use.said}: there is no {use.kind} {quoted(use.name)}"
+    where = use.robots.words if use.robots is not None else ""
+    message = f"{use.said}: there is no {use.kind} {quoted(use.name)}{where}"
     related = None
     if meant is not None:
         related = known[meant]
         message = f"{message}; did you mean {quoted(meant)} ({related.file_and_line})?"
     either = corrections(use.name, use.location, meant, related)
-    return Mismatch(DEFINED[use.kind], message, use.location, related, not is_open, either)
+    rule = DEFINED[use.kind]
+    return Mismatch(rule, message, use.location, related, not is_open, either, word=use.name)
+
+
+def among(fact: Fact, compared: ComparedRobots) -> Fact:
+    """Return a fact in which a name is compared with those of some robots.
+
+    A joint is one of the robots that are started. A frame may be published by what is not read, so
+    that it is right if any robot has it.
+    """
+    if not isinstance(fact, Use):
+        return fact
+    if fact.kind != "joint":
+        compared = compared._replace(are_started=False)
+    return fact._replace(robots=compared)
 
 
 def corrections(

@@ -20,8 +20,8 @@ from grader.ros.config.yaml_values import (
     sections_in,
     values_in,
 )
-from grader.ros.known.package_rows import package_row, plugin_classes
-from grader.ros.known.parameter_rows import row_for
+from grader.ros.known.package_rows import package_row, plugin_classes, usual_names
+from grader.ros.known.parameter_rows import row_for, rows_of
 from grader.ros.known.releases import RELEASES, Release, releases_with
 from grader.ros.launch.launch_model import ParameterValue, StartedNode
 from grader.ros.nodes.node_facts import NodeFacts
@@ -263,12 +263,13 @@ def _may_read_another(workspace: Workspace, path: str, node: StartedNode) -> boo
     """Return whether a section of a file may be that of a node which is not known.
 
     The node may be of the launch file to which the file is passed, or inside of a program of
-    another package.
+    another package, or of a class of another package that the program makes.
     """
     if path in workspace.installed.passed_files:
         return True
-    is_own = workspace.package_of(node) is not None
-    return not is_own and "frames" not in package_row(node.package).without
+    if workspace.package_of(node) is not None:
+        return workspace.code.has_other_nodes(node)
+    return "frames" not in package_row(node.package).without
 
 
 def _without_section(
@@ -341,12 +342,18 @@ def _misplaced_key(name: str, node: YamlNode, key: str, *, is_below: bool) -> Mi
 
 
 def _declared(node: StartedNode, own_node: NodeFacts) -> Iterator[Fact]:
-    """Yield the parameters that a node of the workspace declares and reads."""
+    """Yield the parameters that a node of the workspace declares and reads.
+
+    One for which the node asks has_parameter() need not be declared.
+    """
     owner = f"{node.package}/{node.executable}"
+    guarded = {parameter.name for parameter in own_node.parameters if parameter.is_guard}
     for parameter in own_node.parameters:
         at = parameter.location
         if parameter.name is None:
             yield Open("parameter", owner)
+        elif parameter.name in guarded and not parameter.is_declared:
+            continue
         elif parameter.is_declared:
             yield Definition("parameter", parameter.name, at, owner)
         else:
@@ -386,7 +393,17 @@ def _parameter_uses(
     """
     owner = f"{node.package}/{node.executable}"
     shared = {*workspace.installed.wildcard_places(node), *_places_of_others(workspace, node)}
+    own_node = workspace.code.own_node(node)
+    # That the code reads it and does not declare it is a mistake of the code.
+    read, declared = set(), set()
+    for parameter in own_node.parameters if own_node is not None else ():
+        if parameter.is_declared:
+            declared.add(parameter.name)
+        elif parameter.is_needed:
+            read.add(parameter.name)
     for name, value in values.items():
+        if name in read - declared:
+            continue
         if value.location not in shared and not name.startswith("qos_overrides."):
             yield Use("parameter", name, value.named_at or value.location, said, owner)
 
@@ -494,7 +511,8 @@ def _other_type(
     message = (
         f"the parameter {name!r} is given {actual}; {reader} declares {declared}{there}, and stops"
     )
-    yield Mismatch(PARAMETER_TYPE, message, given.location, at, is_certain)
+    word = name if given.named_at is None else ""
+    yield Mismatch(PARAMETER_TYPE, message, given.location, at, is_certain, word=word)
 
 
 def _filters(tree: YamlNode | YamlFault | None) -> Iterator[Fact]:
@@ -571,8 +589,26 @@ def _lists_of_plugins(path: str, mapping: Mapping[str, YamlNode]) -> Iterator[De
         owner = f"{path}:{inner.location.line}"
         for name, node in sections.items():
             yield Definition("plugin section", name, node.location, owner)
-        for name, at in _listed(key, inner):
-            yield Use("plugin section", name, at, key, owner)
+        listed = [*_listed(key, inner)]
+        names = [name for name, _ in listed]
+        # Then only a section that is nearly called so is wrong.
+        is_default = not sections.keys() >= set(names) and _is_default(key, names)
+        for name, at in listed:
+            use = Use("plugin section", name, at, key, owner, optional=is_default)
+            yield use._replace(taken=frozenset(names))
+
+
+def _is_default(key: str, names: Sequence[str]) -> bool:
+    """Return whether a list is the default of a parameter, whose plugins need no sections.
+
+    The nodes of Nav2 declare the types of these themselves, and compare the whole list, in its
+    order (nav2_costmap_2d/src/costmap_2d_ros.cpp, nav2_planner/src/planner_server.cpp).
+    """
+    for node in dict.fromkeys(usual_names().values()):
+        for row in rows_of(node):
+            if row.name == key and row.default == names:
+                return True
+    return False
 
 
 def _listed(key: str, node: YamlNode) -> Iterator[tuple[str, Location]]:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 from grader.base.errors import InputError
 from grader.base.names import closest, near
 from grader.base.source import Location
+from grader.ros.installation.installation import Installation
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import parameters_of
@@ -57,7 +58,8 @@ def program_facts(workspace: Workspace) -> Iterator[Fact]:
             workspace.charge(_OF_MISSING)
             missing = _missing_program(node.package, node.executable, programs)
             either = corrections(node.executable, node.location, missing.meant)
-            yield Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+            wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+            yield wrong._replace(word=node.executable)
     yield from _lifecycle(workspace)
 
 
@@ -74,7 +76,8 @@ def _own_program(workspace: Workspace, owner: Package, node: StartedNode) -> Ite
         missing = _why_no_program(owner, node.executable)
         start = Location(owner.path(CMAKE if owner.is_cmake else SETUP), 1, 1)
         either = corrections(node.executable, node.location, missing.meant, start)
-        yield Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+        wrong = Mismatch(PROGRAM_EXISTS, missing.message, node.location, corrections=either)
+        yield wrong._replace(word=node.executable)
     else:
         yield from _not_executed(owner, node)
 
@@ -132,6 +135,9 @@ def _why_no_program(package: Package, name: str) -> _MissingProgram:
             f"a build installs {name!r} in {folder}, not in {home}: see install_scripts of "
             "setup.cfg"
         )
+    if _is_built_only(setup, name):
+        message = f"CMakeLists.txt builds {name!r}, but no install(TARGETS ...) names it"
+        return _MissingProgram(message)
     installed = []
     if setup is not None:
         installed = [*setup.programs, *(copy.target for copy in setup.copies)]
@@ -147,6 +153,15 @@ def _why_no_program(package: Package, name: str) -> _MissingProgram:
     programs = {path.rpartition("/")[2] for path in installed if path.startswith(f"{home}/")}
     names = programs.union(entries)
     return _missing_program(package.name, name, sorted(names))
+
+
+def _is_built_only(setup: Installation | None, name: str) -> bool:
+    """Return whether CMake makes a program that no install() names."""
+    for target in setup.targets if setup is not None else ():
+        is_program = target.kind == "executable" and (target.program or target.name) == name
+        if is_program and not target.is_installed:
+            return True
+    return False
 
 
 def _missing_program(package: str, name: str, programs: Sequence[str]) -> _MissingProgram:

@@ -14,10 +14,18 @@ from grader.ros.config.yaml_values import sections_in
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.package.package import Package
+from grader.ros.workspace.graph.compared_robots import robots_for_launch
 from grader.ros.workspace.graph.started_controllers import Controller, defined_controllers
 from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Fact, Mismatch, Open, Use, corrections
+from grader.ros.workspace.rules.names import (
+    Definition,
+    Fact,
+    Mismatch,
+    Open,
+    Use,
+    corrections,
+)
 from grader.ros.workspace.rules.rule_table import (
     CONTROLLER_STARTED,
     MANAGER_PARAMETERS,
@@ -51,12 +59,34 @@ def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _names_in_spawners(workspace: Workspace) -> Iterator[Fact]:
-    """Yield the controllers that spawners name, and managers that they surely misspell."""
-    for _, node in workspace.launches.nodes:
-        if _is_spawner(node) and _is_defined_by_files(workspace, node.arguments or ()):
+    """Yield the controllers that spawners name, and managers that they surely misspell.
+
+    Where the launch file of a spawner starts no controller manager, that of a robot's driver may
+    have controllers of its own.
+    """
+    for number, (_, launch) in enumerate(workspace.launches.roots):
+        spawners = [node for node in launch.nodes if _is_spawner(node)]
+        spawners = [
+            node for node in spawners if _is_defined_by_files(workspace, node.arguments or ())
+        ]
+        owner = ""
+        if spawners and not _has_manager(workspace, number, launch):
+            owner = f"launch {number}"
+            yield Open("controller", owner)
+            for controller in defined_controllers(workspace):
+                yield Definition("controller", controller.name, controller.location, owner)
+        for node in spawners:
             for name in _named(node.arguments or ()):
-                yield Use("controller", name, node.location, "spawner")
+                yield Use("controller", name, node.location, "spawner", owner)
             yield from _managers_named(workspace, node)
+
+
+def _has_manager(workspace: Workspace, number: int, launch: Launch) -> bool:
+    """Return whether a launch file starts a controller manager, or its robot has one in Gazebo."""
+    if any(_is_manager(node) for node in launch.nodes):
+        return True
+    robots = robots_for_launch(workspace, number).robots
+    return any(robot.has_controller_manager for robot in robots)
 
 
 def _is_spawner(node: StartedNode) -> bool:

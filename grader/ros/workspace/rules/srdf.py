@@ -6,8 +6,10 @@ from contextlib import suppress
 from grader.base.source import Location
 from grader.base.text import quoted
 from grader.ros.urdf.model import Joint, Limit, Robot
+from grader.ros.workspace.graph.compared_robots import ComparedRobots
+from grader.ros.workspace.model.known_robots import KnownRobot
 from grader.ros.workspace.model.workspace import Workspace
-from grader.ros.workspace.rules.names import Definition, Fact, Mismatch, Open, Use, warning
+from grader.ros.workspace.rules.names import Definition, Fact, Mismatch, Open, Use, among, warning
 from grader.ros.workspace.rules.rule_table import (
     DISABLED_PAIRS,
     SRDF_GROUP,
@@ -37,9 +39,11 @@ def srdf_facts(workspace: Workspace) -> Iterator[Fact]:
     for file in files:
         for group in file.root.iterchildren("group"):
             yield Definition("group", group.get("name", ""), file.location(group))
-        robot = _described_robot(workspace, file)
-        if robot is not None:
-            yield from _names(file)
+        known_robot = _described_robot(workspace, file)
+        if known_robot is not None:
+            robot = known_robot.robot
+            for use in _names(file):
+                yield among(use, ComparedRobots((known_robot,)))
             yield from _other_robot(robot, file)
             yield from _empty_groups(file)
             yield from _states(robot, file)
@@ -53,20 +57,20 @@ def _are_groups_computed(workspace: Workspace) -> bool:
     return any("<xacro:" in file.source.text for file in workspace.texts.srdf_files)
 
 
-def _described_robot(workspace: Workspace, file: XmlFile) -> Robot | None:
+def _described_robot(workspace: Workspace, file: XmlFile) -> KnownRobot | None:
     """Return the robot that a file describes.
 
     It is the one of its name, or the only one if no file has its name. The result is None where
     the file is of another robot.
     """
-    robots = [each.robot for each in workspace.robots.known]
-    for robot in robots:
-        if robot.name == file.root.get("name"):
-            return robot
+    robots = workspace.robots.known
+    for known_robot in robots:
+        if known_robot.robot.name == file.root.get("name"):
+            return known_robot
     if len(robots) > 1 or workspace.robots.may_be_others:
         return None
     names = {each.root.get("name") for each in workspace.texts.srdf_files}
-    return robots[0] if robots[0].name not in names else None
+    return robots[0] if robots[0].robot.name not in names else None
 
 
 def _names(file: XmlFile) -> Iterator[Use]:

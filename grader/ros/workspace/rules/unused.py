@@ -45,13 +45,33 @@ _OF_MAP = frozenset(
 def unused_files(workspace: Workspace) -> Iterator[Location]:
     """Yield the installed files whose names no other file of the workspace has.
 
-    A name is compared with or without the ending. Other files may also make it of variables.
+    A name is compared with or without the ending. Other files may also make it of variables. The
+    files beside one whose name is the default of a launch argument are the other choices.
     """
     unnamed = [*_unnamed(workspace)]
     made = {*_made(workspace)} if unnamed else set()
+    offered = {*_offered(workspace)} if unnamed else set()
     for path in unnamed:
-        if not any(pattern.matches(path) for pattern in made):
+        kind = (posixpath.dirname(path), posixpath.splitext(path)[1])
+        if kind not in offered and not any(pattern.matches(path) for pattern in made):
             yield Location(path, 1, 1)
+
+
+def _offered(workspace: Workspace) -> Iterator[tuple[str, str]]:
+    """Yield the folders and endings of files whose names are values of launch arguments.
+
+    A value that is a whole path says nothing of other files.
+    """
+    names: set[str] = set()
+    for _, _, launch in workspace.launches.files:
+        names |= {value for _, value in launch.values if value.endswith(_KINDS)}
+    names = {name for name in names if not name.startswith("/")}
+    for package in workspace.packages if names else ():
+        for path in _installed_data(package):
+            workspace.charge(len(names))
+            if any(f"/{path}".endswith(f"/{name}") for name in names):
+                folder = posixpath.dirname(package.path(path))
+                yield folder, posixpath.splitext(path)[1]
 
 
 def _unnamed(workspace: Workspace) -> Iterator[str]:

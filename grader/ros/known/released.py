@@ -1,0 +1,78 @@
+"""The packages that are released for ROS 2, by repository: the file rosdistro.json.xz.
+
+The file is made of ros/rosdistro by `python -m tests.known.make_released CHECKOUT`, and read when a
+name is looked up first. rosdistro_license.txt is the licence of what is in it. Further names of
+rosdistro (the keys of rosdep) are further keys of the file.
+"""
+
+import json
+import lzma
+from collections.abc import Collection, Mapping
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from grader.ros.known.releases import RELEASES, Release
+
+RELEASED_FILE = Path(__file__).with_name("rosdistro.json.xz")
+
+
+class _ReleasedTable(NamedTuple):
+    """The packages by their names, and the day of the commit that they were read from."""
+
+    date: str
+    releases: Mapping[str, frozenset[Release]]
+    repositories: Mapping[str, str]
+    metapackages: frozenset[str]
+    by_repository: Mapping[str, frozenset[str]]
+
+
+@cache
+def _table() -> _ReleasedTable:
+    data = json.loads(lzma.decompress(RELEASED_FILE.read_bytes()))
+    releases_of: dict[str, frozenset[Release]] = {}
+    repositories: dict[str, str] = {}
+    by_repository: dict[str, frozenset[str]] = {}
+    for repository, groups in data["repositories"].items():
+        names: set[str] = set()
+        for words, group in groups.items():
+            releases = frozenset(release for release in RELEASES if release in words.split())
+            for name in group.split():
+                releases_of[name], repositories[name] = releases, repository
+                names.add(name)
+        by_repository[repository] = frozenset(names)
+    metapackages = frozenset(data["metapackages"].split())
+    return _ReleasedTable(data["date"], releases_of, repositories, metapackages, by_repository)
+
+
+def released_date() -> str:
+    """Return the day of which the packages are: 2026-08-22."""
+    return _table().date
+
+
+def is_released(name: str, releases: Collection[Release] = ()) -> bool:
+    """Return whether a package is released for one of some releases, or without any for one.
+
+    >>> is_released("canopen_core", ["jazzy"]), is_released("canopen_cor")
+    (True, False)
+    """
+    having = _table().releases.get(name, frozenset())
+    return bool(having) and (not releases or not having.isdisjoint(releases))
+
+
+def packages_brought_by(name: str) -> frozenset[str]:
+    """Return the packages that a package may bring, because it seems to be a metapackage of them.
+
+    They are those of its repository, or those of them whose names begin with its own. What its
+    package.xml says is not known here.
+
+    >>> "canopen_core" in packages_brought_by("canopen"), packages_brought_by("rclcpp")
+    (True, frozenset())
+    """
+    if name not in _table().metapackages:
+        return frozenset()
+    repository = _table().repositories[name]
+    others = _table().by_repository[repository] - {name}
+    if name == repository:
+        return others
+    return frozenset(other for other in others if other.startswith(f"{name}_"))

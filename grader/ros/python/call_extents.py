@@ -1,0 +1,25 @@
+"""Where the calls of a Python file end."""
+
+import ast
+from collections.abc import Mapping
+
+from grader.base.source import Source
+from grader.ros.python.parse import Code, Position, location_in, parse, position_of
+
+
+def ends_of_calls(source: Source) -> Mapping[tuple[int, int], int]:
+    """Return the offsets at which calls end, by the line and column at which they begin.
+
+    Of several calls that begin at one place, as in `a.b().c()`, it is the end of the longest.
+    There are none in a file that Python cannot read.
+    """
+    code = parse(source.text.encode("utf-8", "surrogateescape"), source.path)
+    ends: dict[tuple[int, int], int] = {}
+    for node in ast.walk(code.tree) if isinstance(code, Code) else ():
+        if isinstance(node, ast.Call):
+            place = location_in(source, position_of(node))
+            last = Position(node.end_lineno or 0, (node.end_col_offset or 0) + 1)
+            end = location_in(source, last)
+            key, offset = (place.line, place.column), source.offset(end.line, end.column)
+            ends[key] = max(offset, ends.get(key, 0))
+    return ends

@@ -1,0 +1,24 @@
+"""The table of what is said of public workspaces, which were read by hand."""
+
+import re
+import tomllib
+from collections import Counter
+
+from tests.command_line import ROOT
+
+_TABLE = ROOT / "tests/workspace/public_workspaces.toml"
+_LEAST = 0.97  # of the errors are true
+
+
+def test_the_errors_of_public_workspaces_are_true() -> None:
+    """Each error has a place in a known commit; nearly all are true, and the others have a reason."""
+    workspaces = tomllib.loads(_TABLE.read_text(encoding="utf-8"))["workspace"]
+    verdicts: Counter[bool] = Counter()
+    for workspace in workspaces:
+        assert re.fullmatch(r"[\w.-]+/[\w.-]+", workspace["repository"])
+        assert re.fullmatch(r"[0-9a-f]{40}", workspace["commit"])
+        for error in workspace.get("error", ()):
+            assert error["is_true"] == ("why" not in error), error
+            verdicts[error["is_true"]] += len(error["places"])
+    assert len({workspace["repository"] for workspace in workspaces}) == len(workspaces) >= 40
+    assert verdicts[True] >= _LEAST * verdicts.total()
