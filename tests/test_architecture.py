@@ -59,7 +59,7 @@ ROOMS = {
         "authoring",
     ),
     "report": (
-        "locations screen json_data statuses",
+        "causes locations screen json_data statuses",
         "criteria readings",
         "content",
         "drawing examples inspection",
@@ -153,7 +153,7 @@ WEIGHTS = {
     "lab.hints": 36_000,  # functions of complexity at most 10
     "lab.rubric": 10_000,
     "lab.submission": 9_100,  # the release that reads a URDF
-    "report": 51_900,  # capsules in drawings, and functions of complexity at most 10
+    "report": 54_900,  # the screen of an inspection: rows by causes, each error in the first ones
     "ros": 300,
     "ros.config": 5_500,
     "ros.cpp": 12_300,

@@ -91,6 +91,7 @@ class Problem(NamedTuple):
     rule: str = ""  # the name of the rule of a workspace that found it
     related: Location | None = None  # of what it is compared with
     fixes: Fixes = NO_FIXES
+    cause: str = ""  # what it has in common with others that one mistake makes
 
     @property
     def code(self) -> str:

@@ -20,7 +20,7 @@ BALL = part("ball", '<sphere radius="0.05"/>', "-0.2 0 -0.05")
 def rover(*others: str, mass_at: str = "-0.05 0 0") -> str:
     """Return how a robot with two wheels stands and drives, in one line."""
     robot = configuration(base("0.4 0.2 0.05", mass_at), LEFT, RIGHT, *others)
-    return describe_driving(robot, ["left", "right"])
+    return describe_driving(robot, ["left", "right"]).text
 
 
 def test_a_line_on_how_a_robot_stands_and_drives() -> None:
@@ -40,7 +40,7 @@ def test_no_line_on_wheels_that_may_be_omni_wheels() -> None:
     places = (("a", "0.2 0 0", "0 1.5707963 0"), ("b", "0 0.2 0", ALONG), ("c", "0 -0.2 0", ALONG))
     wheels = [part(name, WHEEL, xyz, rpy, ACROSS) for name, xyz, rpy in places]
     robot = configuration(base("0.2 0.2 0.05", "0.01 0 0"), *wheels)
-    assert describe_driving(robot, ["a", "b", "c"]) == ""
+    assert describe_driving(robot, ["a", "b", "c"]).text == ""
     drive = plan_drive(robot, ["a", "b", "c"])
     assert drive is not None
     assert drive.text == "on level ground, it stands level on 'a', 'b' and 'c'"

@@ -21,6 +21,7 @@ _SELECT = (
 )
 _IGNORE = "Do not show problems whose code begins so, or of a rule; repeatable."
 _RELATIVE = "The frame of the poses; default: the root."
+_VERBOSE = "Spell out all problems, and show the tree and the poses of each robot (terminal)."
 _DISTRO = "The release of ROS 2, such as humble; default: what the files state."
 
 
@@ -48,6 +49,7 @@ def inspect(
     ignore: Annotated[
         list[str] | None, typer.Option(metavar="CODE", help=_IGNORE, autocompletion=offer_codes)
     ] = None,
+    verbose: Annotated[bool, typer.Option("--verbose", help=_VERBOSE)] = False,
 ) -> int:
     """Show robots as ROS 2 reads them, and what is wrong in packages.
 
@@ -88,5 +90,6 @@ def inspect(
         watch=watch,
         select=select,
         ignore=ignore,
+        verbose=verbose,
     )
     return ExitCode.PASSED if inspect_and_save(request, TERMINAL) else ExitCode.FAILED

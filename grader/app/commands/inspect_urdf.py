@@ -34,6 +34,8 @@ from grader.ros.api import (
 )
 
 _MAX_NAMED = 20
+# The rules of wheels that are on the wrong side, or turn backward, which drive a robot elsewhere.
+_OF_COURSE = ("wheel-axis", "wheel-side")
 
 
 class InspectRequest(NamedTuple):
@@ -51,6 +53,7 @@ class InspectRequest(NamedTuple):
     watch: bool  # whether to inspect again after every change
     select: Sequence[str] | None  # the codes of the only problems to show, or their beginnings
     ignore: Sequence[str] | None  # those of problems not to show
+    verbose: bool = False  # whether the terminal shows everything
 
     @property
     def saves(self) -> Saves[InspectFormat]:
@@ -108,9 +111,12 @@ def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
 
 def _show_and_save(inspection: Inspection, request: InspectRequest, terminal: Terminal) -> None:
     screen = terminal.screen()
-    texts = {file: render_inspection(inspection, kind) for kind, file in request.saves}
+    verbose = request.verbose
+    texts = {}
+    for kind, file in request.saves:
+        texts[file] = render_inspection(inspection, kind, verbose=verbose)
     robots = [Path(request.path, robot.path) for robot in inspection.robots]
-    terminal.print(render_inspection(inspection, request.output_format, screen))
+    terminal.print(render_inspection(inspection, request.output_format, screen, verbose=verbose))
     save_texts(texts, request.path, (*robots, *inspection.besides))
 
 
@@ -141,10 +147,21 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
         return without_ignored(inspection, opened.whole_tree, _texts_of(chosen), selection)
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
-    robots = tuple(_inspected(opened, robot, joints, relative_to) for robot in read)
     problems, extent = opened.package_problems(), opened.extent()
+    is_course_said = any(problem.rule in _OF_COURSE for problem in problems)
+    robots = []
+    for urdf in read:
+        robots.append(_inspected(opened, urdf, joints, relative_to, with_course=not is_course_said))
     problems += opened.mesh_size_problems()  # last: it takes what is left of the budget
-    inspection = Inspection(opened.id, robots, tuple(problems), extent, opened.source, base)
+    inspection = Inspection(
+        opened.id,
+        tuple(robots),
+        tuple(problems),
+        extent,
+        opened.source,
+        base,
+        is_posed=bool(joints) or relative_to is not None,
+    )
     return without_ignored(inspection, opened.whole_tree, [*opened.whole_tree.files], selection)
 
 
@@ -204,11 +221,17 @@ def _which_one(path: str, robots: Sequence[Read]) -> str:
 
 
 def _inspected(
-    opened: OpenedWorkspace, urdf: Read, joints: Sequence[str], relative_to: str | None
+    opened: OpenedWorkspace,
+    urdf: Read,
+    joints: Sequence[str],
+    relative_to: str | None,
+    *,
+    with_course: bool = True,
 ) -> InspectedRobot:
     """Return a robot with its joints at given positions.
 
-    Raises GraderError for other joints and frames.
+    `with_course` warns of wheels that do not drive it straight ahead. Raises GraderError for other
+    joints and frames.
     """
     robot = _configuration(urdf.loaded, joints)
     if robot is not None and relative_to is None:
@@ -225,7 +248,12 @@ def _inspected(
     from grader.ros.api import describe_driving  # late: few robots name their wheels
 
     wheels = tuple(robot.robot.joint(joint).child for joint in driven)
-    return replace(inspected, driving=describe_driving(robot, wheels), wheels=wheels)
+    driving = describe_driving(robot, wheels)
+    problem = opened.standing_problem(urdf, driving, with_course=with_course)
+    if problem is None:
+        return replace(inspected, driving=driving.text, wheels=wheels)
+    reading = reading._replace(problems=(*reading.problems, problem))
+    return replace(inspected, reading=reading, wheels=wheels)
 
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from grader.base.reuse import Memory
     from grader.ros.launch.launch_model import ParameterValue
     from grader.ros.package.mesh_loading import Around, MeshLoader
+    from grader.ros.urdf.driving import DescribedDriving
     from grader.ros.workspace.extent import Extent
     from grader.ros.workspace.index.all_names import WorkspaceNames
     from grader.ros.workspace.model.workspace import Workspace
@@ -114,6 +115,14 @@ class OpenedWorkspace:
         if joints or self.is_single:
             return joints
         return joints_of_controllers(self.workspace)
+
+    def standing_problem(
+        self, robot: Read, driving: "DescribedDriving", *, with_course: bool
+    ) -> Problem | None:
+        """Return that one of its robots leans, or is not driven straight ahead `with_course`."""
+        from grader.ros.workspace.rules.standing import standing_problem  # late: as above
+
+        return standing_problem(robot.path, driving, with_course=with_course)
 
     def meshes_of(self, robot: Read) -> "MeshLoader":
         """Return what loads the meshes of one of its robots, for pictures."""
