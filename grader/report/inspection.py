@@ -182,6 +182,8 @@ def problem_counts(inspection: Inspection) -> str:
         return ", ".join(counts)
     if inspection.ignored:
         return "no other problems"
+    if inspection.extent is not None and not inspection.extent.is_whole:
+        return "no problems in what was read"
     return "the names agree"
 
 

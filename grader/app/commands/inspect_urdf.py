@@ -14,6 +14,7 @@ from grader.app.ignoring import Selection, without_ignored
 from grader.app.saving import check_saves, save_texts
 from grader.app.settings import Settings, read_codes, read_settings
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
+from grader.base.problems import Problem
 from grader.base.text import MAX_NAMED, enumerated, printable_path
 from grader.files.tree import overlaid
 from grader.report.formats import InspectFormat, render_inspection
@@ -148,10 +149,7 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
     problems, extent = opened.package_problems(), opened.extent()
-    is_course_said = any(problem.rule in _OF_COURSE for problem in problems)
-    robots = []
-    for urdf in read:
-        robots.append(_inspected(opened, urdf, joints, relative_to, with_course=not is_course_said))
+    robots = [_inspected(opened, urdf, joints, relative_to, problems) for urdf in read]
     problems += opened.mesh_size_problems()  # last: it takes what is left of the budget
     inspection = Inspection(
         opened.id,
@@ -225,13 +223,12 @@ def _inspected(
     urdf: Read,
     joints: Sequence[str],
     relative_to: str | None,
-    *,
-    with_course: bool = True,
+    of_packages: Sequence[Problem] = (),
 ) -> InspectedRobot:
     """Return a robot with its joints at given positions.
 
-    `with_course` warns of wheels that do not drive it straight ahead. Raises GraderError for other
-    joints and frames.
+    Its problems do not repeat those of the packages. Raises GraderError for other joints and
+    frames.
     """
     robot = _configuration(urdf.loaded, joints)
     if robot is not None and relative_to is None:
@@ -239,7 +236,7 @@ def _inspected(
     elif robot is not None and relative_to is not None and not robot.robot.has_link(relative_to):
         known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
-    reading = urdf.loaded._replace(problems=opened.problems_of(urdf))
+    reading = urdf.loaded._replace(problems=opened.problems_once(urdf, of_packages))
     meshes = opened.meshes_of(urdf)
     inspected = InspectedRobot(urdf.path, reading, robot, relative_to, meshes=meshes)
     driven = opened.driven_joints(urdf)
@@ -249,7 +246,8 @@ def _inspected(
 
     wheels = tuple(robot.robot.joint(joint).child for joint in driven)
     driving = describe_driving(robot, wheels)
-    problem = opened.standing_problem(urdf, driving, with_course=with_course)
+    is_course_said = any(problem.rule in _OF_COURSE for problem in of_packages)
+    problem = opened.standing_problem(urdf, driving, with_course=not is_course_said)
     if problem is None:
         return replace(inspected, driving=driving.text, wheels=wheels)
     reading = reading._replace(problems=(*reading.problems, problem))

@@ -35,6 +35,7 @@ _SCREEN = 40  # rows, in which each error is
 _MAX_CAUSES = 35  # errors that have a row of their own
 _MAX_EXCERPTS = 10
 _MIN_MESSAGE = 24  # columns of a message that is cut, for which its place is cut
+_LEAST_ROBOTS = 5  # rows, with the title and the one above it
 _STYLES = dict(zip(EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=True))
 _EVERYTHING = "--verbose spells out all of it, --format concise lists each problem"
 
@@ -47,10 +48,11 @@ def inspection_terminal(inspection: Inspection, console: Console, *, verbose: bo
     problems = _ProblemRows(inspection, console, verbose=verbose)
     # The title of problems, its empty row, that above the remarks, and the last row of problems.
     taken = page.height + sum(map(height_of, remarks)) + problems.height + 4
-    robots = _robot_rows(inspection, console, inf if verbose else _SCREEN - taken)
-    taken += sum(map(height_of, robots))
+    robots = [*_robot_rows(inspection, console)]
+    taken += sum(map(height_of, robots[:_LEAST_ROBOTS]))
     room = _RowsLeft(inf if verbose else _SCREEN - taken)
     problems.spell_out(room)
+    robots = _first_robots(robots, room)
     if inspection.problems:
         page.title("Problems")
         page.rows.extend(problems)
@@ -86,24 +88,34 @@ def _remarks_on(inspection: Inspection) -> Iterator[str]:
         yield f"{inspection.ignored} ignored"
 
 
-def _robot_rows(inspection: Inspection, console: Console, room: float) -> list[Text]:
-    """Return a row for each robot of a workspace below a title; if too many, the first ones."""
+def _robot_rows(inspection: Inspection, console: Console) -> Iterator[Text]:
+    """Yield a row for each robot of a workspace, below a title; the only one has several rows."""
     if inspection.extent is None or not inspection.robots:
-        return []
+        return
     is_only = len(inspection.robots) == 1
-    rows = [Text(), Text("Robot" if is_only else "Robots", "bold")]
-    most = max(1, room - len(rows))
-    for index, robot in enumerate(inspection.robots):
-        rest = len(inspection.robots) - index
-        if rest > 1 and index + 1 >= most:
-            rows.append(Text(f"{' ' * INDENT}... and {rest} more (--verbose)"))
-            break
-        line = (robot_line(robot), _STYLES[robot.verdict])
-        text = Text.assemble(" " * INDENT, printable(robot.path), ": ", line)
-        rows.append(
-            block(console, text, 2 * INDENT, Text()) if is_only else shortened(console, text)
-        )
-    return rows
+    yield Text()
+    yield Text("Robot" if is_only else "Robots", "bold")
+    for robot in inspection.robots:
+        path, line = printable(robot.path), robot_line(robot)
+        if not is_only:
+            room = console.width - INDENT - len(line) - len(": ")
+            path = _end_of(path, max(room, _MIN_MESSAGE))
+        text = Text.assemble(" " * INDENT, path, ": ", (line, _STYLES[robot.verdict]))
+        yield block(console, text, 2 * INDENT, Text()) if is_only else shortened(console, text)
+
+
+def _first_robots(rows: list[Text], room: "_RowsLeft") -> list[Text]:
+    """Return the rows of robots; where there is no room for all, the first ones and their number.
+
+    The first few rows are in no other room.
+    """
+    rest = rows[_LEAST_ROBOTS:]
+    if len(rest) <= room.rows:
+        room.rows -= len(rest)
+        return rows
+    most = _LEAST_ROBOTS + max(0, int(room.rows)) - 1
+    room.rows = 0
+    return [*rows[:most], Text(f"{' ' * INDENT}... and {len(rows) - most} more (--verbose)")]
 
 
 def _whole_robots(

@@ -7,8 +7,9 @@ from typing import TypeGuard
 from grader.base.errors import InputError, NotDecided
 from grader.base.reuse import Memory
 from grader.base.source import Source
+from grader.files.limits import ARCHIVES
 from grader.files.reading import URDF_LIMIT
-from grader.files.tree import Tree
+from grader.files.tree import Tree, parents
 from grader.ros.known.releases import Release, StatedReleases
 from grader.ros.package.finding import (
     is_backup,
@@ -85,7 +86,7 @@ def _read_robots(
     memory: Memory | None,
     releases: Collection[Release],
 ) -> list[Read | Unreadable]:
-    robot_files = find_robots(tree, max_size=max_size)
+    robot_files = _without_packed_copies(tree, find_robots(tree, max_size=max_size))
     launched = launched_paths(tree, packages, robot_files)
     included = parts_of(robot_files) | _chosen_parts(tree, robot_files)
     whole = Budget(READING + (packages[0].work.limit if packages else 0))
@@ -109,6 +110,23 @@ def _read_robots(
         is_whole = not _is_empty(robot) and (is_loaded or not _is_part(robot))
         (robots if is_whole else parts).append(robot)
     return robots or [part for part in parts if not _is_empty(part)]
+
+
+def _without_packed_copies(tree: Tree, robot_files: Sequence[RobotFile]) -> list[RobotFile]:
+    """Return the files without those in archives that are also outside, with equal bytes."""
+    unpacked = []
+    for file in robot_files:
+        if not any(folder.lower().endswith(ARCHIVES) for folder in parents(file.path)):
+            unpacked.append(file)
+    kept = []
+    for file in robot_files:
+        copies = []
+        if file not in unpacked:
+            copies = [other for other in unpacked if other.name == file.name]
+        data = tree.read(file.path, URDF_LIMIT) if copies else None
+        if data is None or all(tree.read(copy.path, URDF_LIMIT) != data for copy in copies):
+            kept.append(file)
+    return kept
 
 
 def _whole(

@@ -1,6 +1,6 @@
 """Opened files: their packages, and their robots."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -102,6 +102,14 @@ class OpenedWorkspace:
         from grader.ros.package.incomplete import problems_of_robot  # late: few commands list them
 
         return problems_of_robot(robot, (*self.packages, *self.ros1_packages), self.whole_tree)
+
+    def problems_once(
+        self, robot: Read, of_packages: Sequence[Problem] = ()
+    ) -> tuple[Problem, ...]:
+        """Return the same without what repeats another problem, also one of the packages."""
+        from grader.ros.workspace.rules.one_cause import without_repetitions  # late: as above
+
+        return without_repetitions(self.problems_of(robot), of_packages)
 
     def driven_joints(self, robot: Read) -> list[str]:
         """Return the joints of the wheels that a plugin in a robot, or a controller, drives.

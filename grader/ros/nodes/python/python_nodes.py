@@ -41,6 +41,7 @@ from grader.ros.nodes.python.node_slips import Program as StartedProgram
 from grader.ros.nodes.python.node_slips import node_slips
 from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
 from grader.ros.package.entry_points import (
+    entry_as_meant,
     entry_points,
     module_path,
     read_module,
@@ -321,7 +322,8 @@ def _programs(
         by_key.setdefault(node.location, []).append(node)
         by_key.setdefault(node.class_name, []).append(node)
     created_by = partial(_created_by, package.budget, modules, by_key)
-    for entry in entry_points(package):
+    for written in entry_points(package):
+        entry = entry_as_meant(package, written)
         created = created_by(entry.module, entry.function)
         path = module_path(package, entry.module) or ""
         yield NodeProgram(entry.name, created, entry.location, path, entry.function)

@@ -1,8 +1,8 @@
 """What the workspace's packages open, declare and define in their code and interfaces."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 from grader.ros.known.package_rows import children_by_node, program_row
 from grader.ros.launch.launch_model import StartedNode
@@ -10,6 +10,7 @@ from grader.ros.nodes.node_facts import NodeFacts, PackageNodes
 from grader.ros.nodes.python.python_nodes import read_nodes
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.package_interfaces import PackageInterfaces, read_interfaces
+from grader.ros.package.program_names import meant_program, program_names
 from grader.ros.workspace.model.installed_yaml import InstalledFiles
 from grader.ros.workspace.model.launches import MANAGER
 from grader.ros.workspace.model.text_files import MAX_YAML
@@ -59,14 +60,21 @@ class OwnCode:
         return interfaces_by_package
 
     def own_node(self, node: StartedNode) -> NodeFacts | None:
-        """Return the Python node of the workspace that a program starts.
+        """Return the node of the workspace that a program starts.
 
-        The result is None if it starts none that is known.
+        Of a program that is not there it is that of the one which its name means. The result is
+        None if it starts none that is known.
         """
         owner = self.folder.package_of(node)
         if owner is None or owner.name not in self.by_package:
             return None
-        return self._nodes_by_program.get((owner.name, node.executable))
+        program = self._meant_program(owner, node.package, node.executable)
+        return self._nodes_by_program.get((owner.name, program))
+
+    @cached_property
+    def _meant_program(self) -> Callable[[Package, str, str], str]:
+        """What the program of a package is called that a name means; each is searched once."""
+        return cache(_meant_program)
 
     @cached_property
     def _nodes_by_program(self) -> Mapping[tuple[str, str], NodeFacts]:
@@ -106,6 +114,12 @@ class OwnCode:
         """
         children = frozenset(children_by_node().get(name, ()))
         return children | self.installed.typed_sections if name == MANAGER else children
+
+
+def _meant_program(owner: Package, package: str, name: str) -> str:
+    if owner.has_program(package, name) is not False:
+        return name
+    return meant_program(name, program_names(owner)) or name
 
 
 def _program_texts(package: Package) -> tuple[tuple[str, bytes | None], ...]:

@@ -70,7 +70,8 @@ def _undeclared(
         )
         either = corrections(name, at, meant, start if meant not in used else None)
         is_certain = name not in brought
-        yield Mismatch(DEPENDENCY_DECLARED, message, at, start, is_certain, either)
+        lacked = name if not guess else ""
+        yield Mismatch(DEPENDENCY_DECLARED, message, at, start, is_certain, either, lacked=lacked)
 
 
 def _declared(package: Package) -> set[str]:

@@ -88,6 +88,8 @@ class Mismatch(NamedTuple):
         Correction, ...
     ] = ()  # with each of which it agrees: first of the use, then of the definition
     fixes: Fixes = NO_FIXES  # of what is no name
+    cause: str = ""  # what it has in common with others that one mistake makes
+    lacked: str = ""  # the package that package.xml lacks, and is to be added
 
     @property
     def family(self) -> AnyFamily:
