@@ -82,6 +82,7 @@ class InspectFormat(FormatRow):
     SVG = "svg", "writers.inspection_svg:inspection_svg"
     HTML = "html", "pages.inspection_page:inspection_html"
     CONCISE = "concise", "writers.concise:concise_inspection"
+    JUNIT = "junit", "writers.inspection_junit:inspection_junit", "", "xml"
     SARIF = "sarif", "writers.sarif:sarif_inspection"
     CODEQUALITY = (
         "codequality",

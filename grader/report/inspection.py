@@ -105,6 +105,7 @@ class Inspection:
     base: Base = _NO_BASE  # its place in a repository
     besides: tuple[Path, ...] = ()  # the files that were read besides a single one
     ignored: int = 0  # how many problems are ignored, and not among these
+    known: int = 0  # how many are known from a baseline, and not among these either
     is_posed: bool = False  # whether positions of joints, or a frame of poses, are given
 
     @property
@@ -180,7 +181,7 @@ def problem_counts(inspection: Inspection) -> str:
             counts.append(counted(count, severity))
     if counts:
         return ", ".join(counts)
-    if inspection.ignored:
+    if inspection.ignored or inspection.known:
         return "no other problems"
     if inspection.extent is not None and not inspection.extent.is_whole:
         return "no problems in what was read"

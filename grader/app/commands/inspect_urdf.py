@@ -10,8 +10,9 @@ from math import isfinite, nan
 from pathlib import Path
 from typing import NamedTuple
 
+from grader.app.baseline import baseline_text, read_baseline, without_known
 from grader.app.ignoring import Selection, without_ignored
-from grader.app.saving import check_saves, save_texts
+from grader.app.saving import check_file, check_saves, save_texts
 from grader.app.settings import Settings, read_codes, read_settings
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
 from grader.base.problems import Problem
@@ -55,6 +56,8 @@ class InspectRequest(NamedTuple):
     select: Sequence[str] | None  # the codes of the only problems to show, or their beginnings
     ignore: Sequence[str] | None  # those of problems not to show
     verbose: bool = False  # whether the terminal shows everything
+    baseline: str | None = None  # the file of findings that are not shown
+    write_baseline: str | None = None  # the file to write the findings to
 
     @property
     def saves(self) -> Saves[InspectFormat]:
@@ -85,10 +88,12 @@ def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
     """
     saves = request.saves
     check_saves(saves, (), request.path)
+    if request.write_baseline is not None:
+        check_file("--write-baseline", Path(request.write_baseline), request.path)
+    known = read_baseline(request.baseline) if request.baseline is not None else None
     if not request.watch:
         inspection = inspect_path(request, terminal.warn)
-        _show_and_save(inspection, request, terminal)
-        return inspection.is_passed
+        return _show_and_save(inspection, request, known, terminal)
     # Late: few inspections are watched.
     from grader.app.commands.repeating import refuse_watching, repeat_on_change, titled_with_time
 
@@ -104,21 +109,35 @@ def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
         if not is_first:
             terminal.print(titled_with_time("", terminal.screen()))
         is_first = False
-        _show_and_save(inspection, request, terminal)
+        _show_and_save(inspection, request, known, terminal)
 
     repeat_on_change([Path(request.path)], [file for _, file in saves], terminal, work, show)
     return True
 
 
-def _show_and_save(inspection: Inspection, request: InspectRequest, terminal: Terminal) -> None:
+def _show_and_save(
+    inspection: Inspection,
+    request: InspectRequest,
+    known: frozenset[str] | None,
+    terminal: Terminal,
+) -> bool:
+    """Show and save an inspection without what is known of a baseline.
+
+    Return whether nothing else is certainly wrong.
+    """
     screen = terminal.screen()
     verbose = request.verbose
     texts = {}
+    if request.write_baseline is not None:
+        texts[Path(request.write_baseline)] = baseline_text(inspection)
+    if known is not None:
+        inspection = without_known(inspection, known)
     for kind, file in request.saves:
         texts[file] = render_inspection(inspection, kind, verbose=verbose)
     robots = [Path(request.path, robot.path) for robot in inspection.robots]
     terminal.print(render_inspection(inspection, request.output_format, screen, verbose=verbose))
     save_texts(texts, request.path, (*robots, *inspection.besides))
+    return inspection.is_passed
 
 
 def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:

@@ -78,7 +78,7 @@ def _head(inspection: Inspection) -> Text:
 
 
 def _remarks_on(inspection: Inspection) -> Iterator[str]:
-    """Yield what is known of releases and of driving, and how many problems are ignored."""
+    """Yield what is known of releases and of driving, and how many problems are not shown."""
     shown = inspection.robot
     if inspection.extent is not None:
         yield inspection.extent.words
@@ -86,6 +86,8 @@ def _remarks_on(inspection: Inspection) -> Iterator[str]:
         yield printable(shown.driving)
     if inspection.ignored:
         yield f"{inspection.ignored} ignored"
+    if inspection.known:
+        yield f"{inspection.known} known from the baseline"
 
 
 def _robot_rows(inspection: Inspection, console: Console) -> Iterator[Text]:
