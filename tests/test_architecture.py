@@ -87,7 +87,7 @@ ROOMS = {
         "review",
     ),
     "app": (
-        "bundle saving settings",
+        "baseline bundle saving settings",
         "ignoring hints_and_fix",
         "grading",
         "commands editor",
@@ -141,7 +141,7 @@ ROOMS_WITH_WEIGHTS = ("ros", "lab")  # the other packages have one limit each
 # How many nodes a room may have, what is beside rooms counted for its package. A limit is at most 2 % above the figure.
 # It is raised with its reason in the line: what code weighs grows with what it can do, and with nothing else.
 WEIGHTS = {
-    "app": 36_200,
+    "app": 37_000,  # the baseline of an inspection
     "base": 18_500,  # a problem has its fixes; edits of tags, which were in lab.hints; functions that do one thing
     "classroom": 70_000,  # functions of complexity at most 10
     "files": 11_800,

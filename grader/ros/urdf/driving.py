@@ -79,9 +79,12 @@ def describe_driving(robot: Configuration, wheels: Sequence[str]) -> DescribedDr
 
 
 def _find_leaning(standing: StandingRobot) -> list[RobotFault]:
-    """Return that a robot leans, on what is no wheel if there is such a link."""
+    """Return that a robot leans, on what is no wheel if there is such a link.
+
+    A robot that rests on its wheels and its base may be one without a caster, or one that balances.
+    """
     tilt = standing.rest.tilt
-    if not tilt > _LEANING:
+    if not tilt > _LEANING or {*standing.touching} == {*standing.named, standing.base}:
         return []
     text = f"it leans by {in_degrees(tilt)} on {in_quotes(standing.touching)}"
     others = [link for link in standing.touching if link not in standing.named]

@@ -212,6 +212,7 @@ class _SectionOfOther(NamedTuple):
     key: str
     keys: tuple[str, ...]
     is_renamed: bool  # whether the node is surely meant
+    is_similar: bool  # whether its name is similar
 
 
 def _meant_sections(
@@ -239,17 +240,18 @@ def _meant_sections(
         meant = _section_meant(workspace, path, node, name, unread)
         if meant is not None:
             is_sure = meant.is_sure or is_only_pair
-            yield _SectionOfOther(node, name, meant.key, sections[meant.key], is_sure)
+            keys = sections[meant.key]
+            yield _SectionOfOther(node, name, meant.key, keys, is_sure, meant.is_sure)
 
 
 def _name_in_files(workspace: Workspace, node: StartedNode, name: str) -> str:
-    """Return the name of a node, or that of a section of its file which surely means it."""
+    """Return the name of a node, or that of a section of its file whose name is similar."""
     for path in workspace.parameters.files_given(node):
         tree = workspace.installed.yaml.get(path)
         nodes = workspace.parameters.files.get(path, ())
         if isinstance(tree, YamlNode):
             for of_other in _meant_sections(workspace, path, tree, nodes):
-                if of_other.is_renamed and of_other.node == node:
+                if of_other.is_similar and of_other.node == node:
                     return of_other.key
     return name
 
