@@ -28,7 +28,7 @@ def inspection_junit(inspection: Inspection) -> str:
     first = etree.SubElement(top, "testsuite", {"name": "grader inspect", **_counts([], 1)})
     case = etree.SubElement(first, "testcase", name=title, classname="grader.inspect")
     if inspection.extent is not None:
-        etree.SubElement(case, "system-out").text = f"{inspection.extent.words}\n"
+        etree.SubElement(case, "system-out").text = f"{printable(inspection.extent.words)}\n"
     for path, of_file in groupby(findings, key=lambda finding: finding.location.path):
         some = [*of_file]
         attributes = {"name": printable(path), **_counts(some)}

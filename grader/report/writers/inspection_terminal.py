@@ -35,6 +35,7 @@ _SCREEN = 40  # rows, in which each error is
 _MAX_CAUSES = 35  # errors that have a row of their own
 _MAX_EXCERPTS = 10
 _MIN_MESSAGE = 24  # columns of a message that is cut, for which its place is cut
+_POINTS = "..."
 _LEAST_ROBOTS = 5  # rows, with the title and the one above it
 _STYLES = dict(zip(EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=True))
 _EVERYTHING = "--verbose spells out all of it, --format concise lists each problem"
@@ -196,8 +197,12 @@ class _ProblemRows:
     def spell_out(self, room: _RowsLeft) -> None:
         """Replace rows by whole messages of errors, their places and lines, then the others."""
         texts, complete = self._error_texts, list[int]()
-        for index, cause in enumerate(self._errors):
-            whole = self._whole(cause)
+        wholes = [self._whole(cause) for cause in self._errors]
+        for index, whole in enumerate(wholes):
+            begun = self._begun(self._errors[index], whole)
+            if room.takes(texts[index], begun):
+                texts[index] = begun
+        for index, whole in enumerate(wholes):
             if room.takes(texts[index], whole):
                 texts[index] = whole
                 complete.append(index)
@@ -244,14 +249,26 @@ class _ProblemRows:
         """Return a problem with its whole message."""
         return self._inset(cause, self._place(cause))
 
+    def _begun(self, cause: Cause, whole: Text) -> Text:
+        """Return the first two rows of a problem, without that of its code if it is alone there."""
+        lines = [*whole.split("\n")]
+        most = 3 if len(lines[0]) < len(_name_of(cause)) else 2
+        if len(lines) <= most:
+            return whole
+        last = lines[most - 1][: self._console.width - len(_POINTS)].append(_POINTS)
+        return Text("\n").join([*lines[: most - 1], last])
+
     def _with_places(self, cause: Cause) -> Text:
         """Return a problem with all of its places."""
         if not cause.others:
             return self._whole(cause)
         text = self._inset(cause, self._place(cause._replace(problems=cause.problems[:1])))
-        places = "; ".join(places_text(cause.others, self._urdf))
+        files = [*places_text(cause.others, self._urdf)]
+        places, longest = "; ".join(files), max(len(file.split(" ")[0]) for file in files)
         words = "also at" if cause.is_repeated else "likewise at"
         indent = " " * len(_name_of(cause))
+        if longest >= self._console.width - len(indent):
+            indent = " " * (2 * INDENT)
         below = block(self._console, Text(f"{words} {places}", "dim"), len(indent), Text(indent))
         return text + Text("\n") + below
 
@@ -289,10 +306,9 @@ class _ProblemRows:
 
 def _end_of(text: str, most: int) -> str:
     """Return a text of at most so many columns: of a longer one the end."""
-    points = "..."
     if len(text) <= most:
         return text
-    return points + text[len(text) - most + len(points) :]
+    return _POINTS + text[len(text) - most + len(_POINTS) :]
 
 
 def _name_of(shown: Cause | CauseKind) -> Text:

@@ -64,6 +64,7 @@ def read_workspace(
         ros1_packages=ros1_packages,
         memory=memory,
         stated=stated,
+        reads_meant=True,
     )
 
 

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from grader.base.text import counted, enumerated
+from grader.base.text import counted, enumerated, printable
 from grader.ros.known.releases import StatedReleases
 from grader.ros.package.package import Package
 from grader.ros.workspace.model.workspace import Workspace
@@ -57,7 +57,7 @@ class Extent(NamedTuple):
             (self.expressions, "expression"),
         )
         if calls.unread_files:
-            files = [f"{path} ({count})" for path, count in calls.unread_files]
+            files = [f"{printable(path)} ({count})" for path, count in calls.unread_files]
             unread.append(f"calls in {enumerated(files, _MAX_FILES)}")
         text = f"read: {', '.join(read) or 'nothing'}"
         if unread:

@@ -57,6 +57,7 @@ class OpenedWorkspace:
     neighbours: tuple[Package, ...] = ()  # the packages around a URDF on its own
     budget: Budget = field(default_factory=Budget)  # of the work to read the URDF
     memory: "Memory | None" = None  # what was read of an earlier state of the files
+    reads_meant: bool = False  # whether a misspelling that is reported counts as what is meant
 
     @cached_property
     def workspace(self) -> "Workspace":
@@ -74,7 +75,13 @@ class OpenedWorkspace:
         has_unread = has_other_robots or any(isinstance(robot, Unreadable) for robot in self.robots)
         releases = (self.distro,) if self.distro is not None else self.stated.releases
         return Workspace(
-            self.packages, urdfs, self.whole_tree, has_unread, releases, memory=self.memory
+            self.packages,
+            urdfs,
+            self.whole_tree,
+            has_unread,
+            releases,
+            memory=self.memory,
+            reads_meant=self.reads_meant,
         )
 
     @property

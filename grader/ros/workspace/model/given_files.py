@@ -101,11 +101,11 @@ class GivenFiles:
         return parameters_of(node, partial(self.open, package), name, self._read_tables)
 
     def read_given(self, package: Package, node: StartedNode, name: str) -> NodeParameters:
-        """Return the same as far as it is meant: of misspelt files and keys ros__parameters.
+        """Return the same, where a file that surely is nowhere gives nothing. Raises NotDecided.
 
-        A file that surely is nowhere gives nothing. Raises NotDecided.
+        Where misspelt names count as what is meant, so do those of files and of ros__parameters.
         """
-        read = partial(self._read_tables, are_keys_meant=True)
+        read = partial(self._read_tables, are_keys_meant=self.folder.reads_meant)
         return parameters_of(node, partial(self.open_given, package), name, read)
 
     @cached_property
@@ -143,7 +143,8 @@ class GivenFiles:
     def _find_given(self, package: Package, path: str) -> tuple[bytes, str] | None:
         opened = open_meant(package, path, absent_are_empty=True)
         owner = package.find(share_parts(f"{PREFIX}/{path}")[0])
-        if owner is not None and (opened is None or not opened[0]):
+        is_empty = opened is None or not opened[0]
+        if self.folder.reads_meant and owner is not None and is_empty:
             meant = meant_file(owner, path)
             if meant:
                 return owner.tree.read(meant, MAX_YAML) or b"", owner.path(meant)
@@ -156,7 +157,7 @@ def _meant_source(folder: WorkspaceFolder, path: str) -> str:
     """Return the file that a path means which leads to none; empty if that is not known."""
     name, inside = share_parts(path)
     owner = folder.packages[0].find(name) if folder.packages else None
-    if owner is None:
+    if owner is None or not folder.reads_meant:
         return ""
     meant = meant_file(owner, f"share/{name}/{inside}")
     return owner.path(meant) if meant else ""

@@ -41,10 +41,13 @@ class OwnCode:
         return {package.name: self._nodes_in(package) for package in self.folder.packages}
 
     def _nodes_in(self, package: Package) -> PackageNodes:
+        reads_meant = self.folder.reads_meant
         if self.folder.memory is None:
-            return _nodes_of(package)
-        key = ("nodes", package.name, _program_texts(package))
-        return self.folder.memory.recall(key, None, package.budget, lambda _: _nodes_of(package))
+            return _nodes_of(package, reads_meant=reads_meant)
+        key = ("nodes", package.name, reads_meant, _program_texts(package))
+        return self.folder.memory.recall(
+            key, None, package.budget, lambda _: _nodes_of(package, reads_meant=reads_meant)
+        )
 
     @cached_property
     def interfaces(self) -> Mapping[str, PackageInterfaces]:
@@ -62,13 +65,15 @@ class OwnCode:
     def own_node(self, node: StartedNode) -> NodeFacts | None:
         """Return the node of the workspace that a program starts.
 
-        Of a program that is not there it is that of the one which its name means. The result is
-        None if it starts none that is known.
+        Where misspelt names count as what is meant, so does that of a program. The result is None
+        if it starts none that is known.
         """
         owner = self.folder.package_of(node)
         if owner is None or owner.name not in self.by_package:
             return None
-        program = self._meant_program(owner, node.package, node.executable)
+        program = node.executable
+        if self.folder.reads_meant:
+            program = self._meant_program(owner, node.package, program)
         return self._nodes_by_program.get((owner.name, program))
 
     @cached_property
@@ -134,8 +139,8 @@ def _program_texts(package: Package) -> tuple[tuple[str, bytes | None], ...]:
     return tuple(texts)
 
 
-def _nodes_of(package: Package) -> PackageNodes:
-    nodes = read_nodes(package)
+def _nodes_of(package: Package, *, reads_meant: bool) -> PackageNodes:
+    nodes = read_nodes(package, reads_meant=reads_meant)
     setup = package.installation
     if setup is None or not any(target.sources for target in setup.targets):
         return nodes

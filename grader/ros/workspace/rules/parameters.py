@@ -246,7 +246,7 @@ def _meant_sections(
 
 def _name_in_files(workspace: Workspace, node: StartedNode, name: str) -> str:
     """Return the name of a node, or that of a section of its file whose name is similar."""
-    for path in workspace.parameters.files_given(node):
+    for path in workspace.parameters.files_given(node) if workspace.reads_meant else ():
         tree = workspace.installed.yaml.get(path)
         nodes = workspace.parameters.files.get(path, ())
         if isinstance(tree, YamlNode):
