@@ -111,12 +111,16 @@ class OpenedWorkspace:
         return problems_of_robot(robot, (*self.packages, *self.ros1_packages), self.whole_tree)
 
     def problems_once(
-        self, robot: Read, of_packages: Sequence[Problem] = ()
+        self, robot: Read, of_packages: Sequence[Problem] = (), *, with_assumptions: bool = False
     ) -> tuple[Problem, ...]:
-        """Return the same without what repeats another problem, also one of the packages."""
+        """Return the same without what repeats another problem, also one of the packages.
+
+        Assumptions repeat one unless they are asked for.
+        """
         from grader.ros.workspace.rules.one_cause import without_repetitions  # late: as above
 
-        return without_repetitions(self.problems_of(robot), of_packages)
+        problems = self.problems_of(robot)
+        return without_repetitions(problems, of_packages, with_assumptions=with_assumptions)
 
     def driven_joints(self, robot: Read) -> list[str]:
         """Return the joints of the wheels that a plugin in a robot, or a controller, drives.

@@ -1,7 +1,7 @@
 """Problems that say again what another problem of the same mistake says.
 
-`grader inspect` lists each mistake once. An editor needs all of them: an assumption carries the
-fix of what is assumed.
+`grader inspect` lists each mistake once. An editor needs assumptions, which it shows beside their
+causes: each carries the fix of what is assumed.
 """
 
 from collections.abc import Iterable, Sequence
@@ -15,7 +15,10 @@ _Line = tuple[str, int]
 
 
 def without_repetitions(
-    robot_problems: Sequence[Problem], others: Iterable[Problem] = ()
+    robot_problems: Sequence[Problem],
+    others: Iterable[Problem] = (),
+    *,
+    with_assumptions: bool = False,
 ) -> tuple[Problem, ...]:
     """Return the problems of a robot without those that repeat another one.
 
@@ -25,6 +28,7 @@ def without_repetitions(
     Args:
         robot_problems: The problems of the robot.
         others: Those of the packages.
+        with_assumptions: Whether all assumptions are kept.
     """
     repeated = {_line_of(problem) for problem in others if problem.rule == FILE_INSTALLED.name}
     said = {_line_of(problem) for problem in robot_problems if problem.kind != RECOVERED}
@@ -33,7 +37,7 @@ def without_repetitions(
     for problem in robot_problems:
         if problem.kind == MESH_PATH and _line_of(problem) in repeated:
             continue
-        if problem.kind == RECOVERED:
+        if problem.kind == RECOVERED and not with_assumptions:
             if _line_of(problem) in said:
                 continue
             if is_mismatched:
