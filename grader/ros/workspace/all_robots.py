@@ -28,6 +28,7 @@ from grader.ros.workspace.model.stated_releases import stated_releases
 from grader.ros.workspace.opened import OpenedWorkspace
 
 _MAX_PACKAGES, _MAX_ROBOTS = 1000, 200
+_MAX_ALIKE = 20  # files of one name and size with which one in an archive is compared
 
 
 def read_workspace(
@@ -115,19 +116,20 @@ def _read_robots(
 
 def _without_packed_copies(tree: Tree, robot_files: Sequence[RobotFile]) -> list[RobotFile]:
     """Return the files without those in archives that are also outside, with equal bytes."""
-    unpacked = []
+    packed = []
+    outside: dict[tuple[str, int], list[str]] = {}  # the paths of the others by name and size
     for file in robot_files:
-        if not any(folder.lower().endswith(ARCHIVES) for folder in parents(file.path)):
-            unpacked.append(file)
-    kept = []
-    for file in robot_files:
-        copies = []
-        if file not in unpacked:
-            copies = [other for other in unpacked if other.name == file.name]
-        data = tree.read(file.path, URDF_LIMIT) if copies else None
-        if data is None or all(tree.read(copy.path, URDF_LIMIT) != data for copy in copies):
-            kept.append(file)
-    return kept
+        if any(folder.lower().endswith(ARCHIVES) for folder in parents(file.path)):
+            packed.append(file)
+        else:
+            outside.setdefault((file.name, file.size), []).append(file.path)
+    copies = set()
+    for file in packed:
+        alike = outside.get((file.name, file.size), [])[:_MAX_ALIKE]
+        data = tree.read(file.path, URDF_LIMIT) if alike else None
+        if data is not None and any(tree.read(path, URDF_LIMIT) == data for path in alike):
+            copies.add(file.path)
+    return [file for file in robot_files if file.path not in copies]
 
 
 def _whole(

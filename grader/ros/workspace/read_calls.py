@@ -13,7 +13,7 @@ from grader.ros.workspace.model.text_files import MAX_YAML, read_paths
 from grader.ros.workspace.model.workspace import Workspace
 
 _CODE = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".hh", ".h")
-_COMMENT_OF_CPP = re.compile(rb"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_COMMENT_OF_CPP = re.compile(rb"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 _COMMENT_OF_PYTHON = re.compile(rb"#[^\n]*")
 _CALL = re.compile(
     rb"(?<!def )\b(?:create_(?:lifecycle_)?(?:publisher|subscription|service|client|server)"
