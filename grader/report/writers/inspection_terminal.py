@@ -128,9 +128,11 @@ def _whole_robots(
 
     With `verbose` they are those of all robots.
     """
-    robots, is_only = inspection.robots, len(inspection.robots) == 1
+    is_only = len(inspection.robots) == 1
+    if not (is_only or verbose):
+        return []
     rows = []
-    for robot in robots if is_only or verbose else ():
+    for robot in inspection.robots:
         path = "" if is_only else f" of {printable(robot.path)}"
         for title, lines in lists(robot):
             rows += [Text(), block(console, Text(f"{title}{path}", "bold"), 0)]
@@ -196,28 +198,28 @@ class _ProblemRows:
 
     def spell_out(self, room: _RowsLeft) -> None:
         """Replace rows by whole messages of errors, their places and lines, then the others."""
-        texts, complete = self._error_texts, list[int]()
         wholes = [self._whole(cause) for cause in self._errors]
         for index, whole in enumerate(wholes):
-            begun = self._begun(self._errors[index], whole)
-            if room.takes(texts[index], begun):
-                texts[index] = begun
+            self._replaces(index, self._begun(self._errors[index], whole), room)
+        complete, placed = list[int](), list[int]()
         for index, whole in enumerate(wholes):
-            if room.takes(texts[index], whole):
-                texts[index] = whole
+            if self._replaces(index, whole, room):
                 complete.append(index)
-        for index in [*complete]:
-            text = self._with_places(self._errors[index])
-            if room.takes(texts[index], text):
-                texts[index] = text
-            else:
-                complete.remove(index)
-        for index in complete[: self._most_excerpts]:
-            text = self._with_excerpt(self._errors[index], texts[index])
-            if room.takes(texts[index], text):
-                texts[index] = text
-        self._is_cut = len(complete) < len(self._errors) or bool(self._rest)
+        for index in complete:
+            if self._replaces(index, self._with_places(self._errors[index]), room):
+                placed.append(index)
+        for index in placed[: self._most_excerpts]:
+            text = self._with_excerpt(self._errors[index], self._error_texts[index])
+            self._replaces(index, text, room)
+        self._is_cut = len(placed) < len(self._errors) or bool(self._rest)
         self._spell_out_kinds(room)
+
+    def _replaces(self, index: int, text: Text, room: _RowsLeft) -> bool:
+        """Replace the text of an error if there are rows for the new one; return whether."""
+        if not room.takes(self._error_texts[index], text):
+            return False
+        self._error_texts[index] = text
+        return True
 
     def _spell_out_kinds(self, room: _RowsLeft) -> None:
         for index, kind in enumerate(self._kinds):

@@ -30,21 +30,26 @@ def without_repetitions(
         others: Those of the packages.
         with_assumptions: Whether all assumptions are kept.
     """
-    repeated = {_line_of(problem) for problem in others if problem.rule == FILE_INSTALLED.name}
-    said = {_line_of(problem) for problem in robot_problems if problem.kind != RECOVERED}
-    is_mismatched = any(problem.kind == MISMATCHED_TAG for problem in robot_problems)
+    assumed = [] if with_assumptions else _repeated_assumptions(robot_problems)
+    absent = {_line_of(problem) for problem in others if problem.rule == FILE_INSTALLED.name}
     kept = []
     for problem in robot_problems:
-        if problem.kind == MESH_PATH and _line_of(problem) in repeated:
-            continue
-        if problem.kind == RECOVERED and not with_assumptions:
-            if _line_of(problem) in said:
-                continue
-            if is_mismatched:
-                is_mismatched = False
-                continue
-        kept.append(problem)
+        is_absent_mesh = problem.kind == MESH_PATH and _line_of(problem) in absent
+        if problem not in assumed and not is_absent_mesh:
+            kept.append(problem)
     return tuple(kept)
+
+
+def _repeated_assumptions(problems: Sequence[Problem]) -> list[Problem]:
+    """Return what is assumed of a line with another problem, or of a wrong closing tag."""
+    said = {_line_of(problem) for problem in problems if problem.kind != RECOVERED}
+    repeated, others = list[Problem](), list[Problem]()
+    for problem in problems:
+        if problem.kind == RECOVERED:
+            (repeated if _line_of(problem) in said else others).append(problem)
+    if any(problem.kind == MISMATCHED_TAG for problem in problems):
+        repeated += others[:1]
+    return repeated
 
 
 def _line_of(problem: Problem) -> _Line:
