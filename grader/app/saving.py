@@ -42,6 +42,14 @@ def check_saves(saves: Saves[FormatRow], rubric: Sequence[Path], *paths: str) ->
             raise missing_folder(file)
 
 
+def check_file(option: str, file: Path, path: str) -> None:
+    """Raise InputError if the file that an option names cannot be written beside an input."""
+    refuse_symlinks(file, [path])
+    refuse_inputs(option, file, [] if os.path.isdir(path) else [Path(path)])  # noqa: PTH112
+    if not os.path.isdir(file.parent):  # noqa: PTH112
+        raise missing_folder(file)
+
+
 def save_texts(texts: Mapping[Path, str], path: str, read: Sequence[Path]) -> None:
     """Write the reports on a submission. Raises InputError: then none has changed.
 

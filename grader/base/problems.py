@@ -93,6 +93,7 @@ class Problem(NamedTuple):
     fixes: Fixes = NO_FIXES
     # the call or element in which its location is, whose first line comments are beside
     around: Location | None = None
+    cause: str = ""  # what it has in common with others that one mistake makes
 
     @property
     def code(self) -> str:

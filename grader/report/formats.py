@@ -82,6 +82,7 @@ class InspectFormat(FormatRow):
     SVG = "svg", "writers.inspection_svg:inspection_svg"
     HTML = "html", "pages.inspection_page:inspection_html"
     CONCISE = "concise", "writers.concise:concise_inspection"
+    JUNIT = "junit", "writers.inspection_junit:inspection_junit", "", "xml"
     SARIF = "sarif", "writers.sarif:sarif_inspection"
     CODEQUALITY = (
         "codequality",
@@ -135,13 +136,20 @@ def render(
 
 
 def render_inspection(
-    inspection: "Inspection", kind: InspectFormat, screen: Screen | None = None
+    inspection: "Inspection",
+    kind: InspectFormat,
+    screen: Screen | None = None,
+    *,
+    verbose: bool = False,
 ) -> str:
-    """Return an inspection in a format, for a screen or a file."""
-    function = partial(_load(kind.function), inspection)
+    """Return an inspection in a format, for a screen or a file.
+
+    The format `terminal` spells out everything only if `verbose`.
+    """
+    function = _load(kind.function)
     if kind.needs == "console":
-        return draw(function, screen)
-    text: str = function()
+        return draw(partial(function, inspection, verbose=verbose), screen)
+    text: str = function(inspection)
     return (
         text if kind is InspectFormat.GITHUB else without_commands(text)
     )  # whose lines are commands

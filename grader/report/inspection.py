@@ -15,6 +15,7 @@ from grader.base.problems import Problem
 from grader.base.source import Base, Source
 from grader.base.text import counted, printable
 from grader.base.transforms import Transform
+from grader.report.causes import SEVERITIES, in_order_of_severity
 from grader.report.readings import UNDECIDED, VERDICTS
 from grader.ros.api import Configuration, Joint, Reading
 
@@ -104,6 +105,8 @@ class Inspection:
     base: Base = _NO_BASE  # its place in a repository
     besides: tuple[Path, ...] = ()  # the files that were read besides a single one
     ignored: int = 0  # how many problems are ignored, and not among these
+    known: int = 0  # how many are known from a baseline, and not among these either
+    is_posed: bool = False  # whether positions of joints, or a frame of poses, are given
 
     @property
     def robot(self) -> InspectedRobot | None:
@@ -118,9 +121,9 @@ class Inspection:
 
     @property
     def problems(self) -> tuple[Problem, ...]:
-        """The problems of the robots, then those of packages."""
+        """The problems of the robots and of packages, errors first, then by file and line."""
         robot_problems = [problem for robot in self.robots for problem in robot.problems]
-        return (*dict.fromkeys(robot_problems), *self.package_problems)
+        return in_order_of_severity([*dict.fromkeys(robot_problems), *self.package_problems])
 
     def source(self, path: str) -> Source | None:
         """Return the text of a file, for quoting."""
@@ -165,11 +168,23 @@ def effect(inspection: Inspection) -> str:
     """Return what ROS 2 does with the only robot; else how many problems there are."""
     if inspection.robot is not None:
         return EFFECTS[inspection.robot.verdict]
-    count = len(inspection.problems)
-    if count:
-        return counted(count, "problem")
-    if inspection.ignored:
+    return problem_counts(inspection)
+
+
+def problem_counts(inspection: Inspection) -> str:
+    """Return how many errors, warnings and notes an inspection has."""
+    severities = [problem.severity for problem in inspection.problems]
+    counts = []
+    for severity in SEVERITIES:
+        count = severities.count(severity)
+        if count:
+            counts.append(counted(count, severity))
+    if counts:
+        return ", ".join(counts)
+    if inspection.ignored or inspection.known:
         return "no other problems"
+    if inspection.extent is not None and not inspection.extent.is_whole:
+        return "no problems in what was read"
     return "the names agree"
 
 

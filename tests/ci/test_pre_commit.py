@@ -74,8 +74,16 @@ def test_each_changed_package_is_inspected_once(
     assert main(["notes.py"]) == 0
     assert capsys.readouterr().out == ""
     assert main(package) == 0
+    assert capsys.readouterr().out == ""
+    assert main(["--format", "terminal", *package]) == 0
     assert capsys.readouterr().out.count("ROS 2 loads it") == 1
-    assert main(["--format", "concise", *package, "notes.py", "lone.urdf"]) == 1
-    shown = capsys.readouterr().out
-    assert "lone.urdf:1" in shown
-    assert "Tree" not in shown
+    robot = Path("src/my_robot/urdf/my_robot.urdf")
+    text = robot.read_text(encoding="utf-8")
+    robot.write_text(text.replace('type="fixed"', 'type="fixd"', 1), encoding="utf-8")
+    assert main([*package, "notes.py", "lone.urdf"]) == 1
+    shown = capsys.readouterr().out.splitlines()
+    line = text.partition('type="fixed"')[0].count("\n") + 1
+    assert [row.partition(": ")[0].rpartition(":")[0] for row in shown] == [
+        "lone.urdf:1",
+        f"{robot}:{line}",
+    ]

@@ -9,6 +9,7 @@ import pytest
 from typer.main import get_command
 
 from grader.app.cli.app import COMMANDS, make_app
+from grader.ros.workspace.rules.rule_table import FAMILIES
 from tests.command_line import ROOT, run
 from tests.corpus.cases import read_corpus
 
@@ -56,6 +57,14 @@ def test_help_at_eighty_columns(path: tuple[str, ...]) -> None:
     for line in lines:
         assert line.startswith(" ".join(("grader", *path))), line
         parse(line)
+
+
+def test_the_help_of_inspect_names_what_it_compares() -> None:
+    """Each family of rules has a word."""
+    text = run(("inspect", "--help")).stdout.decode()
+    others = ("fit", "MoveIt", "one machine", "words", "messages", "release")
+    for word in (*FAMILIES, *others):
+        assert word in text, word
 
 
 @pytest.mark.parametrize("command", ["batch", "stats", "diff", "export"])

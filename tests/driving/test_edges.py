@@ -20,7 +20,7 @@ BALL = part("ball", '<sphere radius="0.05"/>', "-0.2 0 -0.05")
 def rover(*others: str, mass_at: str = "-0.05 0 0") -> str:
     """Return how a robot with two wheels stands and drives, in one line."""
     robot = configuration(base("0.4 0.2 0.05", mass_at), LEFT, RIGHT, *others)
-    return describe_driving(robot, ["left", "right"])
+    return describe_driving(robot, ["left", "right"]).text
 
 
 def test_a_line_on_how_a_robot_stands_and_drives() -> None:
@@ -35,12 +35,43 @@ def test_a_line_on_how_a_robot_stands_and_drives() -> None:
     assert rover(BALL, mesh) == ""
 
 
+def faults(*others: str, mass_at: str = "-0.05 0 0") -> tuple[list[str], list[str]]:
+    """Return what is wrong with how a robot with two wheels stands, and with where it drives."""
+    robot = configuration(base("0.4 0.2 0.05", mass_at), LEFT, RIGHT, *others)
+    driving = describe_driving(robot, ["left", "right"])
+    texts = [fault.text for fault in driving.rest_faults]
+    return texts, [fault.text for fault in driving.course_faults]
+
+
+def test_what_is_wrong_with_how_a_robot_stands() -> None:
+    """It leans on a caster, hangs or tips over; one without a caster, which rests on its base, may balance."""
+    assert faults(BALL) == ([], [])
+    assert faults() == ([], [])
+    high = part("ball", '<sphere radius="0.05"/>', "-0.2 0 -0.01")
+    [leaning], _ = faults(high)
+    assert leaning.startswith("it leans by ")
+    assert leaning.endswith(" on 'left', 'right' and 'ball'")
+    four = [
+        part(f"ball{number}", '<sphere radius="0.05"/>', f"{x} {y} -0.1")
+        for number, (x, y) in enumerate(((0.2, 0.1), (0.2, -0.1), (-0.2, 0.1), (-0.2, -0.1)))
+    ]
+    hanging, _ = faults(*four)
+    assert hanging == ["'left' is 50 mm above the ground", "'right' is 50 mm above the ground"]
+    assert faults(mass_at="-0.05 0 0.5")[0] == ["it tips over"]
+    large = part("right", '<cylinder radius="0.12" length="0.05"/>', "0 -0.2 0.02", ALONG, ACROSS)
+    robot = configuration(base("0.4 0.2 0.05", "-0.05 0 0"), LEFT, large, BALL)
+    described = describe_driving(robot, ["left", "right"])
+    assert described.rest_faults == ()
+    assert described.course_faults[0].text.endswith("'left' is 16.7 % smaller")
+    assert described.course_faults[0].at is not None
+
+
 def test_no_line_on_wheels_that_may_be_omni_wheels() -> None:
     """Nobody says what rollers three wheels have whose axes cross: where they drive is not known."""
     places = (("a", "0.2 0 0", "0 1.5707963 0"), ("b", "0 0.2 0", ALONG), ("c", "0 -0.2 0", ALONG))
     wheels = [part(name, WHEEL, xyz, rpy, ACROSS) for name, xyz, rpy in places]
     robot = configuration(base("0.2 0.2 0.05", "0.01 0 0"), *wheels)
-    assert describe_driving(robot, ["a", "b", "c"]) == ""
+    assert describe_driving(robot, ["a", "b", "c"]).text == ""
     drive = plan_drive(robot, ["a", "b", "c"])
     assert drive is not None
     assert drive.text == "on level ground, it stands level on 'a', 'b' and 'c'"

@@ -12,12 +12,18 @@ from grader.files.limits import ROBOT_ENDINGS
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Inspect the packages of the files, which come last; return the highest exit code."""
+    """Inspect the packages of the files, which come last; return the highest exit code.
+
+    Without another format, each finding has a line with its path from the repository's root, where
+    pre-commit runs the hook.
+    """
     options, places = [*arguments], set[Path]()
     while options and Path(options[-1]).is_file():
         place = _find_inspected(Path(options.pop()))
         if place is not None:
             places.add(place)
+    if not any(option.startswith("--format") for option in options):
+        options += ["--format", "concise"]
     codes = [run(["inspect", *options, "--", str(place)]) for place in sorted(places)]
     return max(codes, default=0)
 

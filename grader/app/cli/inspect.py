@@ -13,6 +13,8 @@ from grader.report.invocation import ExitCode
 from grader.ros.api import Release
 
 _PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
+_BASELINE = "Do not show the findings of this file, which --write-baseline wrote."
+_WRITE_BASELINE = "Write the findings, to be shown no more with --baseline."
 _ROBOT = "Show this robot of several whole: its name, or the end of its path."
 _JOINT = "Position of a joint, in radians or metres; repeatable."
 _WATCH = "Inspect again after every change, until Ctrl-C; grader view shows the robot."
@@ -21,11 +23,14 @@ _SELECT = (
 )
 _IGNORE = "Do not show problems whose code begins so, or of a rule; repeatable."
 _RELATIVE = "The frame of the poses; default: the root."
+_VERBOSE = "Spell out all problems, and show the tree and the poses of each robot (terminal)."
 _DISTRO = "The release of ROS 2, such as humble; default: what the files state."
 
 
 def inspect(
-    path: Annotated[str, typer.Argument(metavar="PATH", help=_PATH)],
+    path: Annotated[
+        str, typer.Argument(metavar="[PATH]", help=_PATH, show_default="the current folder")
+    ] = ".",
     robot: Annotated[str, typer.Option(metavar="NAME", help=_ROBOT, show_default=False)] = "",
     joint: Annotated[
         list[str] | None,
@@ -48,16 +53,26 @@ def inspect(
     ignore: Annotated[
         list[str] | None, typer.Option(metavar="CODE", help=_IGNORE, autocompletion=offer_codes)
     ] = None,
+    baseline: Annotated[str | None, typer.Option(metavar="FILE", help=_BASELINE)] = None,
+    write_baseline: Annotated[
+        str | None, typer.Option(metavar="FILE", help=_WRITE_BASELINE)
+    ] = None,
+    verbose: Annotated[bool, typer.Option("--verbose", help=_VERBOSE)] = False,
 ) -> int:
     """Show robots as ROS 2 reads them, and what is wrong in packages.
 
-    A xacro file is expanded as xacro does, without running it. Of several robots each has a line.
-    Of packages it lists what stops a build or a launch file, and the names that files use and
-    nothing defines: files, frames, controllers, parameters, arguments, programs, topics,
-    dependencies; and how much it read. Exits 1 if ROS 2 or xacro rejects a robot, if this cannot be
-    determined statically, or if something else is certainly wrong.
+    A xacro file is expanded as xacro does, without running it. Of packages it lists what stops a
+    build or a launch file, and what does not agree: files, frames, controllers, parameters,
+    arguments, programs, topics, services, interfaces and dependencies that are used and not
+    defined, or have other types; values that contradict the robot; transforms that are no tree;
+    code of nodes that stops or waits; nodes, messages and words that do not fit each other; what
+    MoveIt, one machine or another release of ROS 2 has. Errors come first, and each is in the first
+    40 rows. Exits 1 if ROS 2 or xacro rejects a robot, if this cannot be determined statically, or
+    if something else is certainly wrong.
 
     Examples:
+
+      grader inspect
 
       grader inspect my_robot.urdf
 
@@ -88,5 +103,8 @@ def inspect(
         watch=watch,
         select=select,
         ignore=ignore,
+        verbose=verbose,
+        baseline=baseline,
+        write_baseline=write_baseline,
     )
     return ExitCode.PASSED if inspect_and_save(request, TERMINAL) else ExitCode.FAILED

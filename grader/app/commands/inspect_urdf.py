@@ -10,10 +10,12 @@ from math import isfinite, nan
 from pathlib import Path
 from typing import NamedTuple
 
+from grader.app.baseline import baseline_text, read_baseline, without_known
 from grader.app.ignoring import Selection, without_ignored
-from grader.app.saving import check_saves, save_texts
+from grader.app.saving import check_file, check_saves, save_texts
 from grader.app.settings import Settings, read_codes, read_settings
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
+from grader.base.problems import Problem
 from grader.base.text import MAX_NAMED, enumerated, printable_path
 from grader.files.tree import overlaid
 from grader.report.formats import InspectFormat, render_inspection
@@ -34,6 +36,8 @@ from grader.ros.api import (
 )
 
 _MAX_NAMED = 20
+# The rules of wheels that are on the wrong side, or turn backward, which drive a robot elsewhere.
+_OF_COURSE = ("wheel-axis", "wheel-side")
 
 
 class InspectRequest(NamedTuple):
@@ -51,6 +55,9 @@ class InspectRequest(NamedTuple):
     watch: bool  # whether to inspect again after every change
     select: Sequence[str] | None  # the codes of the only problems to show, or their beginnings
     ignore: Sequence[str] | None  # those of problems not to show
+    verbose: bool = False  # whether the terminal shows everything
+    baseline: str | None = None  # the file of findings that are not shown
+    write_baseline: str | None = None  # the file to write the findings to
 
     @property
     def saves(self) -> Saves[InspectFormat]:
@@ -81,10 +88,12 @@ def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
     """
     saves = request.saves
     check_saves(saves, (), request.path)
+    if request.write_baseline is not None:
+        check_file("--write-baseline", Path(request.write_baseline), request.path)
+    known = read_baseline(request.baseline) if request.baseline is not None else None
     if not request.watch:
         inspection = inspect_path(request, terminal.warn)
-        _show_and_save(inspection, request, terminal)
-        return inspection.is_passed
+        return _show_and_save(inspection, request, known, terminal)
     # Late: few inspections are watched.
     from grader.app.commands.repeating import refuse_watching, repeat_on_change, titled_with_time
 
@@ -100,18 +109,35 @@ def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
         if not is_first:
             terminal.print(titled_with_time("", terminal.screen()))
         is_first = False
-        _show_and_save(inspection, request, terminal)
+        _show_and_save(inspection, request, known, terminal)
 
     repeat_on_change([Path(request.path)], [file for _, file in saves], terminal, work, show)
     return True
 
 
-def _show_and_save(inspection: Inspection, request: InspectRequest, terminal: Terminal) -> None:
+def _show_and_save(
+    inspection: Inspection,
+    request: InspectRequest,
+    known: frozenset[str] | None,
+    terminal: Terminal,
+) -> bool:
+    """Show and save an inspection without what is known of a baseline.
+
+    Return whether nothing else is certainly wrong.
+    """
     screen = terminal.screen()
-    texts = {file: render_inspection(inspection, kind) for kind, file in request.saves}
+    verbose = request.verbose
+    texts = {}
+    if request.write_baseline is not None:
+        texts[Path(request.write_baseline)] = baseline_text(inspection)
+    if known is not None:
+        inspection = without_known(inspection, known)
+    for kind, file in request.saves:
+        texts[file] = render_inspection(inspection, kind, verbose=verbose)
     robots = [Path(request.path, robot.path) for robot in inspection.robots]
-    terminal.print(render_inspection(inspection, request.output_format, screen))
+    terminal.print(render_inspection(inspection, request.output_format, screen, verbose=verbose))
     save_texts(texts, request.path, (*robots, *inspection.besides))
+    return inspection.is_passed
 
 
 def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
@@ -141,10 +167,18 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
         return without_ignored(inspection, opened.whole_tree, _texts_of(chosen), selection)
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
-    robots = tuple(_inspected(opened, robot, joints, relative_to) for robot in read)
     problems, extent = opened.package_problems(), opened.extent()
+    robots = [_inspected(opened, urdf, joints, relative_to, problems) for urdf in read]
     problems += opened.mesh_size_problems()  # last: it takes what is left of the budget
-    inspection = Inspection(opened.id, robots, tuple(problems), extent, opened.source, base)
+    inspection = Inspection(
+        opened.id,
+        tuple(robots),
+        tuple(problems),
+        extent,
+        opened.source,
+        base,
+        is_posed=bool(joints) or relative_to is not None,
+    )
     return without_ignored(inspection, opened.whole_tree, [*opened.whole_tree.files], selection)
 
 
@@ -204,11 +238,16 @@ def _which_one(path: str, robots: Sequence[Read]) -> str:
 
 
 def _inspected(
-    opened: OpenedWorkspace, urdf: Read, joints: Sequence[str], relative_to: str | None
+    opened: OpenedWorkspace,
+    urdf: Read,
+    joints: Sequence[str],
+    relative_to: str | None,
+    of_packages: Sequence[Problem] = (),
 ) -> InspectedRobot:
     """Return a robot with its joints at given positions.
 
-    Raises GraderError for other joints and frames.
+    Its problems do not repeat those of the packages. Raises GraderError for other joints and
+    frames.
     """
     robot = _configuration(urdf.loaded, joints)
     if robot is not None and relative_to is None:
@@ -216,7 +255,7 @@ def _inspected(
     elif robot is not None and relative_to is not None and not robot.robot.has_link(relative_to):
         known = ", ".join(repr(link.name) for link in robot.robot.links[:_MAX_NAMED])
         raise GraderError(f"--relative-to: there is no link {relative_to!r}; the file has: {known}")
-    reading = urdf.loaded._replace(problems=opened.problems_of(urdf))
+    reading = urdf.loaded._replace(problems=opened.problems_once(urdf, of_packages))
     meshes = opened.meshes_of(urdf)
     inspected = InspectedRobot(urdf.path, reading, robot, relative_to, meshes=meshes)
     driven = opened.driven_joints(urdf)
@@ -225,7 +264,13 @@ def _inspected(
     from grader.ros.api import describe_driving  # late: few robots name their wheels
 
     wheels = tuple(robot.robot.joint(joint).child for joint in driven)
-    return replace(inspected, driving=describe_driving(robot, wheels), wheels=wheels)
+    driving = describe_driving(robot, wheels)
+    is_course_said = any(problem.rule in _OF_COURSE for problem in of_packages)
+    problem = opened.standing_problem(urdf, driving, with_course=not is_course_said)
+    if problem is None:
+        return replace(inspected, driving=driving.text, wheels=wheels)
+    reading = reading._replace(problems=(*reading.problems, problem))
+    return replace(inspected, reading=reading, wheels=wheels)
 
 
 def _configuration(urdf: Reading, joints: Sequence[str]) -> Configuration | None:

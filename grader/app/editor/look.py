@@ -92,12 +92,13 @@ def look_at(
         again: Looks at other files.
     """
     opened = read_workspace(tree, tree.name, URDF_LIMIT, {}, memory, settings.stated)
+    package_problems = tuple(opened.package_problems())
     robots = []
     for robot in opened.robots:
         if isinstance(robot, Read):
-            reading = robot.loaded._replace(problems=opened.problems_of(robot))
+            problems = opened.problems_once(robot, package_problems, with_assumptions=True)
+            reading = robot.loaded._replace(problems=problems)
             robots.append(InspectedRobot(robot.path, reading))
-    package_problems = tuple(opened.package_problems())
     extent = opened.extent()
     inspection = Inspection(opened.id, tuple(robots), package_problems, extent, opened.source)
     selection = Selection(settings=settings, folder=root)

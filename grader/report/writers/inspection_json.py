@@ -6,6 +6,7 @@ from functools import cache
 from grader.base.transforms import Transform
 from grader.report.inspection import EFFECTS, InspectedRobot, Inspection, main_root
 from grader.report.json_data import (
+    COUNT,
     NUMBER,
     TEXT,
     TOTAL,
@@ -63,12 +64,20 @@ _ROBOT = JsonObject(
         "poses": (mapping(nullable(_vector(_vector(NUMBER, 4), 4))), _poses),
     }
 )
+_UNREAD_FILE = JsonObject(
+    {"path": (TEXT, lambda file: file[0]), "calls": (COUNT, lambda file: file[1])}
+)
 _EXTENT = JsonObject(
-    each(
-        TOTAL,
-        "packages robots launch_files nodes all_nodes unread_robots cpp_files computed_names "
-        "expressions",
-    )
+    {
+        **each(
+            TOTAL,
+            "packages robots launch_files nodes all_nodes unread_robots cpp_files computed_names "
+            "expressions",
+        ),
+        "calls": (TOTAL, "calls.known"),
+        "all_calls": (TOTAL, "calls.total"),
+        "unread_files": (Many(_UNREAD_FILE), "calls.unread_files"),
+    }
 )
 INSPECTION = JsonObject(
     {

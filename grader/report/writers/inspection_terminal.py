@@ -1,53 +1,85 @@
-"""An inspection on a terminal. Text of files is never interpreted as markup or control codes."""
+"""An inspection on a terminal: each error is in its first rows.
+
+Text of files is never interpreted as markup or control codes.
+"""
 
 from collections.abc import Iterator
+from math import inf
 
 from rich.console import Console
 from rich.text import Text
 
-from grader.base.text import printable
+from grader.base.text import counted, printable
+from grader.report.causes import Cause, CauseKind, causes_of, kinds_of, places_text
 from grader.report.inspection import (
     EFFECTS,
     Inspection,
     effect,
     lists,
     look_of,
+    problem_counts,
     robot_line,
 )
 from grader.report.locations import calls_text
-from grader.report.writers.terminal_page import INDENT, SEVERITY_LOOKS, Page, block, excerpt_block
+from grader.report.writers.terminal_page import (
+    INDENT,
+    SEVERITY_LOOKS,
+    Page,
+    block,
+    excerpt_block,
+    height_of,
+    shortened,
+)
 
-_MAX_PROBLEMS = 30
+_SCREEN = 40  # rows, in which each error is
+_MAX_CAUSES = 35  # errors that have a row of their own
+_MAX_EXCERPTS = 10
+_MIN_MESSAGE = 24  # columns of a message that is cut, for which its place is cut
+_POINTS = "..."
+_LEAST_ROBOTS = 5  # rows, with the title and the one above it
 _STYLES = dict(zip(EFFECTS, ("green", "yellow", "bold red", "bold red"), strict=True))
+_EVERYTHING = "--verbose spells out all of it, --format concise lists each problem"
 
 
-def inspection_terminal(inspection: Inspection, console: Console) -> None:
-    """Print the inspection."""
+def inspection_terminal(inspection: Inspection, console: Console, *, verbose: bool = False) -> None:
+    """Print the inspection, with `verbose` everything in it."""
     page = Page(console, [])
-    shown = inspection.robot
-    name = f", {printable(shown.name)}" if shown is not None else ""
-    verdict = (effect(inspection), _STYLES[look_of(inspection)])
-    path = shown.path if shown is not None else inspection.path
-    page.inset(Text.assemble((printable(path), "bold"), ": ", verdict, name), indent=0)
-    for remark in _remarks_on(inspection):
-        page.inset(Text(remark, "dim"), indent=0)
-    if len(inspection.robots) > 1:
-        page.title("Robots")
-        for robot in inspection.robots:
-            line = (robot_line(robot), _STYLES[robot.verdict])
-            page.inset(Text.assemble(printable(robot.path), ": ", line))
+    page.inset(_head(inspection), indent=0)
+    remarks = [block(console, Text(remark, "dim"), 0) for remark in _remarks_on(inspection)]
+    problems = _ProblemRows(inspection, console, verbose=verbose)
+    # The title of problems, its empty row, that above the remarks, and the last row of problems.
+    taken = page.height + sum(map(height_of, remarks)) + problems.height + 4
+    robots = [*_robot_rows(inspection, console)]
+    taken += sum(map(height_of, robots[:_LEAST_ROBOTS]))
+    room = _RowsLeft(inf if verbose else _SCREEN - taken)
+    problems.spell_out(room)
+    robots = _first_robots(robots, room)
     if inspection.problems:
         page.title("Problems")
-        page.rows.extend(_problem_rows(console, inspection))
-    for title, rows in lists(shown):
-        page.title(title)
-        for name, words in rows:
-            page.inset(Text.assemble(name, (words, "dim")))
+        page.rows.extend(problems)
+    if inspection.problems and remarks:
+        page.leave_row()
+    page.rows.extend(remarks)
+    page.rows.extend(robots)
+    page.rows.extend(_whole_robots(inspection, console, room, verbose=verbose))
     page.print()
 
 
+def _head(inspection: Inspection) -> Text:
+    """Return what ROS 2 does with a robot on its own, else how many problems there are."""
+    style = _STYLES[look_of(inspection)]
+    robot = inspection.robot
+    if inspection.extent is None and robot is not None:
+        path, name = printable(robot.path), f", {printable(robot.name)}"
+        return Text.assemble((path, "bold"), ": ", (effect(inspection), style), name)
+    if not inspection.is_passed:
+        style = _STYLES["rejected"]
+    path = printable(inspection.path)
+    return Text.assemble((path, "bold"), ": ", (problem_counts(inspection), style))
+
+
 def _remarks_on(inspection: Inspection) -> Iterator[str]:
-    """Yield what is known of releases and of driving, and how many problems are ignored."""
+    """Yield what is known of releases and of driving, and how many problems are not shown."""
     shown = inspection.robot
     if inspection.extent is not None:
         yield inspection.extent.words
@@ -55,23 +87,234 @@ def _remarks_on(inspection: Inspection) -> Iterator[str]:
         yield printable(shown.driving)
     if inspection.ignored:
         yield f"{inspection.ignored} ignored"
+    if inspection.known:
+        yield f"{inspection.known} known from the baseline"
 
 
-def _problem_rows(console: Console, inspection: Inspection) -> Iterator[Text]:
-    """Yield problems with their code and location, errors with their source line."""
-    shown = inspection.robot
-    urdf = shown.reading.source.path if shown is not None else ""
-    for problem in inspection.problems[:_MAX_PROBLEMS]:
-        where = problem.location
-        name = f"{problem.code} {problem.severity:<7} "
-        head = Text.assemble("  ", (name, SEVERITY_LOOKS[problem.severity]))
-        file = "line " if where.path == urdf else f"{printable(where.path)}:"
-        place = f"{file}{where.line}{calls_text(where)}: "
-        message = Text.assemble((place, "dim"), printable(problem.message))
-        yield block(console, message, len(head), head)
-        source = inspection.source(where.path) if problem.severity == "error" else None
-        if source is not None:
-            yield excerpt_block(console, source, where, min(len(head), console.width // 5))
-    rest = len(inspection.problems) - _MAX_PROBLEMS
-    if rest > 0:
-        yield block(console, Text(f"... and {rest} more (--format concise lists all)"), INDENT)
+def _robot_rows(inspection: Inspection, console: Console) -> Iterator[Text]:
+    """Yield a row for each robot of a workspace, below a title; the only one has several rows."""
+    if inspection.extent is None or not inspection.robots:
+        return
+    is_only = len(inspection.robots) == 1
+    yield Text()
+    yield Text("Robot" if is_only else "Robots", "bold")
+    for robot in inspection.robots:
+        path, line = printable(robot.path), robot_line(robot)
+        if not is_only:
+            room = console.width - INDENT - len(line) - len(": ")
+            path = _end_of(path, max(room, _MIN_MESSAGE))
+        text = Text.assemble(" " * INDENT, path, ": ", (line, _STYLES[robot.verdict]))
+        yield block(console, text, 2 * INDENT, Text()) if is_only else shortened(console, text)
+
+
+def _first_robots(rows: list[Text], room: "_RowsLeft") -> list[Text]:
+    """Return the rows of robots; where there is no room for all, the first ones and their number.
+
+    The first few rows are in no other room.
+    """
+    rest = rows[_LEAST_ROBOTS:]
+    if len(rest) <= room.rows:
+        room.rows -= len(rest)
+        return rows
+    most = _LEAST_ROBOTS + max(0, int(room.rows)) - 1
+    room.rows = 0
+    return [*rows[:most], Text(f"{' ' * INDENT}... and {len(rows) - most} more (--verbose)")]
+
+
+def _whole_robots(
+    inspection: Inspection, console: Console, room: "_RowsLeft", *, verbose: bool
+) -> list[Text]:
+    """Return the tree and the poses of the only robot, if asked for or where there is room.
+
+    With `verbose` they are those of all robots.
+    """
+    is_only = len(inspection.robots) == 1
+    if not (is_only or verbose):
+        return []
+    rows = []
+    for robot in inspection.robots:
+        path = "" if is_only else f" of {printable(robot.path)}"
+        for title, lines in lists(robot):
+            rows += [Text(), block(console, Text(f"{title}{path}", "bold"), 0)]
+            for name, words in lines:
+                rows.append(block(console, Text.assemble(name, (words, "dim")), INDENT))
+    is_asked = verbose or inspection.extent is None or inspection.is_posed
+    if is_asked or sum(map(height_of, rows)) <= room.rows:
+        return rows
+    return []
+
+
+class _RowsLeft:
+    """The rows of the screen that are left."""
+
+    def __init__(self, rows: float) -> None:
+        self.rows = rows
+
+    def takes(self, old: Text, new: Text) -> bool:
+        """Return whether there are rows for a text in place of another; then it takes them."""
+        more = height_of(new) - height_of(old)
+        if more > max(0, self.rows):
+            return False
+        self.rows -= more
+        return True
+
+
+class _ProblemRows:
+    """The rows of problems: one for each error, and one for each kind of the others.
+
+    `spell_out` replaces them by longer texts, as far as there is room.
+    """
+
+    def __init__(self, inspection: Inspection, console: Console, *, verbose: bool) -> None:
+        self._inspection, self._console = inspection, console
+        shown = inspection.robot if inspection.extent is None else None
+        self._urdf = shown.reading.source.path if shown is not None else ""
+        causes = causes_of(inspection.problems, with_other_messages=not verbose)
+        errors = [cause for cause in causes if cause.problem.severity == "error"]
+        self._kinds = kinds_of(causes[len(errors) :])
+        most, self._most_excerpts = _MAX_CAUSES, _MAX_EXCERPTS
+        if verbose:
+            most = self._most_excerpts = len(errors)
+        self._errors, self._rest = errors[:most], errors[most:]
+        self._error_texts = [self._in_a_row(cause) for cause in self._errors]
+        self._kind_texts = [self._kind_in_a_row(kind) for kind in self._kinds]
+        self._is_cut = bool(self._rest)
+
+    @property
+    def height(self) -> int:
+        """How many rows there are at least, without the last one."""
+        return len(self._error_texts) + len(self._kind_texts) + bool(self._rest)
+
+    def __iter__(self) -> Iterator[Text]:
+        """Iterate over the texts."""
+        yield from self._error_texts
+        if self._rest:
+            count = sum(len(cause.problems) for cause in self._rest)
+            words = counted(count, "more error")
+            yield Text(f"{' ' * INDENT}... and {words} (--verbose)", SEVERITY_LOOKS["error"])
+        yield from self._kind_texts
+        if self._is_cut:
+            yield shortened(self._console, Text(f"{' ' * INDENT}{_EVERYTHING}", "dim"))
+
+    def spell_out(self, room: _RowsLeft) -> None:
+        """Replace rows by whole messages of errors, their places and lines, then the others."""
+        wholes = [self._whole(cause) for cause in self._errors]
+        for index, whole in enumerate(wholes):
+            self._replaces(index, self._begun(self._errors[index], whole), room)
+        complete, placed = list[int](), list[int]()
+        for index, whole in enumerate(wholes):
+            if self._replaces(index, whole, room):
+                complete.append(index)
+        for index in complete:
+            if self._replaces(index, self._with_places(self._errors[index]), room):
+                placed.append(index)
+        for index in placed[: self._most_excerpts]:
+            text = self._with_excerpt(self._errors[index], self._error_texts[index])
+            self._replaces(index, text, room)
+        self._is_cut = len(placed) < len(self._errors) or bool(self._rest)
+        self._spell_out_kinds(room)
+
+    def _replaces(self, index: int, text: Text, room: _RowsLeft) -> bool:
+        """Replace the text of an error if there are rows for the new one; return whether."""
+        if not room.takes(self._error_texts[index], text):
+            return False
+        self._error_texts[index] = text
+        return True
+
+    def _spell_out_kinds(self, room: _RowsLeft) -> None:
+        for index, kind in enumerate(self._kinds):
+            if len(kind.causes) > room.rows + 1:
+                self._is_cut = True
+                continue
+            text = Text("\n").join(map(self._with_places, kind.causes))
+            if room.takes(self._kind_texts[index], text):
+                self._kind_texts[index] = text
+            else:
+                self._is_cut = True
+
+    def _in_a_row(self, cause: Cause) -> Text:
+        """Return an error in one row; a long path without its start."""
+        head, message = _name_of(cause), printable(cause.problem.message)
+        more = f" and {len(cause.others)} more" if cause.others else ""
+        room = self._console.width - len(head) - len(more) - _MIN_MESSAGE
+        where = _end_of(self._line_of(cause), room)
+        text = Text.assemble(head, (f"{where}{more}: ", "dim"), message)
+        return shortened(self._console, text)
+
+    def _kind_in_a_row(self, kind: CauseKind) -> Text:
+        """Return how many warnings or notes of a kind there are."""
+        problem = kind.problem
+        title = f"{kind.total}: {problem.kind.title}"
+        return shortened(self._console, Text.assemble(_name_of(kind), title))
+
+    def _whole(self, cause: Cause) -> Text:
+        """Return a problem with its whole message."""
+        return self._inset(cause, self._place(cause))
+
+    def _begun(self, cause: Cause, whole: Text) -> Text:
+        """Return the first two rows of a problem, without that of its code if it is alone there."""
+        lines = [*whole.split("\n")]
+        most = 3 if len(lines[0]) < len(_name_of(cause)) else 2
+        if len(lines) <= most:
+            return whole
+        last = lines[most - 1][: self._console.width - len(_POINTS)].append(_POINTS)
+        return Text("\n").join([*lines[: most - 1], last])
+
+    def _with_places(self, cause: Cause) -> Text:
+        """Return a problem with all of its places."""
+        if not cause.others:
+            return self._whole(cause)
+        text = self._inset(cause, self._place(cause._replace(problems=cause.problems[:1])))
+        files = [*places_text(cause.others, self._urdf)]
+        places, longest = "; ".join(files), max(len(file.split(" ")[0]) for file in files)
+        words = "also at" if cause.is_repeated else "likewise at"
+        indent = " " * len(_name_of(cause))
+        if longest >= self._console.width - len(indent):
+            indent = " " * (2 * INDENT)
+        below = block(self._console, Text(f"{words} {places}", "dim"), len(indent), Text(indent))
+        return text + Text("\n") + below
+
+    def _with_excerpt(self, cause: Cause, text: Text) -> Text:
+        """Return the text of an error with the line of its source, if that can be read."""
+        at = cause.problem.location
+        source = self._inspection.source(at.path)
+        if source is None:
+            return text
+        indent = min(len(_name_of(cause)), self._console.width // 5)
+        return text + Text("\n") + excerpt_block(self._console, source, at, indent)
+
+    def _inset(self, cause: Cause, where: str) -> Text:
+        """Return a message behind its code and place, or below the code if the place is long."""
+        console, head = self._console, _name_of(cause)
+        text = Text.assemble((where, "dim"), printable(cause.problem.message))
+        if len(where.split(" ", maxsplit=1)[0]) < console.width - len(head):
+            return block(console, text, len(head), head)
+        below = " " * (2 * INDENT)
+        head.rstrip()
+        return head + Text("\n") + block(console, text, len(below), Text(below))
+
+    def _place(self, cause: Cause) -> str:
+        """Return the first place of a cause, and how many others there are."""
+        place = _end_of(self._line_of(cause), self._console.width - 2 * INDENT - 1)
+        others = len(cause.others)
+        more = f" and {counted(others, 'more place')}" if others else ""
+        return f"{place}{calls_text(cause.problem.location)}{more}: "
+
+    def _line_of(self, cause: Cause) -> str:
+        at = cause.problem.location
+        file = "line " if at.path == self._urdf else f"{printable(at.path)}:"
+        return f"{file}{at.line}"
+
+
+def _end_of(text: str, most: int) -> str:
+    """Return a text of at most so many columns: of a longer one the end."""
+    if len(text) <= most:
+        return text
+    return _POINTS + text[len(text) - most + len(_POINTS) :]
+
+
+def _name_of(shown: Cause | CauseKind) -> Text:
+    """Return the code and the severity."""
+    problem = shown.problem
+    name = f"{problem.code} {problem.severity} "
+    return Text.assemble(" " * INDENT, (name, SEVERITY_LOOKS[problem.severity]))

@@ -95,6 +95,14 @@ def block(console: Console, text: Text, indent: int, head: Text | None = None) -
     return (Text(" " * indent) if head is None else head) + Text("\n" + " " * indent).join(lines)
 
 
+def shortened(console: Console, text: Text) -> Text:
+    """Return a text in one row: one that is too long ends with points."""
+    if len(text) <= console.width:
+        return text
+    points = "..."
+    return text[: console.width - len(points)].append(points)
+
+
 def excerpt_block(console: Console, source: Source, where: Location, indent: int) -> Text:
     """Return the source line of a location, and a line that underlines the marked part."""
     number = str(where.line)

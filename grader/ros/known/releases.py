@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Literal, NamedTuple, get_args
 
-from grader.base.text import MAX_NAMED, enumerated
+from grader.base.text import enumerated
 
 # A release of ROS 2, oldest first: https://docs.ros.org/en/rolling/Releases.html
 Release = Literal["foxy", "galactic", "humble", "iron", "jazzy", "kilted", "lyrical", "rolling"]
@@ -24,6 +24,7 @@ NameKind = Literal[
     "class",
 ]
 _FILE = Path(__file__).with_name("releases.toml")
+_MAX_PLACES = 2  # files that are named
 
 
 class StatedReleases(NamedTuple):
@@ -40,7 +41,7 @@ class StatedReleases(NamedTuple):
         """Return the releases and their places in words."""
         if not self.releases:
             return "release: not stated; names of any release are right"
-        places = enumerated(self.places, MAX_NAMED)
+        places = enumerated(self.places, _MAX_PLACES)
         return f"release: {enumerated(self.releases, len(RELEASES), 'or')} ({places})"
 
 

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 from grader.base.source import Location
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, read_yaml, yaml_value
+from grader.ros.config.yaml_values import is_misspelt_key
 from grader.ros.installation.places import PREFIX
 from grader.ros.known.package_rows import program_row
 from grader.ros.launch.call_arguments import FILE, SCALARS, TYPED, items_in, kind_of, type_of
@@ -473,14 +474,19 @@ class FileTables(NamedTuple):
 _ReadFile = Callable[[bytes, str, bool], FileTables]
 
 
-def read_tables(data: bytes, path: str, is_plain: bool) -> FileTables:
-    """Return the sections of a parameter file; of one that is not plain, launch replaces `$(`."""
+def read_tables(
+    data: bytes, path: str, is_plain: bool, *, are_keys_meant: bool = False
+) -> FileTables:
+    """Return the sections of a parameter file; of one that is not plain, launch replaces `$(`.
+
+    With `are_keys_meant`, a misspelt key ros__parameters counts as that.
+    """
     try:
         root = read_yaml(data, path)
     except YamlFault as fault:
         return FileTables((), f"the file {path} is not readable as YAML: {fault}")
     visits = Visits()
-    sections = tuple(_sections(root, "", visits, is_plain=is_plain))
+    sections = tuple(_sections(root, "", visits, is_plain=is_plain, is_meant=are_keys_meant))
     if not visits.is_complete:
         return FileTables((), f"the file {path} has too many aliases to read")
     return FileTables(tuple(_make_table(key, values) for key, values in sections))
@@ -593,13 +599,16 @@ def _find_key(given: GivenParameters, full_name: str | None) -> str | None:
 
 
 def _sections(
-    node: YamlNode, key: str, visits: Visits, *, is_plain: bool
+    node: YamlNode, key: str, visits: Visits, *, is_plain: bool, is_meant: bool
 ) -> Iterator[tuple[str, dict[str, ParameterValue]]]:
-    """Yield the sections of a parameter file, each with its key, which begins with a slash."""
+    """Yield the sections of a parameter file, each with its key, which begins with a slash.
+
+    With `is_meant`, a misspelt key ros__parameters is one as well.
+    """
     if key.count("/") >= _MAX_DEPTH or not visits.enters(node):
         return
     for name, value in node.pairs:
-        if name == _KEY:
+        if name == _KEY or (is_meant and is_misspelt_key(name, value)):
             values: dict[str, ParameterValue] = {}
             for parameter, row, named_at in _flat(value, "", None, 0, visits):
                 if isinstance(row.value, str | list):
@@ -607,7 +616,8 @@ def _sections(
                     values[parameter] = given._replace(named_at=named_at)
             yield key, values
         else:
-            yield from _sections(value, f"{key}/{name.strip('/')}", visits, is_plain=is_plain)
+            below = f"{key}/{name.strip('/')}"
+            yield from _sections(value, below, visits, is_plain=is_plain, is_meant=is_meant)
 
 
 def _flat(

@@ -48,6 +48,7 @@ class _EntryFault(NamedTuple):
     location: Location
     written: str
     meant: str | None
+    entry: _EntryPoint  # the one that is meant, else as it is written
 
 
 @lru_cache(maxsize=4)
@@ -89,6 +90,12 @@ def _locate_name(package: Package, name: str, places: Mapping[str, int]) -> Loca
     if name in places:
         return setup.source.at(places[name])
     return setup.location(setup.called_at)
+
+
+def entry_as_meant(package: Package, entry: _EntryPoint) -> _EntryPoint:
+    """Return an entry point, or the one that is meant if it surely names no function."""
+    fault = entry_fault(package, entry.name)
+    return fault.entry if fault is not None else entry
 
 
 def certain_fault(package: Package, nodes: Collection[StartedNode]) -> _EntryFault | None:
@@ -133,7 +140,8 @@ def _missing_function(package: Package, entry: _EntryPoint, path: str) -> _Entry
         if isinstance(node, ast.FunctionDef):
             functions.append(node.name)
     only = functions[0] if len(functions) == 1 else ""
-    return _fault(entry, f"{path} has no {entry.function!r}", entry.function, known, only)
+    fault = _fault(entry, f"{path} has no {entry.function!r}", entry.function, known, only)
+    return fault._replace(entry=entry._replace(function=fault.meant or entry.function))
 
 
 @lru_cache(maxsize=4)
@@ -219,7 +227,7 @@ def _misspelt_package(package: Package, entry: _EntryPoint) -> _EntryFault | Non
     is_other = package.find(top) is not None or package.depends_on(top)
     if top in installed or meant is None or is_there or is_other:
         return None
-    return _fault(entry, f"there is no package {top}", top, [meant])
+    return _with_module(_fault(entry, f"there is no package {top}", top, [meant]), 0)
 
 
 def _missing_module(package: Package, entry: _EntryPoint) -> _EntryFault:
@@ -232,13 +240,9 @@ def _missing_module(package: Package, entry: _EntryPoint) -> _EntryFault:
         and not path.endswith("__init__.py")
     ]
     same_name = entry.name if entry.name in others else ""
-    return _fault(
-        entry,
-        f"there is no module {entry.module}",
-        entry.module.rpartition(".")[2],
-        others,
-        same_name,
-    )
+    written = entry.module.rpartition(".")[2]
+    message = f"there is no module {entry.module}"
+    return _with_module(_fault(entry, message, written, others, same_name), -1)
 
 
 def _fault(
@@ -253,7 +257,16 @@ def _fault(
         message += f"; did you mean {meant!r}?"
     elif known:
         message += f"; there is {enumerated([repr(module) for module in known[:MAX_NAMED]])}"
-    return _EntryFault(message, entry.location, written, meant)
+    return _EntryFault(message, entry.location, written, meant, entry)
+
+
+def _with_module(fault: _EntryFault, position: int) -> _EntryFault:
+    """Return a fault of one of the names in a module's, whose entry has the one that is meant."""
+    if fault.meant is None:
+        return fault
+    names = fault.entry.module.split(".")
+    names[position] = fault.meant
+    return fault._replace(entry=fault.entry._replace(module=".".join(names)))
 
 
 def _certain_names(code: Code) -> frozenset[str] | None:

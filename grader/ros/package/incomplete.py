@@ -67,4 +67,4 @@ def _listed(problems: Sequence[Problem]) -> Iterator[Problem]:
             yield problem
         elif problem is unknown[0]:
             more = f"; {len(unknown) - 1} more places" if len(unknown) > 1 else ""
-            yield problem._replace(message=f"{problem.message}{more}")
+            yield problem._replace(message=f"{problem.message}{more}", cause=problem.location.path)

@@ -96,6 +96,18 @@ def similar_file(package: Package, name: str) -> str | None:
     return closest(name, map(posixpath.basename, package.tree.files))
 
 
+def meant_file(package: Package, target: str) -> str:
+    """Return the only file of a package whose name a misspelt path below the prefix means.
+
+    It is empty without one, and where the package has a file of the name that is written.
+    """
+    if _meant_by(package, target):
+        return ""
+    meant = similar_file(package, posixpath.basename(target))
+    paths = [path for path in package.tree.files if posixpath.basename(path) == meant]
+    return paths[0] if len(paths) == 1 else ""
+
+
 def are_installs_known(package: Package) -> bool:
     """Return whether it is known what a build of a package installs."""
     setup = package.installation

@@ -44,27 +44,52 @@ class RobotFault(NamedTuple):
     at: LazyLocation | None = None
 
 
-def describe_driving(robot: Configuration, wheels: Sequence[str]) -> str:
-    """Return in one line how a robot stands, and where these links drive it.
+class DescribedDriving(NamedTuple):
+    """How a robot stands on level ground and where its wheels drive it, in one line.
 
-    It is empty where it cannot be determined.
+    What is wrong with either is beside it. `describe_driving` makes it for inspections.
     """
+
+    text: str = ""  # empty where it cannot be determined
+    rest_faults: tuple[RobotFault, ...] = ()  # it leans or tips over, or wheels are in the air
+    course_faults: tuple[RobotFault, ...] = ()  # its wheels do not drive it straight ahead
+
+
+def describe_driving(robot: Configuration, wheels: Sequence[str]) -> DescribedDriving:
+    """Return how a robot stands, and where these links drive it."""
+    course_faults: list[RobotFault] = []
     try:
         standing = StandingRobot(robot, wheels)
         driven = Drivetrain(standing)
-        faults = driven.find_idle_wheels()
-        if not faults:
+        idle = driven.find_idle_wheels()
+        if not idle:
             if driven.crossed_wheels is not None:
-                return ""
-            faults = driven.find_faults_ahead(X_AXIS, _OFF, _OFF)
+                return DescribedDriving()
+            course_faults = driven.find_faults_ahead(X_AXIS, _OFF, _OFF)
     except _NOT_KNOWN:
-        return ""
+        return DescribedDriving()
     if standing.rest.has_fallen:
-        return "on level ground, it tips over"
+        return DescribedDriving("on level ground, it tips over", tuple(idle))
     message = DRIVES_AHEAD
+    faults = idle or course_faults
     if faults:
         message = f"when its wheels turn forward: {'; '.join(fault.text for fault in faults)}"
-    return f"{_describe_rest(standing)}; {message}"
+    text = f"{_describe_rest(standing)}; {message}"
+    return DescribedDriving(text, (*_find_leaning(standing), *idle), tuple(course_faults))
+
+
+def _find_leaning(standing: StandingRobot) -> list[RobotFault]:
+    """Return that a robot leans, on what is no wheel if there is such a link.
+
+    A robot that rests on its wheels and its base may be one without a caster, or one that balances.
+    """
+    tilt = standing.rest.tilt
+    if not tilt > _LEANING or {*standing.touching} == {*standing.named, standing.base}:
+        return []
+    text = f"it leans by {in_degrees(tilt)} on {in_quotes(standing.touching)}"
+    others = [link for link in standing.touching if link not in standing.named]
+    at = origin_place(standing.robot, next(iter(others), standing.base))
+    return [RobotFault(text, tilt, _LEANING, "deg", at)]
 
 
 class Drive(NamedTuple):

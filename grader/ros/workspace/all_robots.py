@@ -8,8 +8,9 @@ from typing import TypeGuard
 from grader.base.errors import InputError, NotDecided
 from grader.base.reuse import Memory
 from grader.base.source import Source
+from grader.files.limits import ARCHIVES
 from grader.files.reading import URDF_LIMIT
-from grader.files.tree import Tree
+from grader.files.tree import Tree, parents
 from grader.ros.known.releases import Release, StatedReleases
 from grader.ros.package.finding import (
     is_backup,
@@ -29,6 +30,7 @@ from grader.ros.workspace.opened import OpenedWorkspace
 
 _MAX_PACKAGES, _MAX_ROBOTS = 1000, 200
 _NOTES = (".txt", ".md", ".rst", ".log")
+_MAX_ALIKE = 20  # files of one name and size with which one in an archive is compared
 
 
 def read_workspace(
@@ -65,6 +67,7 @@ def read_workspace(
         ros1_packages=ros1_packages,
         memory=memory,
         stated=stated,
+        reads_meant=True,
     )
 
 
@@ -87,7 +90,7 @@ def _read_robots(
     memory: Memory | None,
     releases: Collection[Release],
 ) -> list[Read | Unreadable]:
-    robot_files = find_robots(tree, max_size=max_size)
+    robot_files = _without_packed_copies(tree, find_robots(tree, max_size=max_size))
     launched = launched_paths(tree, packages, robot_files)
     included = parts_of(robot_files) | _chosen_parts(tree, robot_files)
     whole = Budget(READING + (packages[0].work.limit if packages else 0))
@@ -114,6 +117,24 @@ def _read_robots(
         is_whole = not _is_empty(robot) and (is_loaded or not is_piece)
         (robots if is_whole else parts).append(robot)
     return robots or [part for part in parts if not _is_empty(part)]
+
+
+def _without_packed_copies(tree: Tree, robot_files: Sequence[RobotFile]) -> list[RobotFile]:
+    """Return the files without those in archives that are also outside, with equal bytes."""
+    packed = []
+    outside: dict[tuple[str, int], list[str]] = {}  # the paths of the others by name and size
+    for file in robot_files:
+        if any(folder.lower().endswith(ARCHIVES) for folder in parents(file.path)):
+            packed.append(file)
+        else:
+            outside.setdefault((file.name, file.size), []).append(file.path)
+    copies = set()
+    for file in packed:
+        alike = outside.get((file.name, file.size), [])[:_MAX_ALIKE]
+        data = tree.read(file.path, URDF_LIMIT) if alike else None
+        if data is not None and any(tree.read(path, URDF_LIMIT) == data for path in alike):
+            copies.add(file.path)
+    return [file for file in robot_files if file.path not in copies]
 
 
 def _whole(

@@ -2,11 +2,13 @@
 
 from typing import NamedTuple
 
-from grader.base.text import counted
+from grader.base.text import counted, enumerated, printable
 from grader.ros.known.releases import StatedReleases
 from grader.ros.package.package import Package
 from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.read_calls import ReadCalls, read_calls
 
+_MAX_FILES = 3  # that are named
 _CPP = (".cpp", ".cc", ".cxx")
 
 
@@ -22,7 +24,16 @@ class Extent(NamedTuple):
     cpp_files: int
     computed_names: int  # of topics, services and actions
     expressions: int  # of launch files, setup.py and CMakeLists.txt that are not evaluated
+    calls: ReadCalls  # of code that open topics and services, or declare parameters
     stated: StatedReleases  # of ROS 2, in one of which names should be
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether everything was read that may define or use names."""
+        unread = (self.unread_robots, self.cpp_files, self.computed_names, self.expressions)
+        has_names = self.robots + self.launch_files + self.calls.total > 0
+        is_known = self.nodes == self.all_nodes and self.calls.known == self.calls.total
+        return has_names and is_known and not any(unread)
 
     @property
     def words(self) -> str:
@@ -34,13 +45,21 @@ class Extent(NamedTuple):
             nodes = counted(self.all_nodes, "node")
             is_all = self.nodes == self.all_nodes
             read.append(nodes if is_all else f"{self.nodes} of {nodes}")
+        calls = self.calls
+        if calls.total:
+            is_all = calls.known == calls.total
+            known = "" if is_all else f"{calls.known} of "
+            read.append(f"{known}{counted(calls.total, 'call')}")
         unread = _counted_ones(
             (self.unread_robots, "robot"),
             (self.cpp_files, "C++ file"),
             (self.computed_names, "computed name"),
             (self.expressions, "expression"),
         )
-        text = f"read: {', '.join(read)}"
+        if calls.unread_files:
+            files = [f"{printable(path)} ({count})" for path, count in calls.unread_files]
+            unread.append(f"calls in {enumerated(files, _MAX_FILES)}")
+        text = f"read: {', '.join(read) or 'nothing'}"
         if unread:
             text += f"; not read: {', '.join(unread)}"
         return f"{text}; {self.stated.words}"
@@ -72,6 +91,7 @@ def extent_of(workspace: Workspace, unread_robots: int, stated: StatedReleases) 
         cpp_files=cpp_files,
         computed_names=sum(endpoint.is_computed for endpoint in endpoints),
         expressions=expressions,
+        calls=read_calls(workspace),
         stated=stated,
     )
 

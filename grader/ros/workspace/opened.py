@@ -1,6 +1,6 @@
 """Opened files: their packages, and their robots."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from grader.base.reuse import Memory
     from grader.ros.launch.launch_model import ParameterValue
     from grader.ros.package.mesh_loading import Around, MeshLoader
+    from grader.ros.urdf.driving import DescribedDriving
     from grader.ros.workspace.extent import Extent
     from grader.ros.workspace.index.all_names import WorkspaceNames
     from grader.ros.workspace.model.workspace import Workspace
@@ -56,6 +57,7 @@ class OpenedWorkspace:
     neighbours: tuple[Package, ...] = ()  # the packages around a URDF on its own
     budget: Budget = field(default_factory=Budget)  # of the work to read the URDF
     memory: "Memory | None" = None  # what was read of an earlier state of the files
+    reads_meant: bool = False  # whether a misspelling that is reported counts as what is meant
 
     @cached_property
     def workspace(self) -> "Workspace":
@@ -73,7 +75,13 @@ class OpenedWorkspace:
         has_unread = has_other_robots or any(isinstance(robot, Unreadable) for robot in self.robots)
         releases = (self.distro,) if self.distro is not None else self.stated.releases
         return Workspace(
-            self.packages, urdfs, self.whole_tree, has_unread, releases, memory=self.memory
+            self.packages,
+            urdfs,
+            self.whole_tree,
+            has_unread,
+            releases,
+            memory=self.memory,
+            reads_meant=self.reads_meant,
         )
 
     @property
@@ -102,6 +110,18 @@ class OpenedWorkspace:
 
         return problems_of_robot(robot, (*self.packages, *self.ros1_packages), self.whole_tree)
 
+    def problems_once(
+        self, robot: Read, of_packages: Sequence[Problem] = (), *, with_assumptions: bool = False
+    ) -> tuple[Problem, ...]:
+        """Return the same without what repeats another problem, also one of the packages.
+
+        Assumptions repeat one unless they are asked for.
+        """
+        from grader.ros.workspace.rules.one_cause import without_repetitions  # late: as above
+
+        problems = self.problems_of(robot)
+        return without_repetitions(problems, of_packages, with_assumptions=with_assumptions)
+
     def driven_joints(self, robot: Read) -> list[str]:
         """Return the joints of the wheels that a plugin in a robot, or a controller, drives.
 
@@ -114,6 +134,14 @@ class OpenedWorkspace:
         if joints or self.is_single:
             return joints
         return joints_of_controllers(self.workspace)
+
+    def standing_problem(
+        self, robot: Read, driving: "DescribedDriving", *, with_course: bool
+    ) -> Problem | None:
+        """Return that one of its robots leans, or is not driven straight ahead `with_course`."""
+        from grader.ros.workspace.rules.standing import standing_problem  # late: as above
+
+        return standing_problem(robot.path, driving, with_course=with_course)
 
     def meshes_of(self, robot: Read) -> "MeshLoader":
         """Return what loads the meshes of one of its robots, for pictures."""

@@ -43,6 +43,7 @@ from grader.ros.nodes.python.node_slips import Program as StartedProgram
 from grader.ros.nodes.python.node_slips import node_slips
 from grader.ros.nodes.python.rclpy_names import NODE_CLASSES
 from grader.ros.package.entry_points import (
+    entry_as_meant,
     entry_points,
     module_path,
     read_module,
@@ -152,15 +153,18 @@ class _Name(NamedTuple):
 _Fact = Endpoint | NodeParameter | NodeFrame | Timer | Doubt | _Name
 
 
-def read_nodes(package: Package) -> PackageNodes:
-    """Return the nodes in the Python modules that a build of a package installs. Never raises."""
+def read_nodes(package: Package, *, reads_meant: bool = False) -> PackageNodes:
+    """Return the nodes in the Python modules that a build of a package installs. Never raises.
+
+    With `reads_meant`, an entry point that surely is misspelt creates the nodes of the one meant.
+    """
     modules, unread = _read_modules(package)
     doubts = [Doubt("the file is not read", Location(package.path(path), 1, 1)) for path in unread]
     kinds = _derived_classes(modules)
     nodes = [node for module in modules.values() for node in module.read_nodes(kinds)]
     doubts += (doubt for module in modules.values() for doubt in module.doubts)
     programs = []
-    for program in _programs(package, modules, nodes):
+    for program in _programs(package, modules, nodes, reads_meant=reads_meant):
         read, doubts_of_program = _without_stopped(package, program, unread)
         programs.append(read)
         doubts += doubts_of_program
@@ -318,7 +322,11 @@ def _is_python(package: Package, path: str) -> bool:
 
 
 def _programs(
-    package: Package, modules: "dict[str, _Module]", nodes: Sequence[NodeFacts]
+    package: Package,
+    modules: "dict[str, _Module]",
+    nodes: Sequence[NodeFacts],
+    *,
+    reads_meant: bool = False,
 ) -> Iterator[NodeProgram]:
     """Yield the entry points, and the files that are programs, with the nodes that they create."""
     by_key: dict[object, list[NodeFacts]] = {}
@@ -326,7 +334,8 @@ def _programs(
         by_key.setdefault(node.location, []).append(node)
         by_key.setdefault(node.class_name, []).append(node)
     created_by = partial(_created_by, package.budget, modules, by_key)
-    for entry in entry_points(package):
+    for written in entry_points(package):
+        entry = entry_as_meant(package, written) if reads_meant else written
         created, has_more = created_by(entry.module, entry.function)
         path = module_path(package, entry.module) or ""
         program = NodeProgram(entry.name, created, entry.location, path, entry.function)

@@ -13,13 +13,13 @@ from grader.ros.launch.node_parameters import (
     parameters_of,
     read_tables,
 )
-from grader.ros.package.installed_files import are_installs_known, open_meant
+from grader.ros.package.installed_files import are_installs_known, meant_file, open_meant
 from grader.ros.package.package import Package
 from grader.ros.workspace.model.installed_yaml import InstalledFiles
 from grader.ros.workspace.model.known_robots import Robots
 from grader.ros.workspace.model.launches import MANAGER, SPAWNERS, Launches
 from grader.ros.workspace.model.own_code import OwnCode
-from grader.ros.workspace.model.text_files import FILES_A_PART, TextFiles
+from grader.ros.workspace.model.text_files import FILES_A_PART, MAX_YAML, TextFiles
 from grader.ros.workspace.model.workspace_folder import WorkspaceFolder
 
 _BYTES_A_PART = 64  # of a file that a node is given, which are charged as one part
@@ -51,9 +51,11 @@ class GivenFiles:
     def files_given(self, node: StartedNode) -> Iterator[str]:
         """Yield the parameter files that a node is given, by their paths in the workspace."""
         for given in node.parameters or ():
-            path = self.installed.source_of(given.path) if given.path and given.is_plain else None
-            if path is not None:
-                yield path
+            if given.path and given.is_plain:
+                path = self.installed.source_of(given.path)
+                path = path or _meant_source(self.folder, given.path)
+                if path:
+                    yield path
 
     @cached_property
     def owners(self) -> Mapping[str, list[NodeParameters]]:
@@ -99,11 +101,15 @@ class GivenFiles:
         return parameters_of(node, partial(self.open, package), name, self._read_tables)
 
     def read_given(self, package: Package, node: StartedNode, name: str) -> NodeParameters:
-        """Return the same, where a file that surely is nowhere gives nothing. Raises NotDecided."""
-        return parameters_of(node, partial(self.open_given, package), name, self._read_tables)
+        """Return the same, where a file that surely is nowhere gives nothing. Raises NotDecided.
+
+        Where misspelt names count as what is meant, so do those of files and of ros__parameters.
+        """
+        read = partial(self._read_tables, are_keys_meant=self.folder.reads_meant)
+        return parameters_of(node, partial(self.open_given, package), name, read)
 
     @cached_property
-    def _read_tables(self) -> Callable[[bytes, str, bool], FileTables]:
+    def _read_tables(self) -> Callable[..., FileTables]:
         """A reader of parameter files that reads each once."""
         return cache(read_tables)
 
@@ -137,9 +143,24 @@ class GivenFiles:
     def _find_given(self, package: Package, path: str) -> tuple[bytes, str] | None:
         opened = open_meant(package, path, absent_are_empty=True)
         owner = package.find(share_parts(f"{PREFIX}/{path}")[0])
+        is_empty = opened is None or not opened[0]
+        if self.folder.reads_meant and owner is not None and is_empty:
+            meant = meant_file(owner, path)
+            if meant:
+                return owner.tree.read(meant, MAX_YAML) or b"", owner.path(meant)
         if opened is None and owner is not None and are_installs_known(owner):
             return (b"", path) if self.texts.is_nowhere(owner, path) else None
         return opened
+
+
+def _meant_source(folder: WorkspaceFolder, path: str) -> str:
+    """Return the file that a path means which leads to none; empty if that is not known."""
+    name, inside = share_parts(path)
+    owner = folder.packages[0].find(name) if folder.packages else None
+    if owner is None or not folder.reads_meant:
+        return ""
+    meant = meant_file(owner, f"share/{name}/{inside}")
+    return owner.path(meant) if meant else ""
 
 
 def _spawned_by(node: StartedNode) -> Sequence[StartedNode]:

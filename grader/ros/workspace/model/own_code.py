@@ -1,8 +1,8 @@
 """What the workspace's packages open, declare and define in their code and interfaces."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 from grader.ros.known.package_rows import children_by_node, program_row
 from grader.ros.launch.launch_model import StartedNode
@@ -10,6 +10,7 @@ from grader.ros.nodes.node_facts import NodeFacts, PackageNodes
 from grader.ros.nodes.python.python_nodes import read_nodes
 from grader.ros.package.package import MANIFEST, Package
 from grader.ros.package.package_interfaces import PackageInterfaces, read_interfaces
+from grader.ros.package.program_names import meant_program, program_names
 from grader.ros.workspace.model.installed_yaml import InstalledFiles
 from grader.ros.workspace.model.launches import MANAGER
 from grader.ros.workspace.model.text_files import MAX_YAML
@@ -40,10 +41,13 @@ class OwnCode:
         return {package.name: self._nodes_in(package) for package in self.folder.packages}
 
     def _nodes_in(self, package: Package) -> PackageNodes:
+        reads_meant = self.folder.reads_meant
         if self.folder.memory is None:
-            return _nodes_of(package)
-        key = ("nodes", package.name, _program_texts(package))
-        return self.folder.memory.recall(key, None, package.budget, lambda _: _nodes_of(package))
+            return _nodes_of(package, reads_meant=reads_meant)
+        key = ("nodes", package.name, reads_meant, _program_texts(package))
+        return self.folder.memory.recall(
+            key, None, package.budget, lambda _: _nodes_of(package, reads_meant=reads_meant)
+        )
 
     @cached_property
     def interfaces(self) -> Mapping[str, PackageInterfaces]:
@@ -59,14 +63,23 @@ class OwnCode:
         return interfaces_by_package
 
     def own_node(self, node: StartedNode) -> NodeFacts | None:
-        """Return the Python node of the workspace that a program starts.
+        """Return the node of the workspace that a program starts.
 
-        The result is None if it starts none that is known.
+        Where misspelt names count as what is meant, so does that of a program. The result is None
+        if it starts none that is known.
         """
         owner = self.folder.package_of(node)
         if owner is None or owner.name not in self.by_package:
             return None
-        return self._nodes_by_program.get((owner.name, node.executable))
+        program = node.executable
+        if self.folder.reads_meant:
+            program = self._meant_program(owner, node.package, program)
+        return self._nodes_by_program.get((owner.name, program))
+
+    @cached_property
+    def _meant_program(self) -> Callable[[Package, str, str], str]:
+        """What the program of a package is called that a name means; each is searched once."""
+        return cache(_meant_program)
 
     @cached_property
     def _nodes_by_program(self) -> Mapping[tuple[str, str], NodeFacts]:
@@ -118,6 +131,12 @@ class OwnCode:
         return children | self.installed.typed_sections if name == MANAGER else children
 
 
+def _meant_program(owner: Package, package: str, name: str) -> str:
+    if owner.has_program(package, name) is not False:
+        return name
+    return meant_program(name, program_names(owner)) or name
+
+
 def _program_texts(package: Package) -> tuple[tuple[str, bytes | None], ...]:
     """Return the files of a package, each with its bytes.
 
@@ -130,8 +149,8 @@ def _program_texts(package: Package) -> tuple[tuple[str, bytes | None], ...]:
     return tuple(texts)
 
 
-def _nodes_of(package: Package) -> PackageNodes:
-    nodes = read_nodes(package)
+def _nodes_of(package: Package, *, reads_meant: bool) -> PackageNodes:
+    nodes = read_nodes(package, reads_meant=reads_meant)
     setup = package.installation
     if setup is None or not any(target.sources for target in setup.targets):
         return nodes

@@ -34,6 +34,7 @@ class Workspace:
     has_unread_robots: bool  # whether other files may be robots
     releases: tuple[Release, ...] = ()  # in one of which names should be; () for any
     memory: Memory | None = None  # what was read of an earlier state of the files
+    reads_meant: bool = False  # whether a misspelt name that is reported counts as the one meant
 
     def charge(self, parts: int) -> None:
         """Charge the work of comparing names to the budget of the workspace. Raises NotDecided."""
@@ -51,7 +52,7 @@ class Workspace:
     @cached_property
     def folder(self) -> WorkspaceFolder:
         """The files and packages, and the budget."""
-        return WorkspaceFolder(self.found_packages, self.tree, self.memory)
+        return WorkspaceFolder(self.found_packages, self.tree, self.memory, self.reads_meant)
 
     @cached_property
     def texts(self) -> TextFiles:

@@ -35,6 +35,9 @@ class WorkspaceFolder:
     found_packages: tuple[Package, ...]  # the one that matches best first
     tree: Tree  # all files, also those outside of packages
     memory: Memory | None  # what was read of an earlier state of the files
+    # Whether misspelt programs, entry points, parameter files and keys count as what is meant. A
+    # criterion judges what is written.
+    reads_meant: bool = False
 
     @cached_property
     def _work(self) -> Budget:

@@ -80,7 +80,10 @@ def _undeclared(
                 f"{brought[name]!r} brings: the package builds and runs as long as that needs it"
             )
         either = corrections(name, at, meant, start if meant not in used else None)
-        yield Mismatch(DEPENDENCY_DECLARED, message, at, start, is_certain, either, word=name)
+        lacked = name if not guess else ""
+        yield Mismatch(
+            DEPENDENCY_DECLARED, message, at, start, is_certain, either, word=name, lacked=lacked
+        )
 
 
 def _is_there(package: Package, name: str) -> bool:

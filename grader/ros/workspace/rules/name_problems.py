@@ -3,20 +3,30 @@
 docs/examples/ref.toml explains their kinds.
 """
 
+from collections.abc import Iterable, Iterator, Sequence
+
 from grader.base.problems import Problem
+from grader.base.text import in_quotes
+from grader.ros.package.package import MANIFEST
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.name_fixes import NameFixes
+from grader.ros.workspace.rules.names import Mismatch
 from grader.ros.workspace.rules.reading import read_agreement
 from grader.ros.workspace.rules.rule_table import FILE_USED
 
 
 def name_problems(workspace: Workspace) -> tuple[Problem, ...]:
-    """Return what does not agree as problems with their fixes, in the order of files and lines."""
+    """Return what does not agree as problems with their fixes, in the order of files and lines.
+
+    The packages that one package.xml lacks are one problem.
+    """
     agreement, name_fixes = read_agreement(workspace), NameFixes(workspace)
     problems = []
-    for wrong in agreement.mismatches:
+    for wrong in _with_one_for_a_manifest(workspace, agreement.mismatches):
         problem = wrong.rule.problem(wrong.message, wrong.location, is_certain=wrong.is_certain)
-        problem = problem._replace(related=wrong.related, fixes=name_fixes.of(wrong))
+        problem = problem._replace(
+            related=wrong.related, fixes=name_fixes.of(wrong), cause=wrong.cause
+        )
         place = name_fixes.place_of_word(wrong)
         if place is not None:
             problem = problem._replace(location=place, around=wrong.location)
@@ -30,3 +40,39 @@ def name_problems(workspace: Workspace) -> tuple[Problem, ...]:
         at = problem.location
         by_place.setdefault((problem.message, at.path, at.line, at.column), problem)
     return tuple(by_place.values())
+
+
+def _with_one_for_a_manifest(
+    workspace: Workspace, mismatches: Iterable[Mismatch]
+) -> Iterator[Mismatch]:
+    """Yield mismatches, of the packages that one package.xml lacks only the first, which has all.
+
+    Those of which it is certain that nothing else installs them are apart from the others.
+    """
+    lacked: dict[tuple[object, bool], list[Mismatch]] = {}
+    every = [*mismatches]
+    for mismatch in every:
+        if mismatch.lacked:
+            key = (mismatch.related, mismatch.is_certain)
+            lacked.setdefault(key, []).append(mismatch)
+    for mismatch in every:
+        of_manifest = lacked.get((mismatch.related, mismatch.is_certain), [])
+        if not mismatch.lacked:
+            yield mismatch
+        elif mismatch is of_manifest[0]:
+            yield mismatch._replace(message=_lacked_text(workspace, of_manifest))
+
+
+def _lacked_text(workspace: Workspace, mismatches: Sequence[Mismatch]) -> str:
+    """Return which packages a package.xml does not declare, and the tags to add."""
+    names = [mismatch.lacked for mismatch in mismatches]
+    tags = " ".join(f"<exec_depend>{name}</exec_depend>" for name in names)
+    used = "which is used here" if len(names) == 1 else "which its files use"
+    if not mismatches[0].is_certain:
+        used += ", and which only packages that it declares bring"
+    manifest = mismatches[0].related
+    owner = ""
+    for package in workspace.packages:
+        if manifest is not None and package.path(MANIFEST) == manifest.path:
+            owner = package.name
+    return f"package.xml of {owner!r} does not declare {in_quotes(names)}, {used}: add {tags}"

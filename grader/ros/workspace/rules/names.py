@@ -95,6 +95,8 @@ class Mismatch(NamedTuple):
     ] = ()  # with each of which it agrees: first of the use, then of the definition
     fixes: Fixes = NO_FIXES  # of what is no name
     word: str = ""  # that is wrong, in the call or element at the location
+    cause: str = ""  # what it has in common with others that one mistake makes
+    lacked: str = ""  # the package that package.xml lacks, and is to be added
 
     @property
     def family(self) -> AnyFamily:

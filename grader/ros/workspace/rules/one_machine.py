@@ -3,8 +3,8 @@
 import re
 from collections.abc import Iterator
 
-from grader.base.source import Source
-from grader.base.text import cut, quoted
+from grader.base.source import Location, Source
+from grader.base.text import counted, cut, quoted
 from grader.ros.known.ros_machine import ros_machine
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
@@ -37,9 +37,7 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
             if source.path not in launch_files:
                 yield Compared("machine")
                 yield from _home_paths(source)
-    for package in workspace.packages:
-        for source in workspace.texts.launch_sources(package):
-            yield from _variables(source)
+    yield from _variables(workspace)
 
 
 def _home_paths(source: Source) -> Iterator[Mismatch]:
@@ -52,21 +50,35 @@ def _home_paths(source: Source) -> Iterator[Mismatch]:
         yield warning(HOME_PATH, message, source.at(paths[0].start(1)))
 
 
-def _variables(source: Source) -> Iterator[Mismatch]:
-    """Yield the environment variables that a launch file needs, and does not set or look for."""
+def _variables(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield the environment variables that launch files need, and do not set or look for.
+
+    Each is yielded once, with the first file that needs it.
+    """
+    places: dict[str, list[Location]] = {}
+    for package in workspace.packages:
+        for source in workspace.texts.launch_sources(package):
+            for name, at in _needed_variables(source):
+                places.setdefault(name, []).append(at)
+    for name, needed_at in places.items():
+        others = len(needed_at) - 1
+        too = f"; {counted(others, 'other launch file needs', 'other launch files need')} it too"
+        message = (
+            f"the launch file ends with an error where the environment variable {name} is not set: "
+            f"give it a default{too if others else ''}"
+        )
+        yield warning(ENVIRONMENT_VARIABLE, message, needed_at[0])
+
+
+def _needed_variables(source: Source) -> Iterator[tuple[str, Location]]:
+    """Yield the environment variables without which a launch file ends, each once."""
     seen: set[str] = set()
     for match in _ENVIRONMENT.finditer(source.text):
         name = match["python"] or match["launch"] or match["xml"]
-        if name in ros_machine().environment or name in seen:
-            continue
+        is_known = name in ros_machine().environment or name in seen
         seen.add(name)
-        if _is_handled(source.text, name):
-            continue
-        message = (
-            f"the launch file ends with an error where the environment variable {name} is not set: "
-            "give it a default"
-        )
-        yield warning(ENVIRONMENT_VARIABLE, message, source.at(match.start()))
+        if not is_known and not _is_handled(source.text, name):
+            yield name, source.at(match.start())
 
 
 def _is_handled(text: str, name: str) -> bool:

@@ -194,15 +194,39 @@ def _sections_of_others(
     """Yield that a parameter file has something only for a node that is not given it.
 
     It has nothing for a node that is given it.
+    """
+    tree = workspace.installed.yaml.get(path)
+    if not isinstance(tree, YamlNode):
+        return
+    for of_other in _meant_sections(workspace, path, tree, nodes):
+        at = tree.key_location(*of_other.keys)
+        renamed = of_other.name if of_other.is_renamed else None
+        yield _section_of_other(of_other.key, at, of_other.name, renamed, of_other.node.location)
+
+
+class _SectionOfOther(NamedTuple):
+    """A section that no node of its name reads, and a node without one that may be meant."""
+
+    node: StartedNode
+    name: str
+    key: str
+    keys: tuple[str, ...]
+    is_renamed: bool  # whether the node is surely meant
+    is_similar: bool  # whether its name is similar
+
+
+def _meant_sections(
+    workspace: Workspace, path: str, tree: YamlNode, nodes: Sequence[StartedNode]
+) -> Iterator[_SectionOfOther]:
+    """Yield the nodes that are given a file without a section for them, and the section meant.
 
     Nothing is said where a container gets the file, which it gives to its components, or where the
     name of a node that gets it is not known. A section with the name that its program gives the
     node is said of that name. Without a similar name, the section may be that of a node which is
     not in the workspace.
     """
-    tree = workspace.installed.yaml.get(path)
     names = [name for name in map(workspace.code.name_of, nodes) if name is not None]
-    if not isinstance(tree, YamlNode) or _has_container(nodes) or len(names) < len(nodes):
+    if _has_container(nodes) or len(names) < len(nodes):
         return
     sections = {keys[-1].rpartition("/")[2]: keys for keys, _ in sections_in(tree) if keys}
     unread = _unread_sections(workspace, sections, names)
@@ -214,11 +238,22 @@ def _sections_of_others(
         if name not in lacking or _is_renamed(workspace, tree, node):
             continue
         meant = _section_meant(workspace, path, node, name, unread)
-        if meant is None:
-            continue
-        at = tree.key_location(*sections[meant.key])
-        renamed = name if meant.is_sure or is_only_pair else None
-        yield _section_of_other(meant.key, at, name, renamed, node.location)
+        if meant is not None:
+            is_sure = meant.is_sure or is_only_pair
+            keys = sections[meant.key]
+            yield _SectionOfOther(node, name, meant.key, keys, is_sure, meant.is_sure)
+
+
+def _name_in_files(workspace: Workspace, node: StartedNode, name: str) -> str:
+    """Return the name of a node, or that of a section of its file whose name is similar."""
+    for path in workspace.parameters.files_given(node) if workspace.reads_meant else ():
+        tree = workspace.installed.yaml.get(path)
+        nodes = workspace.parameters.files.get(path, ())
+        if isinstance(tree, YamlNode):
+            for of_other in _meant_sections(workspace, path, tree, nodes):
+                if of_other.is_similar and of_other.node == node:
+                    return of_other.key
+    return name
 
 
 class _MeantSection(NamedTuple):
@@ -374,7 +409,8 @@ def _given(
     if name_of_node is None and any(given.path for given in node.parameters or ()):
         yield Undecided("parameters", f"the name of {node.executable} is computed")
         return
-    given = workspace.parameters.read_given(package, node, name_of_node or "")
+    name_in_files = _name_in_files(workspace, node, name_of_node or "")
+    given = workspace.parameters.read_given(package, node, name_in_files)
     if given.unknown:
         yield Undecided("parameters", given.unknown)
     said = f"the node {name_of_node or node.executable!r}"

@@ -8,7 +8,6 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from grader.base.errors import InputError
-from grader.base.names import closest, near
 from grader.base.source import Location
 from grader.ros.installation.installation import Installation
 from grader.ros.known.package_rows import package_row
@@ -16,6 +15,7 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import parameters_of
 from grader.ros.package.entry_points import entry_fault, entry_points, module_path
 from grader.ros.package.package import CMAKE, SETUP, Package
+from grader.ros.package.program_names import meant_program, program_names
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import (
     Compared,
@@ -150,9 +150,7 @@ def _why_no_program(package: Package, name: str) -> _MissingProgram:
     if name in paths:
         where = f"as {paths[name]}, but ros2 run looks in {home}"
         return _MissingProgram(f"a build installs {name!r} {where}")
-    programs = {path.rpartition("/")[2] for path in installed if path.startswith(f"{home}/")}
-    names = programs.union(entries)
-    return _missing_program(package.name, name, sorted(names))
+    return _missing_program(package.name, name, program_names(package))
 
 
 def _is_built_only(setup: Installation | None, name: str) -> bool:
@@ -166,7 +164,7 @@ def _is_built_only(setup: Installation | None, name: str) -> bool:
 
 def _missing_program(package: str, name: str, programs: Sequence[str]) -> _MissingProgram:
     """Return that a package has only programs of other names, and the one that may be meant."""
-    guess = closest(name, programs) or near(name, programs, "node")
+    guess = meant_program(name, programs)
     there = f"did you mean {guess!r}?" if guess else f"it has {', '.join(programs) or 'none'}"
     return _MissingProgram(f"the package {package!r} has no program {name!r}; {there}", guess)
 

@@ -427,6 +427,10 @@ PUBLISH_RATE = _other_value(
 STATIC_POSE = _other_value(
     "static-pose", sentence="A static transform of a link equals its fixed joint."
 )
+ROBOT_STANDS = _other_value(
+    "robot-stands",
+    sentence="A robot stands level on its wheels, and they drive it straight ahead.",
+)
 MESH_UNIT = _other_value("mesh-unit", sentence="Meshes are in metres.")
 
 _transform = _rules_of("transforms", _WRONG_TRANSFORM, _OTHER_TRANSFORM)

@@ -1,0 +1,23 @@
+"""The names of a package's programs, and the one that another name may mean."""
+
+from collections.abc import Sequence
+
+from grader.base.names import closest, near
+from grader.ros.package.entry_points import entry_points
+from grader.ros.package.package import Package
+
+
+def program_names(package: Package) -> list[str]:
+    """Return the programs that ros2 run finds in a package, and its entry points."""
+    setup, home = package.installation, f"lib/{package.name}"
+    names = {entry.name for entry in entry_points(package)}
+    if setup is not None:
+        for path in (*setup.programs, *(copy.target for copy in setup.copies)):
+            if path.startswith(f"{home}/"):
+                names.add(path.rpartition("/")[2])
+    return sorted(names)
+
+
+def meant_program(name: str, programs: Sequence[str]) -> str | None:
+    """Return the one of some programs that a name may mean; None without any."""
+    return closest(name, programs) or near(name, programs, "node")
