@@ -42,6 +42,7 @@ ROOMS = {
     "ros": (
         "known python xml",
         "xacro urdf installation mesh interfaces cpp",
+        "slips",
         "config",
         "launch",
         "package",
@@ -152,7 +153,7 @@ WEIGHTS = {
     "lab.grading": 12_800,  # functions of complexity at most 10
     "lab.hints": 36_000,  # functions of complexity at most 10
     "lab.rubric": 10_000,
-    "lab.submission": 9_100,  # the release that reads a URDF
+    "lab.submission": 9_600,  # the release that reads a URDF, slips that are proven by reading it again
     "report": 51_900,  # capsules in drawings, and functions of complexity at most 10
     "ros": 300,
     "ros.config": 5_500,
@@ -163,12 +164,13 @@ WEIGHTS = {
     "ros.launch": 44_500,  # the words of Lyrical, and which release has each; functions that do one thing
     "ros.mesh": 4_300,
     "ros.nodes": 43_400,  # functions of their own for what was branches of long ones
-    "ros.package": 25_800,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing
+    "ros.package": 26_100,  # what two readings are compared by, the release that reads a robot, the fixes of files that cannot be read; functions that do one thing
     "ros.python": 28_000,  # functions that do one thing
+    "ros.slips": 6_300,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_200,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
     "ros.workspace": 100_500,  # a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches
     "ros.xacro": 28_200,  # functions that do one thing
-    "ros.xml": 12_300,  # the attributes of newer versions of URDF
+    "ros.xml": 13_200,  # the attributes of broken tags, the attributes of newer versions of URDF
     "": 400,
     "workers": 3_500,
 }

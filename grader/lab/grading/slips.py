@@ -186,7 +186,10 @@ def _corrected(submission: Submission, slips: Iterable[Slip]) -> Submission:
     files = edited_files(submission, [edit for slip in slips for edit in slip.edits])
     assert files is not None
     urdf = submission.urdf
-    if isinstance(urdf, Read) and all(path.endswith((".urdf", ".xacro")) for path in files):
+    is_of_robot = all(path.endswith((".urdf", ".xacro")) for path in files)
+    # A launch file that runs xacro fails if xacro writes a warning.
+    is_run = isinstance(urdf, Read) and urdf.is_expanded and submission.package is not None
+    if isinstance(urdf, Read) and is_of_robot and not is_run:
         return with_urdf(submission, files)
     return with_files(submission, files)
 

@@ -16,6 +16,7 @@ from grader.base.names import near
 from grader.base.source import Edits, Source
 from grader.base.text import enumerated
 from grader.ros.xml import xml_problems
+from grader.ros.xml.broken_tags import read_attributes
 from grader.ros.xml.tinyxml2 import (
     Difference,
     MalformedTagError,
@@ -46,6 +47,7 @@ _ATTRIBUTE = re.compile(
     """,
     re.VERBOSE,
 )
+_WORD = re.compile(r"[-+]?[\w.]*\w")
 _NAMELESS = re.compile(r"""\s*=\s*["']([^"']*)["']""")
 _NAME = re.compile(r"<\s*+([A-Za-z_][\w:.-]*)")
 # Elements for other tools, and of xacro, which stand in the robot; those of xacro have no URDF in
@@ -245,9 +247,11 @@ class _Repairer:
         if match["close"]:
             self._replace(*match.span(), f"</{name}>")
             return Tag(name, "close", {}, match.start())
-        attributes = _readable_attributes(name, rest)
+        attributes = read_attributes(name, rest)
+        if attributes is None:
+            attributes = _readable_attributes(name, rest)
+            self._is_lossy |= _loses_words(rest, attributes)
         is_value_lost = "=" in rest and not attributes
-        self._is_lossy |= is_value_lost
         if attributes:
             what = f"with {enumerated(list(map(short, attributes)))}"
         else:
@@ -300,12 +304,26 @@ class _Repairer:
             opened = self._open.pop()
             self._assume(f"<{short(opened.name)}> is read as <{short(tag.name)}>", opened.offset)
             self._rename(opened, tag.name)
+        elif self._is_end_of_xacro(tag.name):
+            name = self._open.pop().name
+            self._assume(f"</{short(tag.name)}> is read as </{short(name)}>", tag.offset)
+            self._replace(tag.offset, end, f"</{name}>")
         else:
             self._assume(
                 f"</{short(tag.name)}> is ignored, because no <{short(tag.name)}> is open",
                 tag.offset,
             )
             self._replace(tag.offset, end, "")
+
+    def _is_end_of_xacro(self, name: str) -> bool:
+        """Return whether an end tag stands for that of the innermost element, which is xacro's.
+
+        An example is </macro> or </xacro> for </xacro:macro>.
+        """
+        opened = self._open[-1].name if self._open else ""
+        prefix, _, local = opened.partition(":")
+        is_misspelt = name not in _TAGS and near(name, [opened, local]) is not None
+        return prefix == "xacro" and (name in (prefix, local) or is_misspelt)
 
     def _leave(self, depth: int, offset: int) -> None:
         """Close the tags that are open below a depth, before an offset."""
@@ -421,6 +439,12 @@ def _readable_attributes(tag: str, text: str) -> dict[str, str]:
         if main not in attributes and _is_value_of(main, nameless[1]):
             return {main: decode(nameless[1]), **attributes}
     return attributes
+
+
+def _loses_words(text: str, attributes: Mapping[str, str]) -> bool:
+    """Return whether a word or a number in the text of a broken tag is in no attribute."""
+    kept = {word for pair in attributes.items() for part in pair for word in _WORD.findall(part)}
+    return not kept.issuperset(_WORD.findall(decode(text)))
 
 
 def _parents_of(tag: str) -> set[str]:
