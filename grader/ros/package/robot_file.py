@@ -121,8 +121,8 @@ class Read(NamedTuple):
 
         texts = {self.path: Source(self.path, self.data.decode("utf-8", "replace"))}
         if self.reading.source.is_expanded:
-            for path, root in cast("ExpandedSource", self.reading.source).documents.items():
-                texts.setdefault(path, root.place.source)
+            for source in cast("ExpandedSource", self.reading.source).texts_of_files:
+                texts.setdefault(source.path, source)
         return list_choices([*texts.values()])
 
     @property

@@ -14,8 +14,8 @@ from grader.ros.slips.nodes import read_elements
 from grader.ros.slips.roots import root_slips
 from grader.ros.slips.sdf_words import gazebo_slips
 from grader.ros.slips.xacro_syntax import expression_slips, list_names
-from grader.ros.slips.xacro_words import attribute_slips
-from grader.ros.xacro.xacro_nodes import XacroNode
+from grader.ros.slips.xacro_words import attribute_slips, list_macros, nameless_slips
+from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
 Choice = tuple[Slip, ...]  # what one slip may stand for
 
@@ -23,9 +23,8 @@ Choice = tuple[Slip, ...]  # what one slip may stand for
 def list_choices(sources: Sequence[Source]) -> Iterator[Choice]:
     """Yield the slips in the texts of a robot, the first of which is the file that is loaded."""
     roots: list[tuple[Source, XacroNode]] = []
-    for number, source in enumerate(sources):
-        if number == 0:
-            yield from _alone(root_slips(source))
+    for source in sources:
+        yield from _alone(root_slips(source))
         yield from _alone(early_end_slips(source))
         yield from _alone(loose_tag_slips(source))
         if "<xacro:macro" in source.text:
@@ -33,14 +32,19 @@ def list_choices(sources: Sequence[Source]) -> Iterator[Choice]:
         root = read_elements(source)
         if root is not None:
             roots.append((source, root))
-    names: set[str] = set()
+    names: set[str] = set()  # of properties and parameters
+    macros: dict[str, list[str]] = {}  # their parameters
+    named: set[str] = set()  # among them the links, which a macro may make
     for _, root in roots:
         names |= list_names(root)
+        macros |= list_macros(root)
+        named |= {node.attributes.get("name", "") for node in walk(root)}
     for source, root in roots:
         yield from _alone(element_slips(root))
-        yield from _alone(gazebo_slips(root))
+        yield from _alone(gazebo_slips(root, named))
         if "xacro:" in source.text:
             yield from _alone(attribute_slips(root))
+            yield from _alone(nameless_slips(source, macros))
         if "$" in source.text:
             yield from expression_slips(root, names)
 

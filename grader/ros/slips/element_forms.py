@@ -15,14 +15,31 @@ from grader.base.source import Edits, Source
 from grader.base.text import cut, quoted
 from grader.ros.slips.nodes import place_of
 from grader.ros.xacro.xacro_nodes import XacroNode
+from grader.ros.xml.broken_tags import read_attributes
 from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN, PARTS, REQUIRED, TAGS
 
 _MAX_SHOWN = 60  # characters of a value
 _TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|.*\$[{(].*")
 _POSE = 6  # numbers of a pose
-# Elements with three sizes that are no boxes.
-_NO_BOXES = ("plane", "ellipsoid", "cone", "pyramid", "capsule", "prism", "wedge", "triangle")
+_BY_ATTRIBUTES = {
+    ("size",): "box",
+    ("radius",): "sphere",
+    ("length", "radius"): "cylinder",
+}
+# Elements of other tools that are none of these.
+_NO_SHAPES = (
+    "plane",
+    "ellipsoid",
+    "cone",
+    "pyramid",
+    "capsule",
+    "prism",
+    "wedge",
+    "torus",
+    "ring",
+    "circle",
+)
 # Elements that belong under <robot>, whatever tool reads them.
 _OF_ROBOT = ("gazebo", "transmission", "ros2_control")
 _REPEATED = ("visual", "collision", *_OF_ROBOT, *CHILDREN["robot"])
@@ -42,7 +59,7 @@ def element_slips(root: XacroNode) -> Iterator[Slip]:
 
 
 def _slips_of(node: XacroNode, around: tuple[XacroNode, ...], parent: str) -> Iterator[Slip]:
-    if node.tag in TAGS and node.tag != "robot":
+    if node.tag in TAGS:
         yield from _with_attributes_inside(node)
     if parent == "geometry" and node.tag not in TAGS:
         yield from _named_otherwise(node)
@@ -95,6 +112,10 @@ def _as_empty_element(
 
 def _values_of_text(tag: str, text: str, absent: list[str]) -> Mapping[str, str]:
     """Return the attributes that the text of an element stands for."""
+    if "=" in text:
+        given = read_attributes(tag, text) or {}
+        is_right = all(name in absent and _fits(name, value) for name, value in given.items())
+        return given if is_right else {}
     tokens = _TOKEN.findall(text)
     if tag == "origin" and absent[:2] == ["xyz", "rpy"] and len(tokens) == _POSE:
         if all(map(_NUMBER.fullmatch, tokens)):
@@ -148,14 +169,16 @@ def _value_of(node: XacroNode) -> str:
 
 
 def _named_otherwise(node: XacroNode) -> Iterator[Slip]:
-    """Yield the shape whose attributes are those of a box: <cube size="1 2 3"/>."""
-    is_box = [*node.attributes] == ["size"] and _fits("size", node.attributes["size"])
-    if not is_box or node.tag.lower() in _NO_BOXES or ":" in node.tag:
+    """Yield the shape of another word that has the attributes of one: <cube size="1 2 3"/>."""
+    given = node.attributes
+    shape = _BY_ATTRIBUTES.get(tuple(sorted(given)), "")
+    is_fitting = all(_fits(name, value) for name, value in given.items())
+    if not shape or not is_fitting or node.tag.lower() in _NO_SHAPES or ":" in node.tag:
         return
     source, start = place_of(node)
     reaction = f"ROS 2 ignores <{node.tag}> in <geometry>"
-    assumption = f"<{node.tag}> is read as <box>"
-    yield Slip(renamed_tag(source, start, "box"), reaction, assumption, source.at(start))
+    assumption = f"<{node.tag}> is read as <{shape}>"
+    yield Slip(renamed_tag(source, start, shape), reaction, assumption, source.at(start))
 
 
 def _misplaced(node: XacroNode, parent: XacroNode, around: XacroNode) -> Iterator[Slip]:

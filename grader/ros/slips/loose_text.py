@@ -13,6 +13,7 @@ _MARKUP = re.compile(r"(?s)<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<[^<>]*>?")
 _START = re.compile(
     r"""(?:^|(?<=\s))(?P<name>[\w:.-]+)(?:\s+[\w:.-]+\s*=\s*(?:"[^"]*"|'[^']*'))+\s*/?>"""
 )
+_BARE = re.compile(r"(?:^|(?<=\s))(?P<name>visual|collision|geometry|inertial)\s*>")
 _END = re.compile(r"(?:^|(?<=\s))/(?P<name>[\w:.-]+)\s*>")
 _NAMED = re.compile(r"""<(?:link|joint)\s[^<>]*?name\s*=\s*["']([^"'<>]*)["']""")
 _CLOSED = re.compile(r"(?s)<!--.*?-->|</robot\s*>")
@@ -31,7 +32,7 @@ def _tags_in(source: Source, start: int, end: int) -> Iterator[Slip]:
     text = source.text[start:end]
     if ">" not in text:
         return
-    for pattern in (_START, _END):
+    for pattern in (_START, _BARE, _END):
         for match in pattern.finditer(text):
             name = match["name"]
             if name in TAGS or name.startswith("xacro:"):

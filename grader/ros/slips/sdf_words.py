@@ -3,7 +3,7 @@
 The children of a <plugin> are its own.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from grader.base.element_edits import renamed_attribute, renamed_tag
 from grader.base.names import folded
@@ -27,16 +27,15 @@ _WORDS = frozenset(_TEXT.split())
 _BY_LETTERS = {folded(word): word for word in _WORDS}
 
 
-def gazebo_slips(root: XacroNode) -> Iterator[Slip]:
+def gazebo_slips(root: XacroNode, named: Collection[str]) -> Iterator[Slip]:
     """Yield the tags in <gazebo> that differ from those of a sensor in their case or a separator.
 
-    And the attribute of <gazebo> that has the name of a link under another name.
+    And the attribute of <gazebo> that has the name of a link; `named` are all names in the files.
     """
-    links = {node.attributes.get("name", "") for node in walk(root) if node.tag == "link"}
     for gazebo in walk(root):
         if gazebo.tag != "gazebo":
             continue
-        yield from _reference_slips(gazebo, links)
+        yield from _reference_slips(gazebo, named)
         waiting = list(reversed(gazebo.elements))
         while waiting:
             node = waiting.pop()
@@ -48,19 +47,33 @@ def gazebo_slips(root: XacroNode) -> Iterator[Slip]:
                 reaction = f"Gazebo does not know <{node.tag}>"
                 assumption = f"<{node.tag}> is read as <{meant}>"
                 yield Slip(edits, reaction, assumption, source.at(start))
+            if meant == "sensor":
+                yield from _attribute_slips(node)
             if (meant or node.tag) != "plugin":
                 waiting += reversed(node.elements)
 
 
-def _reference_slips(gazebo: XacroNode, links: set[str]) -> Iterator[Slip]:
+def _reference_slips(gazebo: XacroNode, named: Collection[str]) -> Iterator[Slip]:
     """Yield the one attribute of <gazebo> that has the name of a link."""
     given = gazebo.attributes
     if len(given) != 1 or "reference" in given:
         return
     [(name, value)] = given.items()
-    if value in links:
+    if value in named or "$" in value:
         source, start = place_of(gazebo)
         edits = renamed_attribute(source, start, name, "reference")
         reaction = f"Gazebo does not know the attribute {name} of <gazebo>"
         assumption = f"the attribute {name} of <gazebo> is read as reference"
         yield Slip(edits, reaction, assumption, source.at(start))
+
+
+def _attribute_slips(sensor: XacroNode) -> Iterator[Slip]:
+    """Yield the attributes of a sensor that differ from its own in their case."""
+    for name in sensor.attributes:
+        meant = name.lower()
+        if meant != name and meant in ("name", "type") and meant not in sensor.attributes:
+            source, start = place_of(sensor)
+            edits = renamed_attribute(source, start, name, meant)
+            reaction = f"Gazebo does not know the attribute {name} of <{sensor.tag}>"
+            assumption = f"the attribute {name} of <{sensor.tag}> is read as {meant}"
+            yield Slip(edits, reaction, assumption, source.at(start))

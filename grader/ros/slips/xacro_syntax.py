@@ -14,7 +14,7 @@ from grader.ros.xml.urdf_format import PARTS
 _MAX_LENGTH = 500  # characters of a value
 _MAX_PLACES = 8  # where a brace may be missing
 _MAX_SHOWN = 60
-_EXPRESSION = re.compile(r"\$\{([^}]*)\}")
+_EXPRESSION = re.compile(r"\$\{([^}$]*)\}")
 _COMMANDS = r"(?:find|arg|env|optenv|eval|dirname|cwd|anon)\b"
 # $(a / 4) with an operator, and $[a / 4]: what is in them is no substitution.
 _IN_PARENTHESES = re.compile(rf"\$\((?!\s*{_COMMANDS})((?:[^()$]|\([^()$]*\))*)\)")
@@ -50,7 +50,9 @@ def expression_slips(root: XacroNode, names: set[str]) -> Iterator[tuple[Slip, .
                 continue
             is_condition = node.tag in ("xacro:if", "xacro:unless")
             ways = _read_text(text, names, attribute.name, is_condition=is_condition)
-            yield tuple(_slip(source, attribute, text, new) for new in dict.fromkeys(ways))
+            slips = tuple(_slip(source, attribute, text, new) for new in dict.fromkeys(ways))
+            if slips:
+                yield slips
 
 
 def _slip(source: Source, attribute: markup.Attribute, text: str, new: str) -> Slip:
@@ -93,14 +95,15 @@ def _read_text(text: str, names: set[str], attribute: str, *, is_condition: bool
 def _with_brace(text: str, attribute: str, names: set[str]) -> Iterator[str]:
     """Yield a text with the } that an expression lacks in each place where it can be.
 
-    With it, an attribute has as many numbers as its format says. A ) or ] without its opening one
-    stands for it.
+    With it, an attribute has as many numbers as its format says, if any place is such. A ) or ]
+    without its opening one stands for it.
     """
     start = _EXPRESSION.sub(lambda match: " " * len(match[0]), text).index("${")
     end = text.find("$", start + 2)
     end = end if end >= 0 else len(text)
     count = len(PARTS.get(attribute, ()))
-    ways = []
+    ways: list[str] = []
+    counted: list[str] = []
     for place in re.finditer(r"(?<=\S)(?=\s|\Z)|(?=[)\]_/.])", text[start:end]):
         at = start + place.end()
         inner = text[start + 2 : at]
@@ -112,9 +115,10 @@ def _with_brace(text: str, attribute: str, names: set[str]) -> Iterator[str]:
         if rest[:1] in (")", "]"):
             rest = rest[1:]
         new = f"{text[:at]}}}{rest}"
-        if not count or len(_TOKEN.findall(new)) == count:
-            ways.append(new)
-    yield from ways[-_MAX_PLACES:]
+        ways.append(new)
+        if len(_TOKEN.findall(new)) == count:
+            counted.append(new)
+    yield from (counted or ways)[-_MAX_PLACES:]
 
 
 def _with_signs(expression: str, names: set[str], *, is_condition: bool) -> str:

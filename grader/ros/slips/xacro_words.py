@@ -1,10 +1,12 @@
 """The attributes of xacro's own tags that have another name, and values of calls without a name."""
 
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Collection, Iterator, Mapping
 
 from grader.base import markup
 from grader.base.names import near
 from grader.base.slips import Slip
+from grader.base.source import Source
 from grader.ros.slips.nodes import place_of
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
@@ -19,6 +21,8 @@ _USUAL: Mapping[str, tuple[str, ...]] = {
     "xacro:include": ("filename",),
     "xacro:attribute": ("name", "value"),
 }
+_CALL = re.compile(r"<xacro:(?P<name>[\w.-]+)(?P<rest>[^<>]*)>")
+_VALUE = re.compile(r"""(?:(?P<name>[\w.:-]+)\s*=\s*|=\s*)?(?P<quoted>"[^"]*"|'[^']*')""")
 _OTHERS: Mapping[str, tuple[str, ...]] = {
     "xacro:property": ("default", "remove", "scope", "lazy_eval"),
     "xacro:include": ("ns", "optional"),
@@ -55,3 +59,34 @@ def _renamed(node: XacroNode, name: str, meant: str) -> Iterator[Slip]:
     reaction = f"<{node.tag}> has no attribute {name}"
     assumption = f"the attribute {name} of <{node.tag}> is read as {meant}"
     yield Slip((edit,), reaction, assumption, source.at(written.start))
+
+
+def nameless_slips(source: Source, macros: Mapping[str, Collection[str]]) -> Iterator[Slip]:
+    """Yield the values without a name in calls that lack one parameter of a macro.
+
+    `macros` has the parameters of each that have no default.
+    """
+    for call in _CALL.finditer(source.text):
+        needed = macros.get(call["name"], ())
+        given = [match["name"] for match in _VALUE.finditer(call["rest"])]
+        lacking = [name for name in needed if name not in given]
+        nameless = [match for match in _VALUE.finditer(call["rest"]) if not match["name"]]
+        if len(nameless) == len(lacking) == 1:
+            [value] = nameless
+            start, end = (call.start("rest") + offset for offset in value.span())
+            new = f"{lacking[0]}={value['quoted']}"
+            reaction = f"a value of <xacro:{call['name']}> has no name"
+            assumption = f"{value['quoted']} is read as {new}"
+            edit = source.edit(start, end, new)
+            yield Slip((edit,), reaction, assumption, source.at(start), is_refused=True)
+
+
+def list_macros(root: XacroNode) -> dict[str, list[str]]:
+    """Return the parameters without a default of each macro in a file."""
+    macros: dict[str, list[str]] = {}
+    for node in walk(root):
+        if node.tag == "xacro:macro":
+            words = node.attributes.get("params", "").split()
+            plain = [word for word in words if word.isidentifier()]
+            macros[node.attributes.get("name", "").removeprefix("xacro:")] = plain
+    return macros

@@ -93,6 +93,12 @@ class ExpandedSource(Source):
         return self._expander.files.documents
 
     @property
+    def texts_of_files(self) -> list[Source]:
+        """The texts of the files that it includes, also of those that are no XML."""
+        read = [document.place.source for document in self.documents.values()]
+        return [*read, *self._expander.files.broken.values()]
+
+    @property
     def includes(self) -> Mapping[tuple[str, int], list[str]]:
         """The files that were included, by the path and the tag that include them.
 

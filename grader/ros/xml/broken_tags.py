@@ -50,7 +50,8 @@ def _value_end(text: str, start: int) -> int:
     """Return the offset of the quote that ends a value, and -1 if there is none."""
     quote = text[start]
     if quote in "\"'":
-        return text.find(quote, start + 1)
+        end = text.find(quote, start + 1)
+        return end if end >= 0 else text.find("'" if quote == '"' else '"', start + 1)
     closing = re.compile(f"[{_QUOTES[2:]}]").search(text, start + 1)
     return closing.start() if closing is not None else -1
 

@@ -54,6 +54,7 @@ _NAME = re.compile(r"<\s*+([A-Za-z_][\w:.-]*)")
 # them.
 _XACRO = ("xacro:property", "xacro:arg", "xacro:include")
 _TOP = ("gazebo", "transmission", "ros2_control", *_XACRO)
+_AROUND = {"xacro:macro", "xacro:if", "xacro:unless"}  # elements of xacro with URDF in them
 _TAGS = {*CHILDREN, *(tag for tags in CHILDREN.values() for tag in tags), *_XACRO}
 _ARROW = re.compile(r"(?<!-)->(?=[ \t]*(?:\r?\n|<))")
 _VISIBLE = re.compile(r"[^\r\n]")
@@ -284,7 +285,7 @@ class _Repairer:
             around
             and around[-1] not in parents
             and parents.intersection(around)
-            and _TAGS.issuperset(around)
+            and (_TAGS | _AROUND).issuperset(around)
         ):
             last = max(index for index, name in enumerate(around) if name in parents)
             self._leave(last + 1, tag.offset)
@@ -296,6 +297,10 @@ class _Repairer:
         if indices:
             self._leave(indices[-1] + 1, tag.offset)
             self._open.pop()
+        elif self._is_end_of_xacro(tag.name):
+            name = self._open.pop().name
+            self._assume(f"</{short(tag.name)}> is read as </{short(name)}>", tag.offset)
+            self._replace(tag.offset, end, f"</{name}>")
         elif (
             self._open
             and self._open[-1].name not in _TAGS
@@ -304,10 +309,6 @@ class _Repairer:
             opened = self._open.pop()
             self._assume(f"<{short(opened.name)}> is read as <{short(tag.name)}>", opened.offset)
             self._rename(opened, tag.name)
-        elif self._is_end_of_xacro(tag.name):
-            name = self._open.pop().name
-            self._assume(f"</{short(tag.name)}> is read as </{short(name)}>", tag.offset)
-            self._replace(tag.offset, end, f"</{name}>")
         else:
             self._assume(
                 f"</{short(tag.name)}> is ignored, because no <{short(tag.name)}> is open",
@@ -322,7 +323,7 @@ class _Repairer:
         """
         opened = self._open[-1].name if self._open else ""
         prefix, _, local = opened.partition(":")
-        is_misspelt = name not in _TAGS and near(name, [opened, local]) is not None
+        is_misspelt = name not in _TAGS and near(name.removeprefix("xacro:"), [local]) is not None
         return prefix == "xacro" and (name in (prefix, local) or is_misspelt)
 
     def _leave(self, depth: int, offset: int) -> None:
@@ -450,8 +451,11 @@ def _loses_words(text: str, attributes: Mapping[str, str]) -> bool:
 def _parents_of(tag: str) -> set[str]:
     """Return the tags of the elements in which an element of this tag may be."""
     if tag in _TOP:
-        return {"robot"}
-    return {name for name, tags in CHILDREN.items() if tag in tags}
+        return {"robot", *_AROUND}
+    parents = {name for name, tags in CHILDREN.items() if tag in tags}
+    if parents == {"robot"}:
+        parents |= _AROUND
+    return parents
 
 
 def _main_attribute(tag: str) -> str:
