@@ -44,6 +44,8 @@ class _Trials:
             after = self._read(slip)
             if after is None or after.state == self._before or after.state.faults > fewest:
                 continue
+            if slip.is_refused and after.state.faults == self._before.faults:
+                continue
             if after.state.faults < fewest:
                 fewest, slips = after.state.faults, {}
             is_refused = slip.is_refused or after.state.refusals < self._before.refusals

@@ -22,7 +22,7 @@ _USUAL: Mapping[str, tuple[str, ...]] = {
     "xacro:attribute": ("name", "value"),
 }
 _CALL = re.compile(r"<xacro:(?P<name>[\w.-]+)(?P<rest>[^<>]*)>")
-_VALUE = re.compile(r"""(?:(?P<name>[\w.:-]+)\s*=\s*|=\s*)?(?P<quoted>"[^"]*"|'[^']*')""")
+_VALUE = re.compile(r"""(?:(?P<name>[\w.:-]+)[\s=:]*|=\s*)?(?P<quoted>"[^"]*"|'[^']*')""")
 _OTHERS: Mapping[str, tuple[str, ...]] = {
     "xacro:property": ("default", "remove", "scope", "lazy_eval"),
     "xacro:include": ("ns", "optional"),
