@@ -5,7 +5,7 @@ from grader.base.text import enumerated, first_lines
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.submission.submission import Submission
-from grader.ros.workspace.rules.rule_table import Family
+from grader.ros.workspace.rules.rule_table import CONTROLLER_STARTED, Family
 
 ABOUT = {
     "names_agree": About(
@@ -18,7 +18,7 @@ ABOUT = {
 _MAX_IN_MESSAGE = 3  # mistakes, and places of each
 
 
-def names_agree(submission: Submission, *, of: Family) -> Outcome:
+def names_agree(submission: Submission, *, of: Family, where_started: bool = False) -> Outcome:
     """The names that files of the packages use are defined: files, frames, parameters, programs and
     so on.
 
@@ -31,6 +31,7 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
             dependencies, services (and actions) or interfaces (messages, services, actions and
             their fields); or code, of which nothing may certainly stop a node, or keep it from
             working; values (numbers that contradict the robot) or transforms (that are no tree).
+        where_started: Whether controllers pass that no spawner starts, for `carried`.
     """
     from grader.ros.workspace.rules.reading import (  # late: few rubrics ask for it
         read_agreement,
@@ -40,6 +41,8 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
     submission.needed_package()
     workspace = submission.workspace
     wrong = wrong_names(workspace, of, submission.lab_packages.values())
+    if where_started:
+        wrong = [mismatch for mismatch in wrong if mismatch.rule is not CONTROLLER_STARTED]
     agreement = read_agreement(workspace)
     undecided = agreement.undecided
     if wrong:
