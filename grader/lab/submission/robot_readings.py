@@ -42,15 +42,24 @@ class _Trials:
         fewest = self._before.faults
         for slip in choice:
             after = self._read(slip)
-            if after is None or after.state == self._before or after.state.faults > fewest:
-                continue
-            if slip.is_refused and after.state.faults == self._before.faults:
+            if after is None or after.state.faults > fewest or not self._is_changed(slip, after):
                 continue
             if after.state.faults < fewest:
                 fewest, slips = after.state.faults, {}
             is_refused = slip.is_refused or after.state.refusals < self._before.refusals
             slips.setdefault(after.state.content, slip._replace(is_refused=is_refused))
         return next(iter(slips.values())) if len(slips) == 1 else None
+
+    def _is_changed(self, slip: Slip, after: Read) -> bool:
+        """Return whether a slip matters that is corrected.
+
+        It does not if the robot is read as it is meant without it.
+        """
+        if after.state.faults == self._before.faults and slip.is_refused:
+            return False
+        if self._before.is_read:
+            return after.state.content != self._before.content
+        return after.state != self._before
 
     def _read(self, slip: Slip) -> Read | None:
         """Return the robot with a slip corrected.

@@ -15,6 +15,7 @@ class RobotState(NamedTuple):
     refusals: int  # reasons for which xacro or ROS 2 refuses it
     dropped: int  # parts of it that ROS 2 drops
     content: str  # the robot, and what other tools read of the file
+    is_read: bool  # whether it is a robot that ROS 2 loads once what is certain is corrected
 
     @property
     def faults(self) -> tuple[int, int]:
@@ -36,4 +37,5 @@ def state_of(reading: "Reading") -> RobotState:
                 content += [
                     (part.tag, sorted(part.items()), text_in(part)) for part in child.iter()
                 ]
-    return RobotState(len(refusals), len(dropped), repr(content))
+    is_read = reading.verdict != "rejected" or reading.is_meant
+    return RobotState(len(refusals), len(dropped), repr(content), is_read)
