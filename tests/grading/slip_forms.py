@@ -139,5 +139,5 @@ def _ways(text: str) -> Iterator[tuple[str, str, str]]:
     if "<gazebo" in text:
         for word in _CASED:
             pattern = rf"(?s)<{word}([ >].*?)</{word}>"
-            for new in {word.capitalize(), word.upper(), word.replace("_", "")} - {word}:
+            for new in sorted({word.capitalize(), word.upper(), word.replace("_", "")} - {word}):
                 yield "words of SDFormat", pattern, rf"<{new}\1</{new}>"
