@@ -286,11 +286,9 @@ class _NodeTopics:
             return self._unread[0]
         for topic in of_kind:
             if topic.written.removeprefix("/") == full_name.removeprefix("/") and topic.name:
-                line = f"{topic.node.location.path}, line {topic.node.location.line}"
-                message = (
-                    f"no node {verb} {full_name}: {line} renames that of a node to {topic.name}"
-                )
-                return Fault(message, topic.node.location, cause="topic")
+                place = topic.node.location
+                detail = f": line {place.line} of {place.path} remaps it to {topic.name}"
+                return Fault(f"no node {verb} {full_name}", place, detail, cause="topic")
         return _find_similar_topic(f"no node {verb} {full_name}", full_name, of_kind)
 
 

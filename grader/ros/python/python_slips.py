@@ -121,7 +121,7 @@ def _readable_changes(
         parsed = _parsed(after, path)
         if isinstance(parsed, Code):
             read.setdefault(ast.dump(parsed.tree), change)
-        elif parsed.location.line > fault.location.line and parsed.message != fault.message:
+        elif parsed.location.line > fault.location.line and parsed.reason != fault.reason:
             read.setdefault("", change)
     return read
 
