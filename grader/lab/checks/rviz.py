@@ -284,7 +284,7 @@ def _judge_topic(actual: str, topic: str, names: "_Names") -> _Verdict:
             unheard = (
                 f"RViz reads the robot from {_listed(shown)}, but it is on {_listed(described)}"
             )
-            location = None
+            location = next((node.location for node in names.publishers if node.namespace), None)
     elif actual.strip("/") != topic.strip("/"):
         if actual:
             fault = f"reads the topic {actual!r}; it should read"

@@ -11,15 +11,16 @@ def read_elements(source: Source) -> XacroNode | None:
     """Return the root element of a text, also after the edits that repair it; None without one."""
     data, budget = source.text.encode("utf-8", "surrogateescape"), Budget()
     try:
-        return read_nodes(data, source.path, budget)
+        return _read(data, source.path, budget)
     except (EvaluationFails, Undetermined, OutOfBudget):
         return None
-    except XMLSyntaxError:
-        pass
+
+
+def _read(data: bytes, path: str, budget: Budget) -> XacroNode | None:
     try:
-        return recovered_nodes(data, source.path, budget)[0]
-    except (EvaluationFails, Undetermined, OutOfBudget):
-        return None
+        return read_nodes(data, path, budget)
+    except XMLSyntaxError:
+        return recovered_nodes(data, path, budget)[0]
 
 
 def place_of(node: XacroNode) -> tuple[Source, int]:

@@ -8,7 +8,7 @@ from grader.base.names import near
 from grader.base.slips import Slip
 from grader.base.source import Source
 
-_PROLOGUE = re.compile(r"(?s)(?:\s|\ufeff|<\?.*?\?>|<!--.*?-->|<!DOCTYPE[^>]*>)*")
+_PROLOGUE = re.compile(r"(?s)(?:\s|\ufeff|<\?.*?\?>|<!--.*?-->|<!DOCTYPE(?:[^\[>]|\[[^\]]*\])*>)*")
 
 
 def root_slips(source: Source) -> Iterator[Slip]:

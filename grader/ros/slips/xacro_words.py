@@ -3,7 +3,7 @@
 import re
 from collections.abc import Collection, Iterator, Mapping
 
-from grader.base import markup
+from grader.base.element_edits import renamed_attribute
 from grader.base.names import near
 from grader.base.slips import Slip
 from grader.base.source import Source
@@ -46,19 +46,15 @@ def attribute_slips(root: XacroNode) -> Iterator[Slip]:
             if meant is None and len(unknown) == len(lacking) == 1:
                 meant = lacking[0]
             if meant is not None:
-                yield from _renamed(node, name, meant)
+                yield _renamed(node, name, meant)
 
 
-def _renamed(node: XacroNode, name: str, meant: str) -> Iterator[Slip]:
+def _renamed(node: XacroNode, name: str, meant: str) -> Slip:
     source, start = place_of(node)
-    written = markup.attribute(source.text, start, name)
-    if written is None:
-        return
-    text = source.text[written.start + len(name) : written.end]
-    edit = source.edit(written.start, written.end, f"{meant}{text}")
+    edits = renamed_attribute(source, start, name, meant)
     reaction = f"<{node.tag}> has no attribute {name}"
     assumption = f"the attribute {name} of <{node.tag}> is read as {meant}"
-    yield Slip((edit,), reaction, assumption, source.at(written.start))
+    return Slip(edits, reaction, assumption, node.place.at(name))
 
 
 def nameless_slips(source: Source, macros: Mapping[str, Collection[str]]) -> Iterator[Slip]:
