@@ -156,7 +156,7 @@ WEIGHTS = {
     "lab.submission": 9_600,  # the release that reads a URDF, slips that are proven by reading it again
     "report": 51_900,  # capsules in drawings, and functions of complexity at most 10
     "ros": 300,
-    "ros.config": 5_500,
+    "ros.config": 5_750,  # numbers of parameters in quotes
     "ros.cpp": 12_300,
     "ros.installation": 30_200,  # what stops a build from a release on; functions for what was branches of long ones
     "ros.interfaces": 4_400,  # since and until when there is a type; functions for the checks of one default
@@ -166,10 +166,10 @@ WEIGHTS = {
     "ros.nodes": 43_400,  # functions of their own for what was branches of long ones
     "ros.package": 26_100,  # what two readings are compared by, the release that reads a robot, the fixes of files that cannot be read; functions that do one thing
     "ros.python": 28_000,  # functions that do one thing
-    "ros.slips": 6_300,  # the kinds of slips of a robot that are proven by reading it again
+    "ros.slips": 6_950,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_200,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
     "ros.workspace": 100_500,  # a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches
-    "ros.xacro": 28_200,  # functions that do one thing
+    "ros.xacro": 28_400,  # xacro:attribute, letters outside of ASCII; functions that do one thing
     "ros.xml": 13_200,  # the attributes of broken tags, the attributes of newer versions of URDF
     "": 400,
     "workers": 3_500,

@@ -5,7 +5,7 @@ from grader.base.text import enumerated, first_lines
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.submission.submission import Submission
-from grader.ros.workspace.rules.rule_table import CONTROLLER_STARTED, Family
+from grader.ros.workspace.rules.rule_table import Family
 
 ABOUT = {
     "names_agree": About(
@@ -15,6 +15,7 @@ ABOUT = {
         }
     )
 }
+_OF_START = "controller-started"  # the rule of controllers that no spawner starts
 _MAX_IN_MESSAGE = 3  # mistakes, and places of each
 
 
@@ -42,7 +43,7 @@ def names_agree(submission: Submission, *, of: Family, where_started: bool = Fal
     workspace = submission.workspace
     wrong = wrong_names(workspace, of, submission.lab_packages.values())
     if where_started:
-        wrong = [mismatch for mismatch in wrong if mismatch.rule is not CONTROLLER_STARTED]
+        wrong = [mismatch for mismatch in wrong if mismatch.rule.name != _OF_START]
     agreement = read_agreement(workspace)
     undecided = agreement.undecided
     if wrong:

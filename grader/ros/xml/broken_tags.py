@@ -51,7 +51,9 @@ def _value_end(text: str, start: int) -> int:
     quote = text[start]
     if quote in "\"'":
         end = text.find(quote, start + 1)
-        return end if end >= 0 else text.find("'" if quote == '"' else '"', start + 1)
+        if end < 0:
+            end = text.find("'", start + 1) if quote == '"' else text.find('"', start + 1)
+        return end
     closing = re.compile(f"[{_QUOTES[2:]}]").search(text, start + 1)
     return closing.start() if closing is not None else -1
 
