@@ -32,7 +32,7 @@ def list_choices(sources: Sequence[Source]) -> Iterator[Choice]:
         root = read_elements(source)
         if root is not None:
             roots.append((source, root))
-    names: set[str] = set()  # of properties and parameters
+    names = {"pi"}  # and those of properties and parameters
     macros: dict[str, list[str]] = {}  # their parameters
     named: set[str] = set()  # among them the links, which a macro may make
     for _, root in roots:
@@ -45,7 +45,7 @@ def list_choices(sources: Sequence[Source]) -> Iterator[Choice]:
         if "xacro:" in source.text:
             yield from _alone(attribute_slips(root))
             yield from _alone(nameless_slips(source, macros))
-        if "$" in source.text:
+        if "$" in source.text or "{" in source.text:
             yield from expression_slips(root, names)
 
 

@@ -19,6 +19,9 @@ _COMMANDS = r"(?:find|arg|env|optenv|eval|dirname|cwd|anon)\b"
 # $(a / 4) with an operator, and $[a / 4]: what is in them is no substitution.
 _IN_PARENTHESES = re.compile(rf"\$\((?!\s*{_COMMANDS})((?:[^()$]|\([^()$]*\))*)\)")
 _IN_BRACKETS = re.compile(r"\$\[([^\[\]$]*)\]")
+# ${{a}} and ${a}}, and {a / 4} or $ {a / 4} with a name that is known.
+_IN_BRACES = re.compile(r"\$\{\{?([^{}$]*)\}\}")
+_WITHOUT_DOLLAR = re.compile(r"(?<![${])(?:\$\s+)?\{([^{}$]*)\}")
 _OPERATOR = re.compile(r"[-+*/%<>=]|\b(?:and|or|not|if)\b")
 _WORDS = re.compile(r"\b[^\W\d]\w*")
 _TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
@@ -46,7 +49,7 @@ def expression_slips(root: XacroNode, names: set[str]) -> Iterator[tuple[Slip, .
         source, start = place_of(node)
         for attribute in markup.attributes(source.text, start):
             text = source.text[slice(*attribute.value)]
-            if "$" not in text or len(text) > _MAX_LENGTH:
+            if not ("$" in text or "{" in text) or len(text) > _MAX_LENGTH:
                 continue
             is_condition = node.tag in ("xacro:if", "xacro:unless")
             ways = _read_text(text, names, attribute.name, is_condition=is_condition)
@@ -81,7 +84,13 @@ def _read_text(text: str, names: set[str], attribute: str, *, is_condition: bool
     if "${" in _EXPRESSION.sub("", text):  # an expression has no } at its end
         yield from _with_brace(text, attribute, names)
         return
-    new = _IN_BRACKETS.sub(r"${\1}", text)
+    new = _IN_BRACES.sub(r"${\1}", _IN_BRACKETS.sub(r"${\1}", text))
+    new = _WITHOUT_DOLLAR.sub(
+        lambda match: (
+            match[0] if names.isdisjoint(_WORDS.findall(match[1])) else f"${{{match[1]}}}"
+        ),
+        new,
+    )
     new = _IN_PARENTHESES.sub(
         lambda match: f"${{{match[1]}}}" if _OPERATOR.search(match[1]) else match[0], new
     )

@@ -3,10 +3,12 @@
 import re
 from collections.abc import Collection, Iterator, Mapping
 
-from grader.base.element_edits import renamed_attribute
+from grader.base import markup
+from grader.base.element_edits import attributes_text, renamed_attribute
 from grader.base.names import near
 from grader.base.slips import Slip
 from grader.base.source import Source
+from grader.base.text import cut, quoted
 from grader.ros.slips.nodes import place_of
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
@@ -21,6 +23,7 @@ _USUAL: Mapping[str, tuple[str, ...]] = {
     "xacro:include": ("filename",),
     "xacro:attribute": ("name", "value"),
 }
+_MAX_SHOWN = 60  # characters of a text
 _CALL = re.compile(r"<xacro:(?P<name>[\w.-]+)(?P<rest>[^<>]*)>")
 _VALUE = re.compile(r"""(?:(?P<name>[\w.:-]+)[\s=:]*|=\s*)?(?P<quoted>"[^"]*"|'[^']*')""")
 _OTHERS: Mapping[str, tuple[str, ...]] = {
@@ -41,12 +44,26 @@ def attribute_slips(root: XacroNode) -> Iterator[Slip]:
         lacking = [name for name in usual if name not in node.attributes]
         if "default" in node.attributes and node.tag == "xacro:property":
             lacking.remove("value")
+        text = "".join(child for child in node.children if isinstance(child, str)).strip()
+        if text and len(lacking) == 1 and not unknown and not node.elements:
+            yield _with_attribute(node, lacking[0], text)
         for name in unknown if usual else ():
             meant = near(name, lacking)
             if meant is None and len(unknown) == len(lacking) == 1:
                 meant = lacking[0]
             if meant is not None:
                 yield _renamed(node, name, meant)
+
+
+def _with_attribute(node: XacroNode, name: str, text: str) -> Slip:
+    """Return the slip of a tag that has an attribute as its text."""
+    source, start = place_of(node)
+    head = markup.head_end(source.text, start)[0]
+    end = markup.element_end(source.text, start)
+    new = f"{source.text[start : head - 1]}{attributes_text({name: text})}/>"
+    reaction = f"<{node.tag}> has no attribute {name}"
+    assumption = f"{quoted(cut(text, _MAX_SHOWN))} in <{node.tag}> is read as its {name}"
+    return Slip((source.edit(start, end, new),), reaction, assumption, source.at(start))
 
 
 def _renamed(node: XacroNode, name: str, meant: str) -> Slip:
