@@ -23,6 +23,8 @@ def proven_slips(submission: Submission) -> Iterator[Slip]:
         slip = trials.choose(choice)
         if slip is not None:
             yield slip
+        if trials.is_spent:
+            return
 
 
 class _Trials:
@@ -32,6 +34,11 @@ class _Trials:
         self._submission = submission
         self._before = urdf.state
         self._left = _MAX_TRIALS
+
+    @property
+    def is_spent(self) -> bool:
+        """Whether the robot was read as often as it may be."""
+        return self._left <= 0
 
     def choose(self, choice: Sequence[Slip]) -> Slip | None:
         """Return the one way to read what is written that gives a robot; None if several do.

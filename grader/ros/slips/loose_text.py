@@ -8,15 +8,16 @@ from grader.base.source import Source
 from grader.base.text import cut
 from grader.ros.xml.urdf_format import TAGS
 
-_MAX_SHOWN = 60
-_MARKUP = re.compile(r"(?s)<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<[^<>]*>?")
+_MAX_SHOWN = 60  # characters of a tag
+_MAX_LENGTH = 2000  # characters of a text between two tags
+_MARKUP = re.compile(r"(?s)<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<[^<>]*>?")
 _START = re.compile(
     r"""(?:^|(?<=\s))(?P<name>[\w:.-]+)(?:\s+[\w:.-]+\s*=\s*(?:"[^"]*"|'[^']*'))+\s*/?>"""
 )
 _BARE = re.compile(r"(?:^|(?<=\s))(?P<name>visual|collision|geometry|inertial)\s*>")
 _END = re.compile(r"(?:^|(?<=\s))/(?P<name>[\w:.-]+)\s*>")
 _NAMED = re.compile(r"""<(?:link|joint)\s[^<>]*?name\s*=\s*["']([^"'<>]*)["']""")
-_CLOSED = re.compile(r"(?s)<!--.*?-->|</robot\s*>")
+_CLOSED = re.compile(r"(?s)<!--.*?(?:-->|\Z)|</robot\s*>")
 
 
 def loose_tag_slips(source: Source) -> Iterator[Slip]:
@@ -30,7 +31,7 @@ def loose_tag_slips(source: Source) -> Iterator[Slip]:
 
 def _tags_in(source: Source, start: int, end: int) -> Iterator[Slip]:
     text = source.text[start:end]
-    if ">" not in text:
+    if ">" not in text or len(text) > _MAX_LENGTH:
         return
     for pattern in (_START, _BARE, _END):
         for match in pattern.finditer(text):

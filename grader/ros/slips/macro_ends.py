@@ -9,7 +9,9 @@ from grader.base.slips import Slip
 from grader.base.source import Source
 
 _MAX_PLACES = 15
-_TAG = re.compile(r"(?s)<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?.*?\?>|<(?P<end>/?)(?P<name>[\w:.-]+)")
+_TAG = re.compile(
+    r"(?s)<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<(?P<end>/?)(?P<name>[\w:.-]+)"
+)
 
 
 class _Open(NamedTuple):

@@ -20,9 +20,9 @@ def root_slips(source: Source) -> Iterator[Slip]:
     if word == "robot" or (word.casefold() != "robot" and near(word, ["robot"]) is None):
         return
     edits = [source.edit(start, end, "<robot")]
-    closing = re.search(rf"</\s*{re.escape(word)}\s*>\s*(?:<!--.*?-->\s*)*\Z", source.text)
-    if closing is not None:
-        name = source.text.index(word, closing.start())
+    closings = [*re.finditer(rf"</\s*{re.escape(word)}\s*>", source.text)]
+    if closings:
+        name = source.text.index(word, closings[-1].start())
         edits.append(source.edit(name, name + len(word), "robot"))
     reaction = f"ROS 2 looks for <robot>, and the root is <{word}>"
     assumption = f"<{word}> is read as <robot>"
