@@ -63,7 +63,7 @@ def grade(
     wanted = {criterion.id for criterion in rubric.criteria if criterion.part in chosen}
     results = tuple(decide(rubric, submission, wanted))
     meant = None
-    if any(result.is_lost or result.is_open for result in results):
+    if any(map(_may_be_explained, results)):
         slips = _slips_of(submission)
         if slips:
             from grader.lab.grading.slips import judge_as_meant  # late: many submissions have none
@@ -97,6 +97,12 @@ def grade(
         by_convention=by_convention,
         meant=meant,
     )
+
+
+def _may_be_explained(result: Result) -> bool:
+    """Return whether a slip may explain that a criterion has not passed."""
+    is_manual = result.criterion.check.function in MANUAL_CHECKS
+    return result.is_lost or (result.is_open and not is_manual)
 
 
 def _slips_of(submission: Submission) -> list[Slip]:
