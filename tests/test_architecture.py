@@ -166,11 +166,11 @@ WEIGHTS = {
     "ros.nodes": 43_400,  # functions of their own for what was branches of long ones
     "ros.package": 26_100,  # what two readings are compared by, the release that reads a robot, the fixes of files that cannot be read; functions that do one thing
     "ros.python": 28_000,  # functions that do one thing
-    "ros.slips": 6_950,  # the kinds of slips of a robot that are proven by reading it again
+    "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_200,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
     "ros.workspace": 100_500,  # a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches
     "ros.xacro": 28_400,  # xacro:attribute, letters outside of ASCII; functions that do one thing
-    "ros.xml": 13_200,  # the attributes of broken tags, the attributes of newer versions of URDF
+    "ros.xml": 13_400,  # the attributes of broken tags, end tags of macros, the attributes of newer versions of URDF
     "": 400,
     "workers": 3_500,
 }

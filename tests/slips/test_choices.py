@@ -92,6 +92,7 @@ def test_a_urdf(body: str, expected: list[str]) -> None:
     [
         ('<Robot name="r"><link name="a"/></Robot>', ["<Robot> is read as <robot>"]),
         ('<Robot name="r"><link name="a"/>', []),
+        ('<roboter name="r"><link name="a"/></roboter>', ["<roboter> is read as <robot>"]),
         ('<model name="r"><link name="a"/></model>', []),
         ("", []),
         (
@@ -122,7 +123,11 @@ _MACRO = '<xacro:macro name="m" params="n"><link name="${n}"/></xacro:macro>'
         (_MACRO.replace("params", 'what="" some') + '<xacro:m n="a"/>', []),
         (_MACRO + '<xacro:m "a"/>', ['"a" is read as n="a"']),
         (_MACRO + '<xacro:m n="a" "b"/>', []),
-        ('<xacro:property name="a">7</xacro:property><link name="l${a}"/>', ["'7' in <xacro:property> is read as its value"]),
+        (_MACRO + "<xacro:m><n>a</n></xacro:m>", ['what is inside of <xacro:m> is read as n="a"']),
+        (_MACRO + "<xacro:m><n>a</n><o>b</o></xacro:m>", []),
+        (_MACRO + '<xacro:m n="b"><n>a</n></xacro:m>', []),
+        (_MACRO + "<xacro:m><n><b/></n></xacro:m>", []),
+        ('<xacro:property name="a">7</xacro:property><link name="l${a}"/>', ['what is inside of <xacro:property> is read as value="7"']),
         ('<xacro:property name="a">7<b/></xacro:property><link name="l"/>', []),
         ('<xacro:property name="a" value="7"/><link name="l{a + 1}"/>', ["l{a + 1} is read as l${a + 1}"]),
         ('<link name="l{a + 1}"/>', []),

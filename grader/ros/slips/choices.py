@@ -14,7 +14,12 @@ from grader.ros.slips.nodes import read_elements
 from grader.ros.slips.roots import root_slips
 from grader.ros.slips.sdf_words import gazebo_slips
 from grader.ros.slips.xacro_syntax import expression_slips, list_names
-from grader.ros.slips.xacro_words import attribute_slips, list_macros, nameless_slips
+from grader.ros.slips.xacro_words import (
+    attribute_slips,
+    child_slips,
+    list_macros,
+    nameless_slips,
+)
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
 Choice = tuple[Slip, ...]  # what one slip may stand for
@@ -45,7 +50,8 @@ def list_choices(sources: Sequence[Source]) -> Iterator[Choice]:
         if "xacro:" in source.text:
             yield from _alone(attribute_slips(root))
             yield from _alone(nameless_slips(source, macros))
-        if "$" in source.text or "{" in source.text:
+            yield from _alone(child_slips(root, macros))
+        if "$" in source.text or "{" in source.text or "xacro:" in source.text:
             yield from expression_slips(root, names)
 
 

@@ -17,7 +17,8 @@ def root_slips(source: Source) -> Iterator[Slip]:
     start = prologue.end() if prologue is not None else 0
     end = markup.name_end(source.text, start)
     word = source.text[start + 1 : end].strip()
-    if word == "robot" or (word.casefold() != "robot" and near(word, ["robot"]) is None):
+    is_similar = word.casefold().startswith("robo") or near(word, ["robot"]) is not None
+    if word == "robot" or not is_similar:
         return
     edits = [source.edit(start, end, "<robot")]
     closings = [*re.finditer(rf"</\s*{re.escape(word)}\s*>", source.text)]

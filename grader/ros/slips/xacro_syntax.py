@@ -20,6 +20,8 @@ _COMMANDS = r"(?:find|arg|env|optenv|eval|dirname|cwd|anon)\b"
 _IN_PARENTHESES = re.compile(rf"\$\((?!\s*{_COMMANDS})((?:[^()$]|\([^()$]*\))*)\)")
 _IN_BRACKETS = re.compile(r"\$\[([^\[\]$]*)\]")
 # ${{a}} and ${a}}, and {a / 4} or $ {a / 4} with a name that is known.
+_MIXED = re.compile(r"\$\(((?:[^()${}]|\([^()${}]*\))*)\}")  # $(a / 4}
+_BARE = re.compile(r"(?:\$(?!\())?\s*([\w\s.+*/()-]*[*/+-][\w\s.+*/()-]*)")  # a / 4, $a / 4
 _IN_BRACES = re.compile(r"\$\{\{?([^{}$]*)\}\}")
 _WITHOUT_DOLLAR = re.compile(r"(?<![${])(?:\$\s+)?\{([^{}$]*)\}")
 _OPERATOR = re.compile(r"[-+*/%<>=]|\b(?:and|or|not|if)\b")
@@ -36,6 +38,9 @@ _SIGNS = {
     "===": "==",
     "=>": ">=",
     "||": " or ",
+    "²": " ** 2",
+    "³": " ** 3",
+    "\\": "/",
     "&amp;&amp;": " and ",
 }
 
@@ -49,10 +54,15 @@ def expression_slips(root: XacroNode, names: set[str]) -> Iterator[tuple[Slip, .
         source, start = place_of(node)
         for attribute in markup.attributes(source.text, start):
             text = source.text[slice(*attribute.value)]
-            if not ("$" in text or "{" in text) or len(text) > _MAX_LENGTH:
+            if len(text) > _MAX_LENGTH:
                 continue
-            is_condition = node.tag in ("xacro:if", "xacro:unless")
-            ways = _read_text(text, names, attribute.name, is_condition=is_condition)
+            ways: list[str] = []
+            bare = _BARE.fullmatch(text)
+            if "$" in text or "{" in text:
+                is_condition = node.tag in ("xacro:if", "xacro:unless")
+                ways += _read_text(text, names, attribute.name, is_condition=is_condition)
+            if bare is not None and not ways and _is_number(node, attribute.name):
+                ways += [f"${{{bare[1]}}}"] if names.issuperset(_WORDS.findall(bare[1])) else []
             slips = tuple(_slip(source, attribute, text, new) for new in dict.fromkeys(ways))
             if slips:
                 yield slips
@@ -84,7 +94,8 @@ def _read_text(text: str, names: set[str], attribute: str, *, is_condition: bool
     if "${" in _EXPRESSION.sub("", text):  # an expression has no } at its end
         yield from _with_brace(text, attribute, names)
         return
-    new = _IN_BRACES.sub(r"${\1}", _IN_BRACKETS.sub(r"${\1}", text))
+    new = _MIXED.sub(r"${\1}", text)
+    new = _IN_BRACES.sub(r"${\1}", _IN_BRACKETS.sub(r"${\1}", new))
     new = _WITHOUT_DOLLAR.sub(
         lambda match: (
             match[0] if names.isdisjoint(_WORDS.findall(match[1])) else f"${{{match[1]}}}"
@@ -99,6 +110,13 @@ def _read_text(text: str, names: set[str], attribute: str, *, is_condition: bool
     )
     if new != text:
         yield new
+
+
+def _is_number(node: XacroNode, attribute: str) -> bool:
+    """Return whether an attribute may have the value of an expression with numbers."""
+    if node.tag.startswith("xacro:"):
+        return attribute not in ("name", "params", "filename")
+    return len(PARTS.get(attribute, ())) == 1
 
 
 def _with_brace(text: str, attribute: str, names: set[str]) -> Iterator[str]:

@@ -8,7 +8,7 @@ from grader.base.element_edits import attributes_text, renamed_attribute
 from grader.base.names import near
 from grader.base.slips import Slip
 from grader.base.source import Source
-from grader.base.text import cut, quoted
+from grader.base.text import cut
 from grader.ros.slips.nodes import place_of
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
 
@@ -46,7 +46,7 @@ def attribute_slips(root: XacroNode) -> Iterator[Slip]:
             lacking.remove("value")
         text = "".join(child for child in node.children if isinstance(child, str)).strip()
         if text and len(lacking) == 1 and not unknown and not node.elements:
-            yield _with_attribute(node, lacking[0], text)
+            yield _with_attributes(node, {lacking[0]: text})
         for name in unknown if usual else ():
             meant = near(name, lacking)
             if meant is None and len(unknown) == len(lacking) == 1:
@@ -55,15 +55,16 @@ def attribute_slips(root: XacroNode) -> Iterator[Slip]:
                 yield _renamed(node, name, meant)
 
 
-def _with_attribute(node: XacroNode, name: str, text: str) -> Slip:
-    """Return the slip of a tag that has an attribute as its text."""
+def _with_attributes(node: XacroNode, values: Mapping[str, str]) -> Slip:
+    """Return the slip of a tag that has attributes as its text or as its children."""
     source, start = place_of(node)
     head = markup.head_end(source.text, start)[0]
     end = markup.element_end(source.text, start)
-    new = f"{source.text[start : head - 1]}{attributes_text({name: text})}/>"
-    reaction = f"<{node.tag}> has no attribute {name}"
-    assumption = f"{quoted(cut(text, _MAX_SHOWN))} in <{node.tag}> is read as its {name}"
-    return Slip((source.edit(start, end, new),), reaction, assumption, source.at(start))
+    given = attributes_text(values)
+    edit = source.edit(start, end, f"{source.text[start : head - 1]}{given}/>")
+    reaction = f"<{node.tag}> has no attribute {next(iter(values))}"
+    assumption = f"what is inside of <{node.tag}> is read as{cut(given, _MAX_SHOWN)}"
+    return Slip((edit,), reaction, assumption, source.at(start))
 
 
 def _renamed(node: XacroNode, name: str, meant: str) -> Slip:
@@ -92,6 +93,27 @@ def nameless_slips(source: Source, macros: Mapping[str, Collection[str]]) -> Ite
             assumption = f"{value['quoted']} is read as {new}"
             edit = source.edit(start, end, new)
             yield Slip((edit,), reaction, assumption, source.at(start), is_refused=True)
+
+
+def child_slips(root: XacroNode, macros: Mapping[str, Collection[str]]) -> Iterator[Slip]:
+    """Yield the calls that have parameters of a macro as elements: <y>0.1</y> for y="0.1"."""
+    for node in walk(root):
+        needed = macros.get(node.tag.removeprefix("xacro:"), ())
+        values = _texts_of_children(node, needed) if node.tag.startswith("xacro:") else {}
+        if not values or len(values) != len(node.elements):
+            continue
+        if node.attributes.keys().isdisjoint(values):
+            yield _with_attributes(node, values)
+
+
+def _texts_of_children(node: XacroNode, names: Collection[str]) -> dict[str, str]:
+    """Return the texts of children with these tags that have nothing else."""
+    texts: dict[str, str] = {}
+    for child in node.elements:
+        text = "".join(part for part in child.children if isinstance(part, str)).strip()
+        if child.tag in names and text and not (child.attributes or child.elements):
+            texts[child.tag] = text
+    return texts
 
 
 def list_macros(root: XacroNode) -> dict[str, list[str]]:

@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple
 from grader.base.element_edits import empty_element
 from grader.base.markup import indentation
 from grader.base.merge_conflicts import find_conflicts, without_conflicts
-from grader.base.names import near
+from grader.base.names import folded, near
 from grader.base.source import Edits, Source
 from grader.base.text import enumerated
 from grader.ros.xml import xml_problems
@@ -48,6 +48,7 @@ _ATTRIBUTE = re.compile(
     re.VERBOSE,
 )
 _WORD = re.compile(r"[-+]?[\w.]*\w")
+_MACRO = re.compile(r"""<xacro:macro\s+name="([\w.-]+)"\s+params="([^"<]*)\"""")
 _NAMELESS = re.compile(r"""\s*=\s*["']([^"']*)["']""")
 _NAME = re.compile(r"<\s*+([A-Za-z_][\w:.-]*)")
 # Elements for other tools, and of xacro, which stand in the robot; those of xacro have no URDF in
@@ -145,6 +146,7 @@ class _Repairer:
         self._inserted: dict[int, str] = {}  # end tags, by the offset before which they are missing
         self._assumed: list[Difference] = []
         self._is_lossy = False
+        self._plain_macros: set[str] | None = None  # the tags that call macros without elements
         self._open: list[Tag] = []
         self._robot: int | None = None  # the offset of the first robot
 
@@ -228,7 +230,7 @@ class _Repairer:
             )
             return tag._replace(form="open"), end
         is_slash_missing = (
-            tag.form == "open"
+            (tag.form == "open" or (tag.form == "empty" and tag.name == "xacro:macro"))
             and not tag.attributes
             and self._open
             and self._open[-1].name == tag.name
@@ -279,6 +281,8 @@ class _Repairer:
     def _start(self, tag: Tag) -> None:
         if self._robot is None:
             self._robot = tag.offset
+        if self._open and self._is_open_call(self._open[-1].name):
+            self._leave(len(self._open) - 1, tag.offset)
         parents = _parents_of(tag.name)
         around = [opened.name for opened in self._open]
         if (
@@ -291,6 +295,15 @@ class _Repairer:
             self._leave(last + 1, tag.offset)
         if tag.form == "open":
             self._open.append(tag)
+
+    def _is_open_call(self, name: str) -> bool:
+        """Return whether a tag calls a macro that takes no element, so that nothing is inside."""
+        if not name.startswith("xacro:"):
+            return False
+        if self._plain_macros is None:
+            macros = _MACRO.findall(self._text)
+            self._plain_macros = {f"xacro:{macro}" for macro, params in macros if "*" not in params}
+        return name in self._plain_macros
 
     def _close(self, tag: Tag, end: int) -> None:
         indices = [index for index, opened in enumerate(self._open) if opened.name == tag.name]
@@ -319,12 +332,18 @@ class _Repairer:
     def _is_end_of_xacro(self, name: str) -> bool:
         """Return whether an end tag stands for that of the innermost element, which is xacro's.
 
-        An example is </macro> or </xacro> for </xacro:macro>.
+        Examples are </macro>, </xacro> and the name of the macro for </xacro:macro>.
         """
-        opened = self._open[-1].name if self._open else ""
-        prefix, _, local = opened.partition(":")
+        if not self._open:
+            return False
+        opened = self._open[-1]
+        prefix, _, local = opened.name.partition(":")
+        if prefix != "xacro":
+            return False
+        ways = (prefix, local, opened.attributes.get("name", ""))
         is_misspelt = name not in _TAGS and near(name.removeprefix("xacro:"), [local]) is not None
-        return prefix == "xacro" and (name in (prefix, local) or is_misspelt)
+        is_same = folded(name) == folded(opened.name)
+        return name.removeprefix("xacro:") in ways or is_same or is_misspelt
 
     def _leave(self, depth: int, offset: int) -> None:
         """Close the tags that are open below a depth, before an offset."""
@@ -342,7 +361,7 @@ class _Repairer:
         opened = self._open.pop()
         head = self._text[opened.offset : offset].rstrip()
         is_alone = opened.offset not in self._replaced and head.find(">") == len(head) - 1
-        if is_alone and _is_never_filled(opened.name):
+        if is_alone and (_is_never_filled(opened.name) or self._is_open_call(opened.name)):
             self._replace(opened.offset, opened.offset + len(head), f"{head[:-1].rstrip()}/>")
             return
         end, new = self._replaced.get(self._last, (0, " "))
