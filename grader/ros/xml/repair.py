@@ -229,17 +229,17 @@ class _Repairer:
                 start, end, f"{self._text[start : self._text.rindex('/', start, end)].rstrip()}>"
             )
             return tag._replace(form="open"), end
-        is_slash_missing = (
-            (tag.form == "open" or (tag.form == "empty" and tag.name == "xacro:macro"))
-            and not tag.attributes
-            and self._open
-            and self._open[-1].name == tag.name
-        )
-        if is_slash_missing and not self._is_before_child(tag, end):
+        if self._lacks_slash(tag) and not self._is_before_child(tag, end):
             self._assume(f"<{short(tag.name)}> is read as </{short(tag.name)}>", start)
             self._replace(start, end, f"</{tag.name}>")
             return tag._replace(form="close"), end
         return tag, end
+
+    def _lacks_slash(self, tag: Tag) -> bool:
+        """Return whether a tag may be the end of the innermost element: <link> for </link>."""
+        if tag.attributes or not self._open or self._open[-1].name != tag.name:
+            return False
+        return tag.form == "open" or (tag.form == "empty" and tag.name == "xacro:macro")
 
     def _broken(self, match: re.Match[str]) -> Tag:
         """Return a broken tag as it is read.
