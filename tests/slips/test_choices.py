@@ -7,7 +7,7 @@ import pytest
 from grader.lab.submission.edited import with_files
 from grader.lab.submission.robot_readings import proven_slips
 from grader.lab.submission.submission import Submission
-from grader.ros.package.robot_file import Absent
+from grader.ros.package.robot_file import Absent, read_as_ros
 from tests.grading.slips import DIFFDRIVE
 from tests.samples import LAB6, reference
 
@@ -187,3 +187,13 @@ def test_without_a_robot() -> None:
     submission: Submission = with_files(solution, dict.fromkeys(robots))
     assert isinstance(submission.urdf, Absent)
     assert [*proven_slips(submission)] == []
+
+
+def test_an_end_tag_without_its_prefix() -> None:
+    """The message says that a prefix is missing; libxml2 leaves prefixes out."""
+    text = _xacro(_MACRO.replace("</xacro:macro>", "\n</macro>") + '<xacro:m n="a"/>')
+    reading = read_as_ros(text.encode(), "my_robot.urdf.xacro").reading
+    messages = [problem.message for problem in reading.problems]
+    assert "</macro> is read as </xacro:macro>" in messages
+    start = "the end tag in line 2 has not the prefix of the start tag <macro> in line 1"
+    assert any(message.startswith(start) for message in messages)

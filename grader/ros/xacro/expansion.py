@@ -181,6 +181,10 @@ class ExpandedSource(Source):
 _INSTRUCTION = re.compile(
     r"<!--.*?-->|<!\[CDATA\[.*?\]\]>|<\?(?!xml\s)(?P<target>[\w:.-]+)", re.DOTALL
 )
+# What libxml2 says of <xacro:macro> and </macro>: it leaves the prefixes out.
+_OTHER_PREFIX = re.compile(
+    r"Opening and ending tag mismatch: (?P<name>\S+) line (?P<line>\d+) and (?P=name)(?![\w.-])"
+)
 _MAX_ASSUMED = 20
 
 
@@ -334,6 +338,12 @@ def _read(
         return read_nodes(data, path, budget, edits=edits), (), False
     except XMLSyntaxError as error:
         what, location = f"xacro needs well-formed XML: {error.msg}", error_location(error, text)
+        prefixes = _OTHER_PREFIX.match(error.msg or "")
+        if prefixes is not None:
+            what = (
+                f"the end tag in line {location.line} has not the prefix of the start tag "
+                f"<{prefixes['name']}> in line {prefixes['line']}"
+            )
     conflicts = find_conflicts(text.text)
     if conflicts:
         what, location = describe_conflicts(text.text, conflicts), text.at(conflicts[0].start)
