@@ -17,6 +17,7 @@ from tests.samples import reference
 pytestmark = pytest.mark.slow
 
 _WORD = re.compile(r"[-+]?\d+\.?\d*|\.\d+|[^\W\d]\w*")
+_DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
 _OF_FORMAT = {*TAGS, *(name for tag in TAGS.values() for name in tag.attributes)}
 _SIGNS = {"kg", "x", "O"}  # what stands for a sign, a digit, or says a unit that a URDF has
 _SLIPS: list[FormSlip | WrittenSlip] = [*form_slips(), *written_slips()]
@@ -24,7 +25,7 @@ _SLIPS: list[FormSlip | WrittenSlip] = [*form_slips(), *written_slips()]
 
 def _lost_words(edits: Edits) -> set[str]:
     """Return the numbers and names that edits remove without another one in their place."""
-    old = {word for edit in edits for word in _WORD.findall(edit.old.replace(",", "."))}
+    old = {word for edit in edits for word in _WORD.findall(_DECIMAL_COMMA.sub(".", edit.old))}
     new = {word for edit in edits for word in _WORD.findall(edit.new)}
     lost = old - new - _OF_FORMAT - _SIGNS
     return lost if len(lost) > len(new - old) else set()
