@@ -34,11 +34,9 @@ _LACKING = {
 # Mistakes after which it is not certain which tag was meant, or that ROS 2 does not see as an error.
 _NOT_UNDONE = {
     "tag-glued-to-its-attribute",
-    "no-start-of-a-tag",
     "no-start-of-a-link",
     "no-start-of-a-joint",
     "robot-twice",
-    "robot-ends-early",
     "no-robot",
     "comment-not-closed",
     "declaration-opened-badly",

@@ -15,10 +15,11 @@ ABOUT = {
         }
     )
 }
+_OF_START = "controller-started"  # the rule of controllers that no spawner starts
 _MAX_IN_MESSAGE = 3  # mistakes, and places of each
 
 
-def names_agree(submission: Submission, *, of: Family) -> Outcome:
+def names_agree(submission: Submission, *, of: Family, where_started: bool = False) -> Outcome:
     """The names that files of the packages use are defined: files, frames, parameters, programs and
     so on.
 
@@ -31,6 +32,7 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
             dependencies, services (and actions) or interfaces (messages, services, actions and
             their fields); or code, of which nothing may certainly stop a node, or keep it from
             working; values (numbers that contradict the robot) or transforms (that are no tree).
+        where_started: Whether controllers pass that no spawner starts, for `carried`.
     """
     from grader.ros.workspace.rules.reading import (  # late: few rubrics ask for it
         read_agreement,
@@ -40,6 +42,8 @@ def names_agree(submission: Submission, *, of: Family) -> Outcome:
     submission.needed_package()
     workspace = submission.workspace
     wrong = wrong_names(workspace, of, submission.lab_packages.values())
+    if where_started:
+        wrong = [mismatch for mismatch in wrong if mismatch.rule.name != _OF_START]
     agreement = read_agreement(workspace)
     undecided = agreement.undecided
     if wrong:

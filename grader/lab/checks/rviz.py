@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.names import did_you_mean
+from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, Status, failed, judged, passed
@@ -152,7 +153,8 @@ def rviz_shows_robot(
     verdict, model = next(
         (pending for pending in verdicts if pending[0].status == "pending"), verdicts[0]
     )
-    return Outcome(verdict.status, verdict.reason, location=model.location, cause=verdict.cause)
+    location = verdict.location or model.location
+    return Outcome(verdict.status, verdict.reason, location=location, cause=verdict.cause)
 
 
 def rviz_display_on(package: Package, *, name: str, kind: str, launch: str = "") -> Outcome:
@@ -226,6 +228,7 @@ class _Verdict(NamedTuple):
     status: Status
     reason: str = ""
     cause: str = ""
+    location: Location | None = None  # of the node whose mistake it is; else the display's
 
 
 def _judge_model(model: "Display", topic: str, opened: "Launch | None") -> _Verdict:
@@ -275,19 +278,20 @@ def _judge_topic(actual: str, topic: str, names: "_Names") -> _Verdict:
     if described is None or (described and None in shown):
         reason = "the topics of the nodes are known only at run time; needs manual grading"
         return _Verdict("pending", reason)
-    unheard, cause = names.unheard, "nodes"
+    unheard, cause, location = names.unheard, "nodes", names.unheard_at
     if actual and described and (described != {topic} or shown != {actual}):
         if not described & shown:
             unheard = (
                 f"RViz reads the robot from {_listed(shown)}, but it is on {_listed(described)}"
             )
+            location = next((node.location for node in names.publishers if node.namespace), None)
     elif actual.strip("/") != topic.strip("/"):
         if actual:
             fault = f"reads the topic {actual!r}; it should read"
         else:
             fault = "has no Description Topic; it should be"
-        unheard, cause = f"the RobotModel display {fault} {topic!r}", ""
-    return _Verdict("failed", unheard, cause) if unheard else _Verdict("passed")
+        unheard, cause, location = f"the RobotModel display {fault} {topic!r}", "", None
+    return _Verdict("failed", unheard, cause, location) if unheard else _Verdict("passed")
 
 
 class _Names(NamedTuple):
@@ -334,11 +338,8 @@ class _Names(NamedTuple):
         return {node.topic(topic) for node in self.viewers} or {topic}
 
     @property
-    def unheard(self) -> str:
-        """Why transforms do not get from the joints to RViz.
-
-        Empty if they do, or if this is not known.
-        """
+    def _unheard(self) -> "tuple[str, StartedNode, StartedNode] | None":
+        """The name of a topic, a node that publishes it and one that reads another one."""
         without_description = [node for node in self.joints if not node.has_description]
         for name, sources, readers in (
             ("joint_states", self.joints, self.publishers),
@@ -348,9 +349,31 @@ class _Names(NamedTuple):
             sent = {node.topic(name) for node in sources}
             read = {node.topic(name) for node in readers}
             if sent and read and None not in sent | read and not sent & read:
-                who, reader = sources[0].executable, readers[0].executable
-                return f"{who} publishes on {_listed(sent)}, but {reader} reads {_listed(read)}"
-        return ""
+                return name, sources[0], readers[0]
+        return None
+
+    @property
+    def unheard(self) -> str:
+        """Why transforms do not get from the joints to RViz.
+
+        Empty if they do, or if this is not known.
+        """
+        if self._unheard is None:
+            return ""
+        name, source, reader = self._unheard
+        sent, read = {source.topic(name)}, {reader.topic(name)}
+        return (
+            f"{source.executable} publishes on {_listed(sent)}, but {reader.executable} reads "
+            f"{_listed(read)}"
+        )
+
+    @property
+    def unheard_at(self) -> Location | None:
+        """Where the node is started that is in a namespace, or that has another name of a topic."""
+        if self._unheard is None:
+            return None
+        _, source, reader = self._unheard
+        return reader.location if reader.namespace and not source.namespace else source.location
 
 
 def _listed(topics: set[str] | set[str | None]) -> str:

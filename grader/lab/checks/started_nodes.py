@@ -211,6 +211,7 @@ class _NodeTopic(NamedTuple):
     type: str | None
     location: Location
     node: "StartedNode"
+    written: str = ""  # its name in the code, before remapping
 
 
 class _NodeTopics:
@@ -239,7 +240,9 @@ class _NodeTopics:
                 self._is_open = self._is_open or not end.is_known
                 name = end.name or "" if end.is_known else ""
                 verb, opened = _VERBS[end.endpoint.kind], end.endpoint
-                self._topics.append(_NodeTopic(name, verb, opened.type, opened.location, node))
+                self._topics.append(
+                    _NodeTopic(name, verb, opened.type, opened.location, node, opened.name or "")
+                )
 
     def _may_run(self, node: "StartedNode", workspace: "Workspace", package: str) -> bool:
         """Return whether a node is read and may run; note why not, and what is not known of it."""
@@ -281,6 +284,11 @@ class _NodeTopics:
             return Fault(message, same[0].location, cause="type")
         if self._unread:
             return self._unread[0]
+        for topic in of_kind:
+            if topic.written.removeprefix("/") == full_name.removeprefix("/") and topic.name:
+                place = topic.node.location
+                detail = f": line {place.line} of {place.path} remaps it to {topic.name}"
+                return Fault(f"no node {verb} {full_name}", place, detail, cause="topic")
         return _find_similar_topic(f"no node {verb} {full_name}", full_name, of_kind)
 
 

@@ -63,7 +63,7 @@ def grade(
     wanted = {criterion.id for criterion in rubric.criteria if criterion.part in chosen}
     results = tuple(decide(rubric, submission, wanted))
     meant = None
-    if any(result.is_lost or result.is_open for result in results):
+    if any(map(_may_be_explained, results)):
         slips = _slips_of(submission)
         if slips:
             from grader.lab.grading.slips import judge_as_meant  # late: many submissions have none
@@ -99,11 +99,22 @@ def grade(
     )
 
 
+def _may_be_explained(result: Result) -> bool:
+    """Return whether a slip may explain that a criterion has not passed."""
+    is_manual = result.criterion.check.function in MANUAL_CHECKS
+    return result.is_lost or (result.is_open and not is_manual)
+
+
 def _slips_of(submission: Submission) -> list[Slip]:
     """Return the slips in the files of a submission that may explain points that are not given."""
     if submission.is_costly:
         return []
-    slips = submission.urdf.slips if isinstance(submission.urdf, Read) else []
+    slips: list[Slip] = []
+    if isinstance(submission.urdf, Read):
+        # Late: robots that are right have none.
+        from grader.lab.submission.robot_readings import proven_slips
+
+        slips = [*submission.urdf.slips, *proven_slips(submission)]
     packages = [submission.package, *submission.lab_packages.values()]
     for package in dict.fromkeys(filter(None, packages)):
         from grader.ros.nodes.python.package_slips import (

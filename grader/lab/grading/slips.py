@@ -10,6 +10,7 @@ from grader.base.slips import Slip
 from grader.base.text import enumerated, sentence_end
 from grader.lab.checks.loading import urdf_loads
 from grader.lab.checks.outcome import SLIP, Outcome
+from grader.lab.checks.xacro_source import xacro_uses
 from grader.lab.grading.deciding import decide
 from grader.lab.grading.report import Meant, PaidSlip, Result
 from grader.lab.rubric.rubric import Rubric
@@ -69,12 +70,23 @@ class _Readings:
         for name, result in meant.items():
             if name in paid_by:
                 results.append(self._paid(name, paid_by[name], counting))
-            elif result.criterion.check.about.is_of_writing and not self._written[name].is_open:
+            elif self._is_as_written(result, counting):
                 results.append(self._written[name])
             else:
                 results.append(result)
         paid = tuple(PaidSlip(slip, payer) for slip, payer in payers.items())
         return tuple(results), Meant(submission, tuple(meant.values()), paid)
+
+    def _is_as_written(self, meant: Result, slips: Sequence[Slip]) -> bool:
+        """Return whether a criterion judges the words as they are written.
+
+        What xacro cannot read has no words that it uses: these are judged as they are meant.
+        """
+        check = meant.criterion.check
+        if not check.about.is_of_writing or self._written[meant.criterion.id].is_open:
+            return False
+        is_unread = check.function is xacro_uses and all(slip.is_refused for slip in slips)
+        return not is_unread
 
     def _readable(self, slips: Sequence[Slip]) -> list[Slip]:
         """Return the slips whose edits fit together."""
@@ -186,7 +198,10 @@ def _corrected(submission: Submission, slips: Iterable[Slip]) -> Submission:
     files = edited_files(submission, [edit for slip in slips for edit in slip.edits])
     assert files is not None
     urdf = submission.urdf
-    if isinstance(urdf, Read) and all(path.endswith((".urdf", ".xacro")) for path in files):
+    is_of_robot = all(path.endswith((".urdf", ".xacro")) for path in files)
+    # A launch file that runs xacro fails if xacro writes a warning.
+    is_run = isinstance(urdf, Read) and urdf.is_expanded and submission.package is not None
+    if isinstance(urdf, Read) and is_of_robot and not is_run:
         return with_urdf(submission, files)
     return with_files(submission, files)
 

@@ -7,6 +7,7 @@ files; what grading proves becomes a `FoundHint`, and in a report a `Hint`. All 
 the `FixedFiles`.
 """
 
+import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -42,6 +43,7 @@ _HARMFUL = ("rejects", "drops", "undetermined")
 _RESERVE = 20  # gradings for proofs
 _AROUND = " ,\r\n"  # of a text that is added
 _MAX_REACTIONS = 3
+_WORD = re.compile(r"\w+")
 _MAX_PARTS = 5  # edits of a hint of which each is tried without
 _MAX_WITHOUT = 30  # gradings that say which of the hints another one needs
 
@@ -280,9 +282,16 @@ def hints_on_slips(meant: Meant | None) -> list[FoundHint]:
         is_passed = judged[payer].outcome.status == "passed"
         gains = {payer: judged[payer].criterion.points} if is_passed else {}
         # A hint never writes a part that is missing, such as a call of rclpy.init().
-        words = "" if all(edit.old for edit in edits) else cause
+        words = cause if _adds_part(edits) else ""
         hints.append(FoundHint(Proposal(edits, cause), gains, words=words))
     return hints
+
+
+def _adds_part(edits: Edits) -> bool:
+    """Return whether an edit inserts words that no other one takes from elsewhere."""
+    removed = {word for edit in edits for word in _WORD.findall(edit.old)}
+    inserted = [edit.new for edit in edits if not edit.old]
+    return any(not removed.issuperset(_WORD.findall(new)) for new in inserted)
 
 
 class _Tried(NamedTuple):

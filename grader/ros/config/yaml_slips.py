@@ -18,6 +18,11 @@ _MAX_LENGTH = 1_000  # characters of a line
 _MAX_SHOWN = 60
 _MAX_DEPTH = 5  # of the keys of nodes
 _NO_BLANK = re.compile(r"(?<![A-Za-z_])([A-Za-z_][\w /.-]{1,80}):(?=[^\s:/]|/[^/])")
+_QUOTED_VALUE = re.compile(
+    r"""\s*(?P<key>[\w.]+):\s+(?P<written>(["'])
+    (?P<value>[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?|true|false)\3)\s*(?:\#.*)?\Z""",
+    re.VERBOSE,
+)
 _CLOSING = {"[": "]", "{": "}"}
 
 
@@ -42,7 +47,7 @@ def yaml_slips(data: bytes, path: str) -> list[Slip]:
         fault = _fault(lines, path)
     if isinstance(fault, YamlFault):
         return []
-    return [*slips, *_misspelt_keys(fault, Visits())]
+    return [*slips, *_misspelt_keys(fault, Visits()), *_quoted_values(lines, path)]
 
 
 def _misspelt_keys(node: YamlNode, visits: Visits, depth: int = 0) -> Iterator[Slip]:
@@ -58,6 +63,21 @@ def _misspelt_keys(node: YamlNode, visits: Visits, depth: int = 0) -> Iterator[S
             yield Slip((edit,), reaction, assumption, location, is_refused=True)
         else:
             yield from _misspelt_keys(inner, visits, depth + 1)
+
+
+def _quoted_values(lines: Sequence[str], path: str) -> Iterator[Slip]:
+    """Yield the numbers and booleans of parameters that are texts, because they are in quotes."""
+    if not any(line.strip().startswith(f"{PARAMETERS}:") for line in lines):
+        return
+    for index, line in enumerate(lines):
+        match = _QUOTED_VALUE.match(line) if len(line) <= _MAX_LENGTH else None
+        if match is not None:
+            written, value = match["written"], match["value"]
+            column = match.start("written") + 1
+            edit = Edit(path, index + 1, column, written, value)
+            reaction = f"{written} of {match['key']} is a text"
+            assumption = f"{written} is read as {value}"
+            yield Slip((edit,), reaction, assumption, Location(path, index + 1, column))
 
 
 def _slip(fault: YamlFault, index: int, written: str, new: str, path: str) -> Slip:

@@ -6,6 +6,8 @@ from collections.abc import Collection, Iterator, Mapping
 
 from grader.base.names import closest, near
 from grader.base.slips import Slip
+from grader.ros.known.package_files import packages_with_files
+from grader.ros.known.package_rows import lacks_program, package_row, programs_of
 from grader.ros.launch.launch_classes import class_named, exports
 from grader.ros.python.parse import Code, location_in, position_of
 
@@ -66,6 +68,8 @@ class _LaunchNames:
         for node in self._nodes:
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
                 yield from self._of_arguments(node, node.func.id)
+                if self._full_name(node.func.id).rpartition(".")[2] == "Node":
+                    yield from self._of_program(node)
 
     def _of_import(self, node: ast.ImportFrom, known: Mapping[str, str]) -> Iterator[Slip]:
         for alias in node.names:
@@ -119,6 +123,26 @@ class _LaunchNames:
             meant = _surely(name, known.parameters.keys() - given)
             if meant is not None:
                 yield self._slip(keyword, name, meant, f"{function}() has no argument {name}")
+
+    def _of_program(self, call: ast.Call) -> Iterator[Slip]:
+        """Yield the package or the program of a node near one that ROS 2 has."""
+        given: dict[str, ast.Constant] = {}
+        for keyword in call.keywords:
+            if isinstance(keyword.value, ast.Constant) and isinstance(keyword.value.value, str):
+                given[keyword.arg or ""] = keyword.value
+        if not {"package", "executable"} <= given.keys():
+            return
+        package, program = str(given["package"].value), str(given["executable"].value)
+        if package_row(package).is_installed:
+            meant = near(program, programs_of(package)) if lacks_program(package, program) else None
+            if meant is not None:
+                reaction = f"the package {package} has no program {program!r}"
+                yield self._slip(given["executable"], program, meant, reaction)
+            return
+        meant = near(package, packages_with_files())
+        if meant is not None and program in programs_of(meant):
+            reaction = f"ROS 2 has no package {package!r}"
+            yield self._slip(given["package"], package, meant, reaction)
 
     def _full_name(self, function: str) -> str:
         """Return the full name of an imported class, where it is defined."""

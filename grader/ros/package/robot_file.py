@@ -5,7 +5,7 @@ It has one of three states.
 
 import posixpath
 import re
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from itertools import chain
@@ -30,6 +30,8 @@ from grader.ros.xml.xml_problems import DOCTYPE, NOT_WELL_FORMED
 
 if TYPE_CHECKING:
     from grader.ros.launch.launch_model import NamedFile
+    from grader.ros.package.robot_comparison import RobotState
+    from grader.ros.slips.choices import Choice
     from grader.ros.xacro.expansion import ExpandedSource
     from grader.ros.xacro.texts import OtherArguments
     from grader.ros.xacro.xacro_files import SurroundingFiles
@@ -104,6 +106,24 @@ class Read(NamedTuple):
             return self.reading.problems
         raw = [problem for problem in self.as_it_stands.problems if problem.kind is RAW_XACRO]
         return (*raw, *self.reading.problems)
+
+    @property
+    def state(self) -> "RobotState":
+        """What this is compared by with another reading of the file."""
+        from grader.ros.package.robot_comparison import state_of  # late: most files have no slips
+
+        return state_of(self.reading)
+
+    @property
+    def slip_choices(self) -> "Iterator[Choice]":
+        """The slips that another reading of the files proves, each with all ways to read it."""
+        from grader.ros.slips.choices import list_choices  # late: as above
+
+        texts = {self.path: Source(self.path, self.data.decode("utf-8", "replace"))}
+        if self.reading.source.is_expanded:
+            for source in cast("ExpandedSource", self.reading.source).texts_of_files:
+                texts.setdefault(source.path, source)
+        return list_choices([*texts.values()])
 
     @property
     def slips(self) -> list[Slip]:

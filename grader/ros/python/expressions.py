@@ -16,6 +16,7 @@ from grader.ros.python.operators import attribute, compare, operate, subscript
 from grader.ros.python.parse import parse_expression
 from grader.ros.python.values import (
     EvaluationFails,
+    Items,
     Scope,
     Undetermined,
     Value,
@@ -136,6 +137,15 @@ class Expressions:
             self.evaluate(node.elt, inner)
             for inner in self.rounds(node.generators, Scope({}, scope))
         ]
+
+    def _generatorexp(self, node: ast.GeneratorExp, scope: Scope) -> Value:
+        """Return a generator.
+
+        The items of its first loop are evaluated now, the rest when it is iterated.
+        """
+        first = self.budget.items(self.evaluate(node.generators[0].iter, scope))
+        rounds = self.rounds(node.generators, Scope({}, scope), first)
+        return Items(self.evaluate(node.elt, inner) for inner in rounds)
 
     def _compare(self, node: ast.Compare, scope: Scope) -> Value:
         left = self.evaluate(node.left, scope)
@@ -259,6 +269,7 @@ class Expressions:
         ast.List: _list,
         ast.Tuple: _tuple,
         ast.ListComp: _listcomp,
+        ast.GeneratorExp: _generatorexp,
         ast.Compare: _compare,
         ast.BoolOp: _boolop,
         ast.Call: _call,

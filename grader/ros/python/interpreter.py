@@ -493,15 +493,6 @@ class Interpreter(Evaluation):
             raise py.Undetermined("a format of this kind is not supported")
         return value if is_text else str_of(value)
 
-    def _generatorexp(self, node: ast.GeneratorExp, scope: py.Scope) -> py.Value:
-        """Return a generator.
-
-        The items of its first loop are evaluated now, the rest when it is iterated.
-        """
-        first = self.budget.items(self.evaluate(node.generators[0].iter, scope))
-        rounds = self.rounds(node.generators, py.Scope({}, scope), first)
-        return py.Items(self.evaluate(node.elt, inner) for inner in rounds)
-
     def _dictcomp(self, node: ast.DictComp, scope: py.Scope) -> py.Value:
         return {
             known(self.evaluate(node.key, inner)): self.evaluate(node.value, inner)
@@ -575,7 +566,6 @@ class Interpreter(Evaluation):
         ast.Set: _set,
         ast.JoinedStr: _joinedstr,
         ast.FormattedValue: _formattedvalue,
-        ast.GeneratorExp: _generatorexp,
         ast.DictComp: _dictcomp,
         ast.Lambda: _lambda,
     }

@@ -78,6 +78,7 @@ class SyntaxFault(NamedTuple):
     message: str
     location: Location
     is_certain: bool = True
+    reason: str = ""  # Python's message as it is, without the word that is refused
 
 
 def location_in(source: Source, position: Position) -> Location:
@@ -151,10 +152,23 @@ def _parse(data: bytes, path: str) -> Code | SyntaxFault:
     except SyntaxError as error:
         location = Location(path, max(error.lineno or 1, 1), max(error.offset or 1, 1))
         return SyntaxFault(
-            source, error.msg, location, is_certain=not _is_of_newer_python(error, text)
+            source,
+            _message_of(error),
+            location,
+            is_certain=not _is_of_newer_python(error, text),
+            reason=error.msg,
         )
     except (ValueError, OverflowError):
         return SyntaxFault(source, _TOO_DEEP, Location(path, 1, 1))
+
+
+def _message_of(error: SyntaxError) -> str:
+    """Return Python's message, with the word or character where it says no more than a place."""
+    line, start = error.text or "", max((error.offset or 1) - 1, 0)
+    token = re.compile(r"\w{1,30}|\S").match(line, start)
+    if error.msg != "invalid syntax" or token is None:
+        return error.msg
+    return f"{error.msg} at {token[0]!r}"
 
 
 def _is_of_newer_python(error: SyntaxError, text: str) -> bool:
@@ -177,7 +191,7 @@ def parse_expression(text: str) -> ast.expr | str | None:
             warnings.simplefilter("ignore")
             return ast.parse(text, mode="eval").body
     except SyntaxError as error:
-        return f"SyntaxError: {error.msg}"
+        return f"SyntaxError: {_message_of(error)}"
     except (
         RecursionError,
         MemoryError,

@@ -73,6 +73,9 @@ def _slip(fault: SyntaxFault, written: str, change: _Change, path: str) -> Slip:
         f"{quoted(cut(written.strip(), _MAX_SHOWN))} is read as "
         f"{quoted(cut(change.text.strip(), _MAX_SHOWN))}"
     )
+    if written.strip() == change.text.strip():
+        blanks = [len(text) - len(text.lstrip()) for text in (written, change.text)]
+        assumption = f"the indentation of {blanks[0]} blanks is read as {blanks[1]}"
     start = 0
     while start < min(len(written), len(change.text)) and written[start] == change.text[start]:
         start += 1
@@ -118,7 +121,7 @@ def _readable_changes(
         parsed = _parsed(after, path)
         if isinstance(parsed, Code):
             read.setdefault(ast.dump(parsed.tree), change)
-        elif parsed.location.line > fault.location.line and parsed.message != fault.message:
+        elif parsed.location.line > fault.location.line and parsed.reason != fault.reason:
             read.setdefault("", change)
     return read
 

@@ -369,6 +369,22 @@ def _repeated_names_of(root: Element, tag: str, used: Iterable[str | None]) -> I
     missing = [name for name in used if name and name not in by_name]
     if len(repeated) == len(missing) == 1 and len(repeated[0]) == 2:
         yield _word_with_value(repeated[0][-1], "name", missing[0], f"the second {tag}")
+    elif tag == "joint" and not missing:
+        for joints in repeated:
+            yield from _copied_joint(joints, by_name)
+
+
+def _copied_joint(joints: Sequence[Element], known: Collection[str | None]) -> Iterator[Word]:
+    """Yield the joint that was copied with its name, which has the child of the first one in it."""
+    children = []
+    for joint in joints:
+        end = joint.find("child")
+        children.append(end.get("link") or "" if end is not None else "")
+    name = joints[0].get("name") or ""
+    if len(joints) == 2 and children[0] and children[1] and name.count(children[0]) == 1:
+        meant = name.replace(children[0], children[1])
+        if meant not in known and children[1] not in name:
+            yield _word_with_value(joints[1], "name", meant, "the second joint")
 
 
 def _misspelt_format(root: Element) -> Iterator[Word]:

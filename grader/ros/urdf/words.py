@@ -5,13 +5,36 @@ from collections.abc import Iterable, Mapping
 
 from grader.base.names import closest, near
 from grader.ros.urdf.numbers import NumberError, number, numbers, readable_numbers
-from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN, OWNERS, PARTS, TAGS, numbers_in
+from grader.ros.xml.urdf_format import (
+    ATTRIBUTES,
+    CHILDREN,
+    OWNERS,
+    PARTS,
+    REQUIRED,
+    TAGS,
+    numbers_in,
+)
 
 _MAX_LENGTH = 64  # characters of a value
 _SEPARATORS = re.compile(r"(?:(?<!\s)\s++)?[,;]\s*")
 _DECIMAL_COMMA = re.compile(r"(?<=\d),(?=\d)")
 _BRACKETS = re.compile(r"\s*[(\[{](.*)[)\]}]\s*")
 _LETTERS = str.maketrans("OoIl", "0011")
+# How people write the units of attributes, without those of another unit in another element.
+_UNITS = {
+    "value": ("kg",),
+    "size": ("m",),
+    "radius": ("m",),
+    "length": ("m",),
+    "rpy": ("rad",),
+    "lower": ("rad", "m"),
+    "upper": ("rad", "m"),
+    "velocity": ("rad/s", "m/s"),
+    "effort": ("Nm", "N m", "N*m", "N"),
+    **dict.fromkeys(
+        ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), ("kg m^2", "kg*m^2", "kgm^2", "kg m2")
+    ),
+}
 _DIGIT_AND_LETTER = re.compile(r"(?=.*\d)[-+.\dOoIl]+(?:e[-+]?\d+)?")
 
 
@@ -42,10 +65,26 @@ def meant_attribute(name: str, tag: str, values: Mapping[str, str]) -> str | Non
     if meant is None and name in OWNERS:
         return _other_vector(name, values[name], tag, absent)
     if meant is None:
-        meant = _surely_meant(name, absent)
+        meant = _surely_meant(name, absent) or _only_absent(name, tag, absent)
     if meant in absent and _may_have(meant, values[name]):
         return meant
     return None
+
+
+def _only_absent(name: str, tag: str, absent: list[str]) -> str | None:
+    """Return the attribute that an element needs and that a short name stands for.
+
+    It differs in one letter, as lxx from ixx, or is called as the element: <mass mass="1"/>.
+    """
+    needed = [other for other in absent if other in REQUIRED[tag]]
+    if name == tag and len(TAGS[tag].attributes) == len(needed) == 1:
+        return needed[0]
+    similar = []
+    for other in needed:
+        differing = sum(one != letter for one, letter in zip(name, other, strict=False))
+        if len(other) == len(name) and differing == 1:
+            similar.append(other)
+    return similar[0] if len(similar) == 1 else None
 
 
 def _other_vector(name: str, value: str, tag: str, absent: list[str]) -> str | None:
@@ -74,7 +113,7 @@ def meant_value(text: str, attribute: str) -> str | None:
     count = len(PARTS.get(attribute, ()))
     if not count or len(text) > _MAX_LENGTH or _is_read(text, count):
         return None
-    plain = _without_letters(text)
+    plain = _without_letters(_without_unit(text, attribute))
     decimal = _DECIMAL_COMMA.sub(".", plain)
     ways = {plain, _SEPARATORS.sub(" ", plain).strip(), _SEPARATORS.sub(" ", decimal).strip()}
     readable_ways = {way for way in ways if _is_read(way, count)}
@@ -82,6 +121,13 @@ def meant_value(text: str, attribute: str) -> str | None:
         return readable_ways.pop()
     readable = readable_numbers(text, count) if not readable_ways else None
     return " ".join(readable) if readable is not None and len(readable) == count else None
+
+
+def _without_unit(text: str, attribute: str) -> str:
+    """Return a value without the unit that a URDF has: 1.2 kg, but no g, mm or degree."""
+    for unit in _UNITS.get(attribute, ()):
+        text = re.sub(rf"(?<=[\d.])\s*\[?{re.escape(unit)}\]?(?![\w/*^])", "", text)
+    return text
 
 
 def _without_letters(text: str) -> str:

@@ -133,7 +133,7 @@ class Corrections:
     ) -> XacroCorrection | None:
         location, of_element = place.at(attribute), unknown.kind != "property"
         moved = self.moved(unknown)
-        if moved is not None:
+        if moved is not None and _is_below(moved[1], location):
             sentence = (
                 f"the {unknown.kind} {quoted(unknown.name)} of line {moved[1].line} is read "
                 "above its use"
@@ -293,6 +293,11 @@ class Corrections:
                 edits += _mark_names(node, known)
                 waiting += [(child, known) for child in node.elements]
         return tuple(edits)
+
+
+def _is_below(definition: Location, use: Location) -> bool:
+    """Return whether a definition may come after a use; that in another file always may."""
+    return definition.path != use.path or definition[1:3] > use[1:3]
 
 
 def _defined_name(node: XacroNode) -> str:

@@ -93,6 +93,12 @@ class ExpandedSource(Source):
         return self._expander.files.documents
 
     @property
+    def texts_of_files(self) -> list[Source]:
+        """The texts of the files that it includes, also of those that are no XML."""
+        read = [document.place.source for document in self.documents.values()]
+        return [*read, *self._expander.files.broken.values()]
+
+    @property
     def includes(self) -> Mapping[tuple[str, int], list[str]]:
         """The files that were included, by the path and the tag that include them.
 
@@ -174,6 +180,10 @@ class ExpandedSource(Source):
 
 _INSTRUCTION = re.compile(
     r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?(?!xml\s)(?P<target>[\w:.-]+)", re.DOTALL
+)
+# What libxml2 says of <xacro:macro> and </macro>: it leaves the prefixes out.
+_OTHER_PREFIX = re.compile(
+    r"Opening and ending tag mismatch: (?P<name>\S+) line (?P<line>\d+) and (?P=name)(?![\w.-])"
 )
 _MAX_ASSUMED = 20
 
@@ -328,6 +338,12 @@ def _read(
         return read_nodes(data, path, budget, edits=edits), (), False
     except XMLSyntaxError as error:
         what, location = f"xacro needs well-formed XML: {error.msg}", error_location(error, text)
+        prefixes = _OTHER_PREFIX.match(error.msg or "")
+        if prefixes is not None:
+            what = (
+                f"the end tag in line {location.line} has not the prefix of the start tag "
+                f"<{prefixes['name']}> in line {prefixes['line']}"
+            )
     conflicts = find_conflicts(text.text)
     if conflicts:
         what, location = describe_conflicts(text.text, conflicts), text.at(conflicts[0].start)

@@ -2,6 +2,7 @@
 
 import re
 from typing import NamedTuple
+from unicodedata import normalize
 
 from grader.base.names import near
 from grader.ros.python.budget import Budget
@@ -25,6 +26,8 @@ _WITH_DEFAULT = re.compile(
     """,
     re.ASCII | re.VERBOSE,
 )
+# How letters outside of ASCII are written where a keyboard has none.
+_SPELLINGS = {"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss", "ø": "oe", "å": "aa", "æ": "ae", "ñ": "n"}
 _QUOTED = re.compile(r"""\$\{[^}]*(?:\}|\Z)|'[^'\n]*'|"[^"\n]*\"""")
 
 
@@ -95,8 +98,10 @@ def bind_values(
             absent = [
                 parameter for parameter in macro.parameters if parameter.name not in call.attributes
             ]
-            meant = near(name, [parameter.name for parameter in absent]) or _only_lacking(
-                name, absent
+            meant = (
+                near(name, [parameter.name for parameter in absent])
+                or _only_lacking(name, absent)
+                or _in_other_letters(name, absent)
             )
             raise MacroError(message, UnknownName(name, known, "parameter", meant))
         del left[first[name]]
@@ -119,6 +124,22 @@ def _only_lacking(name: str, absent: list[_MacroParameter]) -> str | None:
         return None
     differing = sum(one != other for one, other in zip(name, needed[0], strict=True))
     return needed[0] if differing == 1 else None
+
+
+def _in_other_letters(name: str, absent: list[_MacroParameter]) -> str | None:
+    """Return the one parameter that a name is with other letters outside of ASCII: höhe, hoehe."""
+    ways = _ways_in_ascii(name)
+    meant = [parameter.name for parameter in absent if ways & _ways_in_ascii(parameter.name)]
+    return meant[0] if len(meant) == 1 else None
+
+
+def _ways_in_ascii(name: str) -> set[str]:
+    """Return how a name may be written without letters outside of ASCII: hoehe, hohe."""
+    plain = normalize("NFKD", name.casefold()).encode("ascii", "ignore").decode()
+    spelt = normalize("NFC", name.casefold())
+    for letter, letters in _SPELLINGS.items():
+        spelt = spelt.replace(letter, letters)
+    return {plain, normalize("NFKD", spelt).encode("ascii", "ignore").decode()} - {""}
 
 
 def bind_blocks(

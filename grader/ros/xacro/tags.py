@@ -281,8 +281,13 @@ def _element(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes
     expander.content(holder, out, scopes)
 
 
-def _attribute(*_: object) -> None:
-    raise Undetermined("<xacro:attribute> is not supported")
+def _attribute(expander: Expander, node: XacroNode, out: XacroNode, scopes: Scopes) -> None:
+    """Set an attribute of the element around, which is lost where that is a tag of xacro."""
+    texts = expander.texts
+    name = texts.text(_needed(node, "name"), scopes.symbols)
+    value = texts.text(_needed(node, "value"), scopes.symbols)
+    _check_name(name, node, expander)
+    expander.set(out, name, value)
 
 
 def _check_name(name: Value, node: XacroNode, expander: Expander) -> None:

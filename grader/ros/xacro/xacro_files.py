@@ -80,6 +80,7 @@ class Files:
         self._workspace, self._budget, self._edits = workspace, workspace.budget, edits
         self.open = [path]
         self.documents: dict[str, XacroNode] = {}  # every file that was read, as it is written
+        self.broken: dict[str, Source] = {}  # the files that are no XML
         self.followed: dict[
             tuple[str, int], list[str]
         ] = {}  # the tags that include files, and the paths of these
@@ -201,7 +202,7 @@ class Files:
         """
         from grader.ros.xml.repair import repair  # late: few files are broken
 
-        source = Source(path, data.decode("utf-8", "replace"))
+        source = self.broken[path] = Source(path, data.decode("utf-8", "replace"))
         self._budget.charge(1, len(data))
         repaired = repair(source.text)
         if not repaired.is_lossy:

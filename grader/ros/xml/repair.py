@@ -12,10 +12,11 @@ from typing import Literal, NamedTuple
 from grader.base.element_edits import empty_element
 from grader.base.markup import indentation
 from grader.base.merge_conflicts import find_conflicts, without_conflicts
-from grader.base.names import near
+from grader.base.names import folded, near
 from grader.base.source import Edits, Source
 from grader.base.text import enumerated
 from grader.ros.xml import xml_problems
+from grader.ros.xml.broken_tags import read_attributes
 from grader.ros.xml.tinyxml2 import (
     Difference,
     MalformedTagError,
@@ -46,12 +47,15 @@ _ATTRIBUTE = re.compile(
     """,
     re.VERBOSE,
 )
+_WORD = re.compile(r"[-+]?[\w.]*\w")
+_MACRO = re.compile(r"""<xacro:macro\s+name="([\w.-]+)"\s+params="([^"<]*)\"""")
 _NAMELESS = re.compile(r"""\s*=\s*["']([^"']*)["']""")
 _NAME = re.compile(r"<\s*+([A-Za-z_][\w:.-]*)")
 # Elements for other tools, and of xacro, which stand in the robot; those of xacro have no URDF in
 # them.
 _XACRO = ("xacro:property", "xacro:arg", "xacro:include")
 _TOP = ("gazebo", "transmission", "ros2_control", *_XACRO)
+_AROUND = {"xacro:macro", "xacro:if", "xacro:unless"}  # elements of xacro with URDF in them
 _TAGS = {*CHILDREN, *(tag for tags in CHILDREN.values() for tag in tags), *_XACRO}
 _ARROW = re.compile(r"(?<!-)->(?=[ \t]*(?:\r?\n|<))")
 _VISIBLE = re.compile(r"[^\r\n]")
@@ -142,6 +146,7 @@ class _Repairer:
         self._inserted: dict[int, str] = {}  # end tags, by the offset before which they are missing
         self._assumed: list[Difference] = []
         self._is_lossy = False
+        self._plain_macros: set[str] | None = None  # the tags that call macros without elements
         self._open: list[Tag] = []
         self._robot: int | None = None  # the offset of the first robot
 
@@ -224,17 +229,17 @@ class _Repairer:
                 start, end, f"{self._text[start : self._text.rindex('/', start, end)].rstrip()}>"
             )
             return tag._replace(form="open"), end
-        is_slash_missing = (
-            tag.form == "open"
-            and not tag.attributes
-            and self._open
-            and self._open[-1].name == tag.name
-        )
-        if is_slash_missing and not self._is_before_child(tag, end):
+        if self._lacks_slash(tag) and not self._is_before_child(tag, end):
             self._assume(f"<{short(tag.name)}> is read as </{short(tag.name)}>", start)
             self._replace(start, end, f"</{tag.name}>")
             return tag._replace(form="close"), end
         return tag, end
+
+    def _lacks_slash(self, tag: Tag) -> bool:
+        """Return whether a tag may be the end of the innermost element: <link> for </link>."""
+        if tag.attributes or not self._open or self._open[-1].name != tag.name:
+            return False
+        return tag.form == "open" or (tag.form == "empty" and tag.name == "xacro:macro")
 
     def _broken(self, match: re.Match[str]) -> Tag:
         """Return a broken tag as it is read.
@@ -245,9 +250,11 @@ class _Repairer:
         if match["close"]:
             self._replace(*match.span(), f"</{name}>")
             return Tag(name, "close", {}, match.start())
-        attributes = _readable_attributes(name, rest)
+        attributes = read_attributes(name, rest)
+        if attributes is None:
+            attributes = _readable_attributes(name, rest)
+            self._is_lossy |= _loses_words(rest, attributes)
         is_value_lost = "=" in rest and not attributes
-        self._is_lossy |= is_value_lost
         if attributes:
             what = f"with {enumerated(list(map(short, attributes)))}"
         else:
@@ -274,24 +281,39 @@ class _Repairer:
     def _start(self, tag: Tag) -> None:
         if self._robot is None:
             self._robot = tag.offset
+        if self._open and self._is_open_call(self._open[-1].name):
+            self._leave(len(self._open) - 1, tag.offset)
         parents = _parents_of(tag.name)
         around = [opened.name for opened in self._open]
         if (
             around
             and around[-1] not in parents
             and parents.intersection(around)
-            and _TAGS.issuperset(around)
+            and (_TAGS | _AROUND).issuperset(around)
         ):
             last = max(index for index, name in enumerate(around) if name in parents)
             self._leave(last + 1, tag.offset)
         if tag.form == "open":
             self._open.append(tag)
 
+    def _is_open_call(self, name: str) -> bool:
+        """Return whether a tag calls a macro that takes no element, so that nothing is inside."""
+        if not name.startswith("xacro:"):
+            return False
+        if self._plain_macros is None:
+            macros = _MACRO.findall(self._text)
+            self._plain_macros = {f"xacro:{macro}" for macro, params in macros if "*" not in params}
+        return name in self._plain_macros
+
     def _close(self, tag: Tag, end: int) -> None:
         indices = [index for index, opened in enumerate(self._open) if opened.name == tag.name]
         if indices:
             self._leave(indices[-1] + 1, tag.offset)
             self._open.pop()
+        elif self._is_end_of_xacro(tag.name):
+            name = self._open.pop().name
+            self._assume(f"</{short(tag.name)}> is read as </{short(name)}>", tag.offset)
+            self._replace(tag.offset, end, f"</{name}>")
         elif (
             self._open
             and self._open[-1].name not in _TAGS
@@ -306,6 +328,22 @@ class _Repairer:
                 tag.offset,
             )
             self._replace(tag.offset, end, "")
+
+    def _is_end_of_xacro(self, name: str) -> bool:
+        """Return whether an end tag stands for that of the innermost element, which is xacro's.
+
+        Examples are </macro>, </xacro> and the name of the macro for </xacro:macro>.
+        """
+        if not self._open:
+            return False
+        opened = self._open[-1]
+        prefix, _, local = opened.name.partition(":")
+        if prefix != "xacro":
+            return False
+        ways = (prefix, local, opened.attributes.get("name", ""))
+        is_misspelt = name not in _TAGS and near(name.removeprefix("xacro:"), [local]) is not None
+        is_same = folded(name) == folded(opened.name)
+        return name.removeprefix("xacro:") in ways or is_same or is_misspelt
 
     def _leave(self, depth: int, offset: int) -> None:
         """Close the tags that are open below a depth, before an offset."""
@@ -323,7 +361,7 @@ class _Repairer:
         opened = self._open.pop()
         head = self._text[opened.offset : offset].rstrip()
         is_alone = opened.offset not in self._replaced and head.find(">") == len(head) - 1
-        if is_alone and _is_never_filled(opened.name):
+        if is_alone and (_is_never_filled(opened.name) or self._is_open_call(opened.name)):
             self._replace(opened.offset, opened.offset + len(head), f"{head[:-1].rstrip()}/>")
             return
         end, new = self._replaced.get(self._last, (0, " "))
@@ -423,11 +461,20 @@ def _readable_attributes(tag: str, text: str) -> dict[str, str]:
     return attributes
 
 
+def _loses_words(text: str, attributes: Mapping[str, str]) -> bool:
+    """Return whether a word or a number in the text of a broken tag is in no attribute."""
+    kept = {word for pair in attributes.items() for part in pair for word in _WORD.findall(part)}
+    return not kept.issuperset(_WORD.findall(decode(text)))
+
+
 def _parents_of(tag: str) -> set[str]:
     """Return the tags of the elements in which an element of this tag may be."""
     if tag in _TOP:
-        return {"robot"}
-    return {name for name, tags in CHILDREN.items() if tag in tags}
+        return {"robot", *_AROUND}
+    parents = {name for name, tags in CHILDREN.items() if tag in tags}
+    if parents == {"robot"}:
+        parents |= _AROUND
+    return parents
 
 
 def _main_attribute(tag: str) -> str:

@@ -523,6 +523,8 @@ class _Scanner:
                 )  # XML may define them there
                 self._noted |= {"doctype", *entities}
                 message = "ROS 2 skips a DOCTYPE and does not expand the entities that it defines"
+                if text.startswith("<!-", position):
+                    message = "a comment begins with <!--, not with <!-; ROS 2 skips it up to its >"
                 self._add(xml_problems.DOCTYPE, message, position)
         return end
 

@@ -4,9 +4,11 @@ They are what its build, its launch files, or what reads its YAML refuses.
 """
 
 import ast
+import re
 from collections.abc import Iterator
 
 from grader.base.slips import Slip
+from grader.base.source import Source
 from grader.ros.config.yaml_slips import yaml_slips
 from grader.ros.installation.installation import Installation
 from grader.ros.launch.launch_slips import launch_slips, name_slips
@@ -21,6 +23,7 @@ _YAML = (".yaml", ".yml", ".rviz")
 def package_slips(package: Package) -> Iterator[Slip]:
     """Yield the slips in the files of a package: those of its build, of launch files, of YAML."""
     installation = package.installation
+    yield from _manifest_slips(package)
     if installation is not None:
         yield from _build_slips(package, installation)
     for path in package.launch_files[:_MAX_FILES]:
@@ -37,6 +40,21 @@ def package_slips(package: Package) -> Iterator[Slip]:
         data = package.tree.read(path, _LIMIT)
         if data is not None:
             yield from yaml_slips(data, package.path(path))
+
+
+def _manifest_slips(package: Package) -> Iterator[Slip]:
+    """Yield the build type that stands in package.xml beside the <export> that it belongs in."""
+    data = package.tree.read("package.xml", _LIMIT)
+    source = Source(package.path("package.xml"), (data or b"").decode("utf-8", "replace"))
+    text = re.sub(r"(?s)<!--.*?-->", lambda match: " " * len(match[0]), source.text)
+    matches = [*re.finditer(r"<build_type>[^<>]*</build_type>", text)]
+    if len(matches) == 1 and "<export" not in text:
+        [match] = matches
+        edit = source.edit(*match.span(), f"<export>{match[0]}</export>")
+        reaction = "the tools of ROS 2 read <build_type> in <export> only"
+        assumption = f"{match[0]} is read inside of <export>"
+        location = source.at(match.start())
+        yield Slip((edit,), reaction, assumption, location, is_refused=True)
 
 
 def _has_programs(installation: Installation) -> bool:

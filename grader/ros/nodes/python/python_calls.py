@@ -195,21 +195,36 @@ def _too_many(written: Written, shown: str, signature: _Signature) -> _WrongCall
     return _WrongCall(reaction, "the others are left out", written.left_out(arguments[most:]))
 
 
+class _Given(NamedTuple):
+    """An argument, the parameter that it is given to, and its kind."""
+
+    name: str
+    argument: ast.expr
+    kind: ArgumentKind | None
+
+
 def _exchanged(written: Written, shown: str, signature: _Signature) -> _WrongCall | None:
     """Return that two arguments surely stand in each other's place."""
     given = [
-        (name, argument, written.kind_of(argument))
+        _Given(name, argument, written.kind_of(argument))
         for name, argument in zip(signature.positional, written.call.args, strict=False)
     ]
     for one, other in combinations(given, 2):
-        if one[2] is None or other[2] is None:
-            continue
-        is_right = _fits(one[0], one[2]) and _fits(other[0], other[2])
-        if not is_right and _fits(one[0], other[2]) and _fits(other[0], one[2]):
-            edits = (written.replaced(one[1], other[1]), written.replaced(other[1], one[1]))
-            reaction = f"{shown} gets {one[0]} and {other[0]} in the wrong order"
+        if _are_exchanged(one, other):
+            edits = (
+                written.replaced(one.argument, other.argument),
+                written.replaced(other.argument, one.argument),
+            )
+            reaction = f"{shown} gets {one.name} and {other.name} in the wrong order"
             return _WrongCall(reaction, "they are exchanged", edits)
     return None
+
+
+def _are_exchanged(one: _Given, other: _Given) -> bool:
+    if one.kind is None or other.kind is None:
+        return False
+    is_right = _fits(one.name, one.kind) and _fits(other.name, other.kind)
+    return not is_right and _fits(one.name, other.kind) and _fits(other.name, one.kind)
 
 
 def _missing(written: Written, shown: str, signature: _Signature) -> _WrongCall | None:
