@@ -21,7 +21,7 @@ def test_the_current_folder_is_inspected() -> None:
     """It is the default, and the paths of the format concise begin there."""
     done = inspect(SAMPLE, "--format", "concise")
     assert (done.returncode, done.stderr) == (1, b"")
-    assert done.stdout.startswith(b"diffdrive_robot/launch/diffdrive.launch.py:35:")
+    assert done.stdout.startswith(b"diffdrive_robot/launch/diffdrive.launch.py:38:25:")
     assert inspect(SAMPLE).stdout == run(("inspect", SAMPLE)).stdout
 
 
