@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from grader.base.text import printable
 from grader.lab.grading.report import Report
-from grader.report.writers.markdown import code, cut_markdown, escape, fence, render_markdown
+from grader.report.writers.escaped_markdown import code, escape, fence
+from grader.report.writers.markdown import cut_markdown, render_markdown
 from tests.report.hostile import TEXT
 from tests.report.readers import read_as_github, read_markdown
 from tests.samples import SAMPLES

@@ -33,7 +33,7 @@ def publish_report(report: "Report", base: "Base", annotate: _Annotate | None, w
 
 def publish_refusal(reason: str, annotate: _Annotate, warn: Warn) -> None:
     """Annotate why nothing was graded, and add it to the job summary."""
-    from grader.report.writers.markdown import escape
+    from grader.report.writers.escaped_markdown import escape
     from grader.report.writers.workflow_commands import command
 
     lines = [printable(line) for line in reason.splitlines()]

@@ -10,6 +10,7 @@ from grader.app.editor.places import TextPlace
 from grader.base.errors import MissingElement, NotDecided
 from grader.base.text import counted, enumerated, printable
 from grader.report.inspection import joint_text, main_root, pose_text
+from grader.report.writers.escaped_markdown import code, escape, escape_words
 from grader.ros.api import Configuration
 
 _MAX_NAMED = 3  # places
@@ -30,9 +31,9 @@ def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
         where = f"defined at {enumerated([*dict.fromkeys(defined)], _MAX_NAMED)}"
     uses = {same_name.location for same_name in same if same_name.role == "use"}
     used = counted(len(uses), "time")
-    rows = [f"**{name.kind}** `{name.name}`: {where}; used {used}"]
+    rows = [f"**{name.kind}** {_code(name.name)}: {_plain(where)}; used {used}"]
     rows += _of_robots(look, name.kind, name.name)
-    rows += (f"value: `{value}`" for value in look.names.values(name)[:_MAX_NAMED])
+    rows += (f"value: {_code(value)}" for value in look.names.values(name)[:_MAX_NAMED])
     if name.kind == "parameter":
         rows += _parameter_rows(look, place)
     return lsp.Hover(_markdown(rows), place.ranges(look).range(name.location))
@@ -45,11 +46,26 @@ def _parameter_rows(look: Look, place: TextPlace) -> list[str]:
     lines = place.lines.text.split("\n")[: place.line]
     key = parameter_key(lines[:-1], lines[-1])
     text = look.names.parameter_text(key.node, key.name) if key is not None else ""
-    return [f"**parameter** `{key.name}`", *text.split("\n")] if key is not None and text else []
+    if key is None or not text:
+        return []
+    return [
+        f"**parameter** {_code(key.name)}",
+        *(escape_words(printable(row)) for row in text.split("\n")),
+    ]
 
 
 def _markdown(rows: Sequence[str]) -> lsp.MarkupContent:
-    return lsp.MarkupContent(lsp.MarkupKind.Markdown, "\n\n".join(map(printable, rows)))
+    return lsp.MarkupContent(lsp.MarkupKind.Markdown, "\n\n".join(rows))
+
+
+def _code(name: str) -> str:
+    """Return a name as code, whatever its letters are."""
+    return code(printable(name))
+
+
+def _plain(text: str) -> str:
+    """Return a text of the files as its letters."""
+    return escape(printable(text))
 
 
 def _of_robots(look: Look, kind: str, name: str) -> Iterator[str]:
@@ -57,19 +73,20 @@ def _of_robots(look: Look, kind: str, name: str) -> Iterator[str]:
     for path, robot in look.robots.items():
         model = robot.robot
         if kind in ("link", "frame") and model.has_link(name):
-            yield f"{_pose(robot, name)} ({path})"
+            yield f"{_pose(robot, name)} ({_plain(path)})"
         if kind == "joint" and model.has_joint(name):
             joint = model.joint(name)
             text = joint_text(joint).strip()
-            yield f"{text}, from `{joint.parent}` to `{joint.child}` ({path})"
+            ends = f"from {_code(joint.parent)} to {_code(joint.child)}"
+            yield f"{_plain(text)}, {ends} ({_plain(path)})"
 
 
 def _pose(robot: Configuration, link: str) -> str:
     root = main_root(robot)
     if root is None:
-        return f"`{link}` has no pose: the links are in a loop"
+        return f"{_code(link)} has no pose: the links are in a loop"
     try:
         pose = robot.pose(link, relative_to=root)
     except (MissingElement, NotDecided) as reason:
-        return str(reason)
-    return f"pose in `{root}` (x y z in m, roll pitch yaw in rad): {pose_text(pose)}"
+        return _plain(str(reason))
+    return f"pose in {_code(root)} (x y z in m, roll pitch yaw in rad): {pose_text(pose)}"

@@ -6,8 +6,7 @@ Text of a submission is escaped: it never becomes markup, HTML, a link or a ment
 """
 
 import html
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import accumulate, groupby
 from textwrap import indent
 
@@ -30,22 +29,9 @@ from grader.report.criteria import (
 )
 from grader.report.locations import diff_lines, excerpt_lines, location_text
 from grader.report.statuses import SYMBOLS
+from grader.report.writers.escaped_markdown import MENTION, code, escape, escape_words, fence
 
-_HTML = {"<": "&lt;", ">": "&gt;", "&": "&amp;"}
-_ACTIVE = re.compile(
-    r"[\\`*\[\]<>&|~$#]|(?<![^\W_])_|_(?![^\W_])"  # an underscore inside a word is plain text
-    # GitHub makes links of bare addresses
-    r"|(?<=http):(?=//)|(?<=https):(?=//)|(?<=ftp):(?=//)|(?<=www)\.",
-    re.IGNORECASE,
-)
-_OPENING = re.compile(r"^([-+=]|\d+[.)](?= |$))")  # a list, rule or heading at the start of a line
-# GitHub looks for mentions and issue numbers after it has rendered Markdown, so escapes do not
-# prevent them.
-_MENTION = re.compile(r"@|#(?=\d)")
-_FENCE = re.compile(r"`{3,}")
 _LOOKS = {"graded": "# {}", "result": "**{}**", "hint": "**{}**", "feedback": "*{}*", "part": "{}:"}
-# backticks: GitHub's parser takes no more to start code, and counts those of a block to 255
-_MAX_FENCE = 80
 _CUT = (
     "**The report is cut off here, because it is too long.** A report that is saved to a file "
     "is complete.\n"
@@ -118,7 +104,7 @@ def _section(section: Section, report: Report, *, answers: bool) -> Iterator[str
     for is_item, lines in groupby(
         section.lines, lambda line: line.role not in ("part", "carried", "there")
     ):
-        texts = [_LOOKS.get(line.role, "{}").format(_escape_words(line.text)) for line in lines]
+        texts = [_LOOKS.get(line.role, "{}").format(escape_words(line.text)) for line in lines]
         if is_item:
             yield "\n".join(f"- {text}" for text in texts)
         else:
@@ -143,7 +129,7 @@ def _details(entry: Entry, report: Report, *, answers: bool) -> Iterator[str]:
     for block in entry.blocks:
         match block:
             case Line(role, text):
-                yield _LOOKS.get(role, "{}").format(_escape_words(text))
+                yield _LOOKS.get(role, "{}").format(escape_words(text))
             case Location():
                 yield code(location_text(block))
                 if excerpt := [*excerpt_lines(block, report.submission.source)]:
@@ -167,53 +153,8 @@ def _fold_passed(group: CriteriaGroup) -> str:
     return ""
 
 
-def escape(text: str) -> str:
-    """Return one line of printable text that Markdown shows as it is."""
-    plain = _ACTIVE.sub(lambda match: _HTML.get(match[0]) or f"\\{match[0]}", text.strip())
-    plain = _OPENING.sub(lambda match: f"{match[0][:-1]}\\{match[0][-1]}", plain)
-    return _MENTION.sub("\\g<0>\u2060", plain)
-
-
-def _escape_words(text: str) -> str:
-    """Return one line of printable text in which what is between backticks is code."""
-    parts = text.strip().split("`")
-    if len(parts) % 2 == 0 or "``" in text:
-        return escape(text)
-    return "".join(
-        code(part) if number % 2 else _keep_spaces(part) for number, part in enumerate(parts)
-    )
-
-
-def _keep_spaces(text: str) -> str:
-    """Return escaped text with the spaces around it."""
-    inner = text.strip(" ")
-    if inner:
-        return text.replace(inner, escape(inner))
-    return text
-
-
-def code(text: str) -> str:
-    """Return printable text as inline code; as plain text if it has too many backticks."""
-    longest = max((len(match[0]) for match in re.finditer(r"`+", text)), default=0)
-    if longest >= _MAX_FENCE:
-        return escape(text)
-    fence = "`" * (longest + 1)
-    space = " " if not text or text[0] in "` " or text[-1] in "` " else ""
-    return f"{fence}{space}{text}{space}{fence}"
-
-
-def fence(lines: Sequence[str], language: str = "text") -> str:
-    """Return printable lines, none of them blank, as a code block that nothing in them can end."""
-    fence = "`" * max(
-        (len(match[0]) + 1 for line in lines for match in _FENCE.finditer(line)), default=3
-    )
-    if len(fence) > _MAX_FENCE:
-        return "\n".join(f"    {line}" for line in lines)
-    return "\n".join((f"{fence}{language}", *lines, fence))
-
-
 def _fold(summary: str, lines: list[str]) -> str:
     """Return Markdown below a line of printable text that unfolds it."""
-    shown = _MENTION.sub("\\g<0>\u2060", html.escape(summary))
+    shown = MENTION.sub("\\g<0>\u2060", html.escape(summary))
     # CommonMark reads Markdown in HTML only after an empty line.
     return "\n".join(("<details>", f"<summary>{shown}</summary>", "", *lines, "", "</details>"))
