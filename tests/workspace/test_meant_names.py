@@ -73,7 +73,7 @@ def places(folder: Path, files: Mapping[str, str]) -> list[tuple[str, int]]:
     ("file", "old", "new", "at"),
     [
         ("launch/follow.launch.py", "executable='follower'", "executable='folower'", 10),
-        ("launch/follow.launch.py", "'follower.yaml'", "'folower.yaml'", 10),
+        ("launch/follow.launch.py", "'follower.yaml'", "'folower.yaml'", 11),
         ("config/follower.yaml", "follower:\n", "folower:\n", 1),
         ("config/follower.yaml", "ros__parameters", "ros_parameters", 2),
         ("setup.py", "drive_bot.follower:main", "drive_bot.folower:main", 8),

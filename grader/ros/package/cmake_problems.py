@@ -99,7 +99,7 @@ def _not_compiled(package: Package, setup: Installation) -> Iterator[Problem]:
     compiled = {path for target in setup.targets for path in target.sources}
     paths = [path for path in package.tree.files if path.endswith(_SOURCES)]
     unread = ("test/", *package.inner)
-    commented = " ".join(_COMMENT_OF_CMAKE.findall(setup.source.text))
+    commented = " ".join(match[0] for match in _COMMENT_OF_CMAKE.finditer(setup.source.text))
     others = [path for path in paths if path not in compiled and not path.startswith(unread)]
     others = [path for path in others if not _is_named(path, commented)]
     for path in others[:_MAX_FILES]:

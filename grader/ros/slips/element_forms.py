@@ -16,11 +16,11 @@ from grader.base.text import cut, quoted
 from grader.ros.slips.nodes import place_of
 from grader.ros.xacro.xacro_nodes import XacroNode
 from grader.ros.xml.broken_tags import read_attributes
+from grader.ros.xml.elements import WORD_OF_VALUE
 from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN, PARTS, REQUIRED, TAGS
 
 _MAX_SHOWN = 60  # characters of a value
-_TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
-_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|.*\$[{(].*")
+_NUMBER = re.compile(r"[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?|.*\$[{(].*")
 _POSE = 6  # numbers of a pose
 _BY_ATTRIBUTES = {
     ("size",): "box",
@@ -116,7 +116,7 @@ def _values_of_text(tag: str, text: str, absent: list[str]) -> Mapping[str, str]
         given = read_attributes(tag, text) or {}
         is_right = all(name in absent and _fits(name, value) for name, value in given.items())
         return given if is_right else {}
-    tokens = _TOKEN.findall(text)
+    tokens = WORD_OF_VALUE.findall(text)
     if tag == "origin" and absent[:2] == ["xyz", "rpy"] and len(tokens) == _POSE:
         if all(map(_NUMBER.fullmatch, tokens)):
             return {"xyz": " ".join(tokens[:3]), "rpy": " ".join(tokens[3:])}
@@ -136,7 +136,7 @@ def _main_attributes(tag: str) -> tuple[str, ...]:
 
 def _fits(name: str, text: str) -> bool:
     """Return whether a text has the numbers of an attribute, or is one word."""
-    tokens, parts = _TOKEN.findall(text), PARTS.get(name, ())
+    tokens, parts = WORD_OF_VALUE.findall(text), PARTS.get(name, ())
     if parts:
         return len(tokens) == len(parts) and all(map(_NUMBER.fullmatch, tokens))
     return len(tokens) == 1
@@ -155,7 +155,7 @@ def _values_of_children(
             name = "link"
         value = _value_of(child)
         if name in absent and name not in values and name not in known and _fits(name, value):
-            values[name] = " ".join(_TOKEN.findall(value))
+            values[name] = " ".join(WORD_OF_VALUE.findall(value))
             removed.append(child)
     return values, removed
 

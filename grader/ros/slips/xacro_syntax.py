@@ -9,6 +9,7 @@ from grader.base.source import Source
 from grader.base.text import cut
 from grader.ros.slips.nodes import place_of
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
+from grader.ros.xml.elements import WORD_OF_VALUE
 from grader.ros.xml.urdf_format import PARTS
 
 _MAX_LENGTH = 500  # characters of a value
@@ -21,15 +22,16 @@ _IN_PARENTHESES = re.compile(rf"\$\((?!\s*{_COMMANDS})((?:[^()$]|\([^()$]*\))*)\
 _IN_BRACKETS = re.compile(r"\$\[([^\[\]$]*)\]")
 # ${{a}} and ${a}}, and {a / 4} or $ {a / 4} with a name that is known.
 _MIXED = re.compile(r"\$\(((?:[^()${}]|\([^()${}]*\))*)\}")  # $(a / 4}
-_BARE = re.compile(r"(?:\$(?!\())?\s*([\w\s.+*/()-]*[*/+-][\w\s.+*/()-]*)")  # a / 4, $a / 4
+_BARE = re.compile(r"(?:\$(?!\())?\s*+((?=[^*/+-]*+[*/+-])[\w\s.+*/()-]++)")  # a / 4, $a / 4
 _IN_BRACES = re.compile(r"\$\{\{?([^{}$]*)\}\}")
 _WITHOUT_DOLLAR = re.compile(r"(?<![${])(?:\$\s+)?\{([^{}$]*)\}")
 _OPERATOR = re.compile(r"[-+*/%<>=]|\b(?:and|or|not|if)\b")
 _WORDS = re.compile(r"\b[^\W\d]\w*")
-_TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
 _TEXT_IN_QUOTES = re.compile(r"('[^']*'|\"[^\"]*\")")
 _SINGLE_EQUALS = re.compile(r"(?<![=!<>])=(?!=)")
-_TIMES = re.compile(r"(?<=[\w.)])\s+[xX]\s+(?=[\w.(])|(?<=\d)\s*[xX]\s*(?=[\d.(])|\s*[×·∙]\s*")
+_TIMES = re.compile(
+    r"(?<=[\w.)])\s+[xX]\s+(?=[\w.(])|(?<=\d)\s*[xX]\s*(?=[\d.(])|(?:(?<!\s)\s++)?[×·∙]\s*"
+)
 # Signs that stand for those of Python in an expression.
 _SIGNS = {
     "−": "-",
@@ -143,7 +145,7 @@ def _with_brace(text: str, attribute: str, names: set[str]) -> Iterator[str]:
             rest = rest[1:]
         new = f"{text[:at]}}}{rest}"
         ways.append(new)
-        if len(_TOKEN.findall(new)) == count:
+        if len(WORD_OF_VALUE.findall(new)) == count:
             counted.append(new)
     yield from (counted or ways)[-_MAX_PLACES:]
 

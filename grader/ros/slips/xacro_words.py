@@ -24,8 +24,10 @@ _USUAL: Mapping[str, tuple[str, ...]] = {
     "xacro:attribute": ("name", "value"),
 }
 _MAX_SHOWN = 60  # characters of a text
-_CALL = re.compile(r"<xacro:(?P<name>[\w.-]+)(?P<rest>[^<>]*)>")
-_VALUE = re.compile(r"""(?:(?P<name>[\w.:-]+)[\s=:]*|=\s*)?(?P<quoted>"[^"]*"|'[^']*')""")
+_CALL = re.compile(r"<xacro:(?P<name>[\w.-]++)(?P<rest>[^<>]*+)>")
+_VALUE = re.compile(
+    r"""(?:(?<![\w.:-])(?P<name>[\w.:-]++)[\s=:]*+|=\s*+)?(?P<quoted>"[^"]*"|'[^']*')"""
+)
 _OTHERS: Mapping[str, tuple[str, ...]] = {
     "xacro:property": ("default", "remove", "scope", "lazy_eval"),
     "xacro:include": ("ns", "optional"),

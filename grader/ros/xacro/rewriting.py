@@ -31,12 +31,12 @@ from grader.ros.xacro.expansion import ExpandedSource
 from grader.ros.xacro.scopes import Key, ScopePlace, XacroDefinition, XacroFails, XacroScope
 from grader.ros.xacro.texts import Texts
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
+from grader.ros.xml.elements import WORD_OF_VALUE
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
 _MAX_NAMES, _MAX_NODES = 8, 2000
 _PREFIXED = ("property", "arg", "macro", "include", "if", "unless")
 _NAMESPACE = ' xmlns:xacro="http://www.ros.org/wiki/xacro"'
-_TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
 _EXPRESSION = re.compile(r"\$\{([^}]*)\}")
 _NAME = re.compile(r"(?<![\w.'\"])[^\W\d]\w*(?![\w(])")
 _NUMBER = re.compile(r"\s*+[-+]?(?:\d++\.?\d*+|\.\d++)(?:[eE][-+]?\d++)?\s*")
@@ -446,7 +446,7 @@ def _parts(text: _Written, use: _Use) -> list[tuple[_Written, str, str]]:
 
     The parts are words, or the whole text.
     """
-    tokens = [text.part(*match.span()) for match in _TOKEN.finditer(text.text)]
+    tokens = [text.part(*match.span()) for match in WORD_OF_VALUE.finditer(text.text)]
     old, new = use.old.split(), use.new.split()
     if len(tokens) != len(old) or len(old) != len(new) or len(tokens) < 2:
         return [(text, use.old, use.new)]

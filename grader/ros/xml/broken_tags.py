@@ -5,19 +5,21 @@ Every word and number of the tag is read: what this cannot place is left to a co
 
 import re
 
+from grader.ros.xml.elements import WORD_OF_VALUE
 from grader.ros.xml.tinyxml2 import decode
 from grader.ros.xml.urdf_format import PARTS, TAGS
 
 _QUOTES = "\"'“”„‘’‚"
 # The name of an attribute with what stands for its = : name==, name:, name =:, or nothing.
 _NAME = re.compile(
-    r"""\s*(?P<name>[A-Za-z_][\w.-]*(?::[A-Za-z_][\w.-]*)?)
-    (?:\s*(?:=\s*)+|\s*:\s*=?\s*|\s+)(?=["'“”„‘’‚])""",
+    r"""\s*+(?P<name>[A-Za-z_][\w.-]*(?::[A-Za-z_][\w.-]*)?)
+    (?:\s*+(?:=\s*+)++|\s*+:\s*+(?:=\s*+)?|\s++)(?=["'“”„‘’‚])""",
     re.VERBOSE,
 )
 # The name of the next attribute at the end of a value whose quote is not closed.
-_NEXT = re.compile(r"""["']?\s*(?<![A-Za-z_.-])(?P<name>[A-Za-z_][\w-]*)\s*=\s*\Z""")
-_TOKEN = re.compile(r"(?:\$\{[^}]*\}|\$\([^)]*\)|[^\s$]|\$)+")
+_NEXT = re.compile(
+    r"""(?:["']\s*+|(?<!\s)\s++)?(?<![A-Za-z_.-])(?P<name>[A-Za-z_][\w-]{0,60}+)\s*+=\s*+\Z"""
+)
 
 
 def read_attributes(tag: str, text: str) -> dict[str, str] | None:
@@ -71,5 +73,5 @@ def _next_name(tag: str, attribute: str, value: str) -> re.Match[str] | None:
     else:
         is_attribute = match[0].lstrip("\"'")[:1].isspace()
     numbers = PARTS.get(attribute, ()) or ("",)
-    count = len(_TOKEN.findall(value[: match.start()]))
+    count = len(WORD_OF_VALUE.findall(value[: match.start()]))
     return match if is_attribute and count == len(numbers) else None

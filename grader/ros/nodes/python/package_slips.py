@@ -46,7 +46,7 @@ def _manifest_slips(package: Package) -> Iterator[Slip]:
     """Yield the build type that stands in package.xml beside the <export> that it belongs in."""
     data = package.tree.read("package.xml", _LIMIT)
     source = Source(package.path("package.xml"), (data or b"").decode("utf-8", "replace"))
-    text = re.sub(r"(?s)<!--.*?-->", lambda match: " " * len(match[0]), source.text)
+    text = re.sub(r"(?s)<!--.*?(?:-->|\Z)", lambda match: " " * len(match[0]), source.text)
     matches = [*re.finditer(r"<build_type>[^<>]*</build_type>", text)]
     if len(matches) == 1 and "<export" not in text:
         [match] = matches

@@ -69,6 +69,7 @@ _MAX_SEARCHED = 32 * 1024  # bytes of a program in which slips are searched
 _MAX_MODULES = 100
 _MAX_CODE = 512 * 1024  # characters of the modules of a package in which faults are searched
 _OF_CALL = 4  # parts of a call that leads to a node
+_MAX_GUESSED = 20  # entry points of a package, of which each that names nothing may be misspelt
 _BYTES_A_PART = 2  # of a program in which slips are searched, charged as one part
 _MAX_FIRST_LINE = 100  # bytes
 _DEPTH_OF_FILTERS = 10  # by message_filters of Jazzy
@@ -334,8 +335,9 @@ def _programs(
         by_key.setdefault(node.location, []).append(node)
         by_key.setdefault(node.class_name, []).append(node)
     created_by = partial(_created_by, package.budget, modules, by_key)
-    for written in entry_points(package):
-        entry = entry_as_meant(package, written) if reads_meant else written
+    may_guess = _MAX_GUESSED if reads_meant else 0
+    for number, written in enumerate(entry_points(package)):
+        entry = entry_as_meant(package, written) if number < may_guess else written
         created, has_more = created_by(entry.module, entry.function)
         path = module_path(package, entry.module) or ""
         program = NodeProgram(entry.name, created, entry.location, path, entry.function)
