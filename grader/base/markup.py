@@ -13,6 +13,8 @@ _ATTRIBUTE = re.compile(r"""\s*([^\s=/>"']+)\s*=\s*(?:"([^"]*)"|'([^']*)')""")
 _TOKEN = re.compile(
     r"<!--.*?(?:-->|\Z)|<!\[CDATA\[.*?(?:\]\]>|\Z)|<\?.*?(?:\?>|\Z)|<!|</[^<>]*>?|<", re.DOTALL
 )
+# A word of the value of an attribute, in which an expression of xacro is a part.
+WORD_OF_VALUE = re.compile(r"(?:\$\{[^{}]*\}|\$\((?:[^()]|\([^()]*\))*+\)|[^\s$]|\$)+")
 _STEP = "   "  # of indentation, where the file shows none
 
 

@@ -99,7 +99,7 @@ def _not_compiled(package: Package, setup: Installation) -> Iterator[Problem]:
     compiled = {path for target in setup.targets for path in target.sources}
     paths = [path for path in package.tree.files if path.endswith(_SOURCES)]
     unread = ("test/", *package.inner)
-    commented = " ".join(match[0] for match in _COMMENT_OF_CMAKE.finditer(setup.source.text))
+    commented = _comments_in(setup.source.text)
     others = [path for path in paths if path not in compiled and not path.startswith(unread)]
     others = [path for path in others if not _is_named(path, commented)]
     for path in others[:_MAX_FILES]:
@@ -107,6 +107,10 @@ def _not_compiled(package: Package, setup: Installation) -> Iterator[Problem]:
         if "rclcpp" in text and _PROGRAM.search(text) and not _OF_TESTS.search(path):
             message = f"no target of CMakeLists.txt compiles {path}"
             yield Problem(kinds.NOT_COMPILED, message, setup.location(setup.targets[-1].at))
+
+
+def _comments_in(cmake: str) -> str:
+    return " ".join(match[0] for match in _COMMENT_OF_CMAKE.finditer(cmake))
 
 
 def _is_named(path: str, text: str) -> bool:

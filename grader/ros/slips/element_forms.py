@@ -10,13 +10,13 @@ from grader.base.element_edits import (
     renamed_tag,
     without_element,
 )
+from grader.base.markup import WORD_OF_VALUE
 from grader.base.slips import Slip
 from grader.base.source import Edits, Source
 from grader.base.text import cut, quoted
 from grader.ros.slips.nodes import place_of
 from grader.ros.xacro.xacro_nodes import XacroNode
 from grader.ros.xml.broken_tags import read_attributes
-from grader.ros.xml.elements import WORD_OF_VALUE
 from grader.ros.xml.urdf_format import ATTRIBUTES, CHILDREN, PARTS, REQUIRED, TAGS
 
 _MAX_SHOWN = 60  # characters of a value

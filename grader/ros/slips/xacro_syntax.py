@@ -4,12 +4,12 @@ import re
 from collections.abc import Iterator
 
 from grader.base import markup
+from grader.base.markup import WORD_OF_VALUE
 from grader.base.slips import Slip
 from grader.base.source import Source
 from grader.base.text import cut
 from grader.ros.slips.nodes import place_of
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
-from grader.ros.xml.elements import WORD_OF_VALUE
 from grader.ros.xml.urdf_format import PARTS
 
 _MAX_LENGTH = 500  # characters of a value

@@ -17,6 +17,7 @@ from typing import NamedTuple
 
 from grader.base import markup
 from grader.base.element_edits import format_number, merged, tag_edits, with_attribute
+from grader.base.markup import WORD_OF_VALUE
 from grader.base.names import near
 from grader.base.source import Edit, Edits, Location, Source
 from grader.base.text import in_backticks
@@ -31,7 +32,6 @@ from grader.ros.xacro.expansion import ExpandedSource
 from grader.ros.xacro.scopes import Key, ScopePlace, XacroDefinition, XacroFails, XacroScope
 from grader.ros.xacro.texts import Texts
 from grader.ros.xacro.xacro_nodes import XacroNode, walk
-from grader.ros.xml.elements import WORD_OF_VALUE
 
 _MAX_LENGTH = 2_000  # of a text that is edited in parts
 _MAX_NAMES, _MAX_NODES = 8, 2000

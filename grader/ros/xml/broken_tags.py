@@ -5,7 +5,7 @@ Every word and number of the tag is read: what this cannot place is left to a co
 
 import re
 
-from grader.ros.xml.elements import WORD_OF_VALUE
+from grader.base.markup import WORD_OF_VALUE
 from grader.ros.xml.tinyxml2 import decode
 from grader.ros.xml.urdf_format import PARTS, TAGS
 

@@ -19,8 +19,6 @@ FOREIGN = (
 _INSTALLED = re.compile(
     r"/install/([^/\s]+)/share/\1(?=[/\s]|\Z)"
 )  # what the expansion makes of $(find package)
-# A word of the value of an attribute, in which an expression of xacro is a part.
-WORD_OF_VALUE = re.compile(r"(?:\$\{[^{}]*\}|\$\((?:[^()]|\([^()]*\))*+\)|[^\s$]|\$)+")
 
 
 def name_of(element: Element) -> str:
