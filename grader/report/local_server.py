@@ -33,6 +33,7 @@ _ENDINGS = [
 MAX_BODY = 64 * 1024  # bytes; `http.server` limits the headers
 # seconds in which a client must send a whole request, and receive a whole response
 _PATIENCE = 15.0
+_MOST_OPEN = 64  # connections: a browser opens six, and each takes a thread and a descriptor
 _TEXT = "text/plain; charset=utf-8"
 _TOKEN_BYTES = 24
 _HEADERS = {
@@ -77,6 +78,7 @@ class LocalServer(ThreadingTCPServer):
         self, application: Callable[[tuple[str, ...], bytes | None], Response], port: int = 0
     ) -> None:
         self.application = application
+        self._open: dict[socket, None] = {}  # the oldest first
         self.token = secrets.token_urlsafe(_TOKEN_BYTES)
         try:
             super().__init__((HOST, port), _Handler)
@@ -87,6 +89,18 @@ class LocalServer(ThreadingTCPServer):
         self.port = int(self.server_address[1])
         self.hosts = tuple(f"{name}:{self.port}" for name in (HOST, "localhost"))
         self.url = f"http://{self.hosts[0]}/{self.token}/"
+
+    def process_request(self, request: Any, client_address: Any) -> None:
+        """Serve a connection in a thread; of too many, no more is read of the oldest."""
+        self._open[request] = None
+        for oldest in [*self._open][:-_MOST_OPEN]:
+            _stop_reading(oldest)
+        super().process_request(request, client_address)
+
+    def shutdown_request(self, request: Any) -> None:
+        """Close a connection."""
+        self._open.pop(request, None)
+        super().shutdown_request(request)
 
     def finish_request(self, request: Any, client_address: Any) -> None:
         """Serve a connection.

@@ -472,3 +472,18 @@ def test_a_pdf_is_served_to_the_viewer(tmp_path: Path) -> None:
             found.headers["content-security-policy"] == "default-src 'none'; frame-ancestors 'self'"
         )
         assert review.get("2/picture/1").headers["content-type"] == "image/png"  # by its bytes
+
+
+def test_connections_without_a_request_take_no_place(
+    review: Review, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of more than the limit, the oldest are ended; a request of the page is answered all the same."""
+    monkeypatch.setattr(local_server, "_MOST_OPEN", 8)
+    address = (HOST, review.port)
+    idle = [socket.create_connection(address, timeout=HANG_TIMEOUT) for _ in range(40)]
+    try:
+        assert review.get("1").status == 200
+        assert idle[0].recv(1) == b""
+    finally:
+        for connection in idle:
+            connection.close()
