@@ -242,14 +242,21 @@ def test_a_new_rubric(project: Path) -> None:
     )
 
 
+CALL = """\
+    for package in workspace.packages:
+        for source in workspace.texts.launch_sources(package):
+            yield from _notes(source)
+"""
+
+
 def test_a_new_rule(project: Path) -> None:
     """A rule is a row of the table, a function in the file of its family, an example, a test and a line of the changelog."""
     rules = project / "grader/ros/workspace/rules"
     replace(rules / "rule_table.py", "\n_moveit = ", f"{RULE}\n_moveit = ")
     with (rules / "one_machine.py").open("a", encoding="utf-8") as family:
         family.write(FINDER)
-    call = "            yield from _variables(source)\n"
-    replace(rules / "one_machine.py", call, f"{call}            yield from _notes(source)\n")
+    call = "    yield from _variables(workspace)\n"
+    replace(rules / "one_machine.py", call, f"{call}{CALL}")
     replace(rules / "one_machine.py", "    HOME_PATH,\n", "    HOME_PATH,\n    NOTE_LEFT,\n")
     examples = project / "docs/examples/rules.toml"
     replace(examples, "\n[srdf-robot]\n", f"{RULE_EXAMPLE}\n[srdf-robot]\n")

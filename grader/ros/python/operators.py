@@ -63,6 +63,8 @@ def method(owner: py.Value, name: str, budget: Budget) -> py.PlainFunction | Non
     kind = "holds" if isinstance(owner, list | tuple | dict) else _KINDS.get(name, "plain")
 
     def charged(*args: py.Value, **kwargs: py.Value) -> py.Value:
+        if run is _join:
+            budget.measure([value for value in args if isinstance(value, str)])
         if run is not _get:
             budget.charge(
                 budget.measure(owner, kind), sum(_search_cost(owner, value) for value in args)
@@ -107,8 +109,6 @@ def _replace(text: str, old: str, new: str, *count: int) -> str:
 
 
 def _join(separator: str, items: py.Value) -> str:
-    if isinstance(items, str):
-        raise py.Undetermined("joining the letters of a text is not supported")
     parts = items_of(items)
     if sum(len(part) + len(separator) for part in parts if isinstance(part, str)) > py.MAX_TEXT:
         too_large("text")
