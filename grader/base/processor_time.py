@@ -14,13 +14,15 @@ from grader.base.errors import OutOfTime
 
 CAN_LIMIT = hasattr(signal, "setitimer")  # not on Windows
 _GRACE = 10  # more seconds, after which the process is ended, whatever it does
+_AGAIN = 2.0  # seconds after which it is raised again: where no exception can be, it is lost
 _SPARE = 0.25  # seconds of a limit of the shell that are left to say so
 
 
 def limit_processor_time(seconds: float) -> None:
     """Raise OutOfTime in the main thread after more seconds of processor time.
 
-    SIGXCPU ends the process later. An earlier limit no longer counts.
+    It is raised again where the first was lost, as in a finalizer. SIGXCPU ends the process later.
+    An earlier limit no longer counts.
 
     A lower limit of the process itself, as of `ulimit -t`, stays.
     """
@@ -41,7 +43,7 @@ def limit_processor_time(seconds: float) -> None:
         raise OutOfTime(reason)
 
     signal.signal(signal.SIGPROF, stop)
-    signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.setitimer(signal.ITIMER_PROF, seconds, _AGAIN)
     if end <= hard:
         resource.setrlimit(resource.RLIMIT_CPU, (int(end), _as_limit(hard)))
 

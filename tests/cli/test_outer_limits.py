@@ -30,6 +30,17 @@ def hang(*_: object, **__: object) -> None:
             sum(range(1000))
 
 
+def hang_where_nothing_is_raised(*_: object, **__: object) -> None:
+    """Use processor time without end, first in a finalizer, which loses every exception."""
+
+    class _Slow:
+        def __del__(self) -> None:
+            hang()
+
+    _Slow()
+    hang()
+
+
 def fill_memory(*_: object, **__: object) -> bytes:
     """Ask for more memory than the limit allows."""
     return bytes(2 * ending._MEMORY)
@@ -41,6 +52,11 @@ def fill_memory(*_: object, **__: object) -> bytes:
         pytest.param(
             hang, b"this takes more than 1 s of processor time", marks=pytest.mark.exhaustive
         ),
+        pytest.param(
+            hang_where_nothing_is_raised,
+            b"this takes more than 1 s of processor time",
+            marks=pytest.mark.exhaustive,
+        ),
         (fill_memory, b"this needs more than 512 MiB of memory"),
     ],
 )
@@ -49,7 +65,7 @@ def test_reading_ends(
     command: str, what: Callable[..., object], said: bytes, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """One line says which limit it was, and nothing was graded: exit code 2."""
-    monkeypatch.setitem(app._LIMITED, command, 1 if what is hang else 60)
+    monkeypatch.setitem(app._LIMITED, command, 60 if what is fill_memory else 1)
     monkeypatch.setattr(ending, "_MEMORY", 512 * 1024**2)
     monkeypatch.setattr(grader.ros.workspace.opening, "read_as_ros", what)
     done = run((command, URDF))

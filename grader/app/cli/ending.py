@@ -53,6 +53,8 @@ def quiet_interrupts() -> Iterator[None]:
             is_in_hook = True
             Timer(_DELAY, _interrupt).start()  # not here: an exception in a hook is printed, too
             is_in_hook = False
+        elif issubclass(unraisable.exc_type, OutOfTime):
+            pass  # it is raised again
         elif not (arrived and issubclass(unraisable.exc_type, ResourceWarning)):
             hook(unraisable)
 
