@@ -17,7 +17,7 @@ _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 _PROGRAM = re.compile(
     r"\bint\s+main\s*\(|^[^\S\n]*+RCLCPP_COMPONENTS_REGISTER_NODE\b", re.MULTILINE
 )
-_COMMENT_OF_CMAKE = re.compile(r"#\[(=*)\[.*?(?:\]\1\]|\Z)|#[^\n]*", re.DOTALL)
+_COMMENT_OF_CMAKE = re.compile(r"#\[=*+\[.*?(?:\]=*+\]|\Z)|#[^\n]*", re.DOTALL)
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[\"<](\w+)/", re.MULTILINE)
 # Other ways to find headers: of all packages, or by their folders.
 _OTHER_WAYS = ("ament_auto", "_INCLUDE_DIR", "link_libraries(")
@@ -99,7 +99,7 @@ def _not_compiled(package: Package, setup: Installation) -> Iterator[Problem]:
     compiled = {path for target in setup.targets for path in target.sources}
     paths = [path for path in package.tree.files if path.endswith(_SOURCES)]
     unread = ("test/", *package.inner)
-    commented = _comments_in(setup.source.text)
+    commented = " ".join(_COMMENT_OF_CMAKE.findall(setup.source.text))
     others = [path for path in paths if path not in compiled and not path.startswith(unread)]
     others = [path for path in others if not _is_named(path, commented)]
     for path in others[:_MAX_FILES]:
@@ -107,10 +107,6 @@ def _not_compiled(package: Package, setup: Installation) -> Iterator[Problem]:
         if "rclcpp" in text and _PROGRAM.search(text) and not _OF_TESTS.search(path):
             message = f"no target of CMakeLists.txt compiles {path}"
             yield Problem(kinds.NOT_COMPILED, message, setup.location(setup.targets[-1].at))
-
-
-def _comments_in(cmake: str) -> str:
-    return " ".join(match[0] for match in _COMMENT_OF_CMAKE.finditer(cmake))
 
 
 def _is_named(path: str, text: str) -> bool:
