@@ -1,4 +1,4 @@
-"""The table of what is said of public workspaces, which were read by hand."""
+"""The table of what is said of public workspaces, each finding of which somebody read."""
 
 import re
 import tomllib

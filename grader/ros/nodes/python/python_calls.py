@@ -73,8 +73,8 @@ class Written(NamedTuple):
         end = self.source.text.index("(", end) + 1
         return self.source.edit(end, end, text)
 
-    def left_out(self, arguments: Sequence[ast.expr | ast.keyword]) -> Edits:
-        """Return the edits that leave out arguments."""
+    def without(self, arguments: Sequence[ast.expr | ast.keyword]) -> Edits:
+        """Return the edits that remove arguments."""
         edits = []
         for argument in arguments:
             at = self._arguments.index(argument)
@@ -178,7 +178,7 @@ def _unknown_keyword(written: Written, shown: str, signature: _Signature) -> _Wr
             start, end = written.span_of(keyword)[0], written.span_of(keyword)[0] + len(name)
             edit = written.source.edit(start, end, meant)
             return _WrongCall(reaction, f"{name} is read as {meant}", (edit,))
-        return _WrongCall(reaction, f"{name} is left out", written.left_out([keyword]))
+        return _WrongCall(reaction, f"{name} is ignored", written.without([keyword]))
     return None
 
 
@@ -187,12 +187,12 @@ def _too_many(written: Written, shown: str, signature: _Signature) -> _WrongCall
     for keyword in written.call.keywords:
         if keyword.arg in signature.positional[: len(arguments)]:
             reaction = f"{shown} gets {keyword.arg} twice"
-            return _WrongCall(reaction, "the second one is left out", written.left_out([keyword]))
+            return _WrongCall(reaction, "the second one is ignored", written.without([keyword]))
     if len(arguments) <= most or signature.takes_more:
         return None
     taken = counted(most, "argument") if most else "no argument"
     reaction = f"{shown} takes {taken} without a name, and gets {len(arguments)}"
-    return _WrongCall(reaction, "the others are left out", written.left_out(arguments[most:]))
+    return _WrongCall(reaction, "the others are ignored", written.without(arguments[most:]))
 
 
 class _Given(NamedTuple):
