@@ -20,7 +20,7 @@ from grader.report.readings import UNDECIDED, VERDICTS
 from grader.ros.api import Configuration, Joint, Reading
 
 if TYPE_CHECKING:
-    from grader.ros.api import Extent, MeshLoader
+    from grader.ros.api import Extent, LogAnswer, MeshLoader
 
 MAX_LISTED = 500  # links, or problems on a page
 _MAX_INDENT = 60
@@ -106,6 +106,7 @@ class Inspection:
     besides: tuple[Path, ...] = ()  # the files that were read besides a single one
     ignored: int = 0  # how many problems are ignored, and not among these
     known: int = 0  # how many are known from a baseline, and not among these either
+    log: "tuple[LogAnswer, ...] | None" = None  # what is said of a log; None without one
     is_posed: bool = False  # whether positions of joints, or a frame of poses, are given
 
     @property

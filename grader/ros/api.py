@@ -36,6 +36,9 @@ if TYPE_CHECKING:
     from grader.ros.known.parameter_texts import parameter_explanation as parameter_explanation
     from grader.ros.known.releases import Release as Release
     from grader.ros.known.releases import StatedReleases as StatedReleases
+    from grader.ros.log.explaining import LogAnswer as LogAnswer
+    from grader.ros.log.explaining import explain_log as explain_log
+    from grader.ros.log.log_messages import MAX_LOG as MAX_LOG
     from grader.ros.package.mesh_loading import MeshLoader as MeshLoader
     from grader.ros.package.package import MANIFEST as MANIFEST
     from grader.ros.package.package import SETUP as SETUP
@@ -81,6 +84,8 @@ else:
         "known.known_tables": "releases_explanation",
         "known.parameter_texts": "parameter_explanation",
         "known.releases": "Release StatedReleases",
+        "log.explaining": "LogAnswer explain_log",
+        "log.log_messages": "MAX_LOG",
         "package.mesh_loading": "MeshLoader",
         "package.package": "MANIFEST SETUP Package",
         "package.robot_file": "Absent Read Unreadable",

@@ -6,7 +6,7 @@ import typer
 
 from grader.app.cli.completion import offer_codes, offer_joints, offer_links
 from grader.app.cli.options import ArgOption, MaxSizeOption, SaveOption
-from grader.app.cli.streams import TERMINAL
+from grader.app.cli.streams import TERMINAL, pass_on
 from grader.files.reading import URDF_LIMIT
 from grader.report.formats import InspectFormat
 from grader.report.invocation import ExitCode
@@ -15,6 +15,7 @@ from grader.ros.api import Release
 _PATH = "A .urdf file, a package, workspace or archive, or - for standard input."
 _BASELINE = "Do not show the findings of this file, which --write-baseline wrote."
 _WRITE_BASELINE = "Write the findings, to be shown no more with --baseline."
+_LOG = "Explain this log, or a folder of logs; - for a pipe, which is passed on."
 _ROBOT = "Show this robot of several whole: its name, or the end of its path."
 _JOINT = "Position of a joint, in radians or metres; repeatable."
 _WATCH = "Inspect again after every change, until Ctrl-C; grader view shows the robot."
@@ -57,6 +58,7 @@ def inspect(
     write_baseline: Annotated[
         str | None, typer.Option(metavar="FILE", help=_WRITE_BASELINE)
     ] = None,
+    log: Annotated[str | None, typer.Option(metavar="FILE", help=_LOG)] = None,
     verbose: Annotated[bool, typer.Option("--verbose", help=_VERBOSE)] = False,
 ) -> int:
     """Show robots as ROS 2 reads them, and what is wrong in packages.
@@ -69,6 +71,8 @@ def inspect(
     MoveIt, one machine or another release of ROS 2 has. Errors come first, and each is in the first
     40 rows. Exits 1 if ROS 2 or xacro rejects a robot, if this cannot be determined statically, or
     if something else is certainly wrong.
+
+    With --log, what the files explain of an output in a terminal comes first.
 
     Examples:
 
@@ -84,12 +88,19 @@ def inspect(
 
       grader inspect my_workspace --robot my_robot
 
+      grader inspect my_workspace --log build.log
+
       grader inspect my_robot.urdf --format svg > my_robot.svg
 
       grader inspect my_robot.urdf --format html > my_robot.html
     """
     from grader.app.commands.inspect_urdf import InspectRequest, inspect_and_save
 
+    log_data = None
+    if log is not None:
+        from grader.app.log_input import read_named_log  # late: few inspections have a log
+
+        log_data = read_named_log(log, path, pass_on)
     request = InspectRequest(
         path=path,
         robot=robot,
@@ -106,5 +117,6 @@ def inspect(
         verbose=verbose,
         baseline=baseline,
         write_baseline=write_baseline,
+        log=log_data,
     )
     return ExitCode.PASSED if inspect_and_save(request, TERMINAL) else ExitCode.FAILED

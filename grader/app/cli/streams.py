@@ -56,6 +56,14 @@ def warn(message: str) -> None:
     write_stderr(without_commands(f"grader: {message}") + "\n")
 
 
+def pass_on(data: bytes) -> None:
+    """Write bytes of another program to standard error, as they are."""
+    if sys.stderr is not None:
+        with suppress(OSError):
+            sys.stderr.buffer.write(data)
+            sys.stderr.flush()
+
+
 def write_stderr(text: str) -> None:
     """Write to standard error, if it is open."""
     if sys.stderr is not None:

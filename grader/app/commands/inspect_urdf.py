@@ -58,6 +58,7 @@ class InspectRequest(NamedTuple):
     verbose: bool = False  # whether the terminal shows everything
     baseline: str | None = None  # the file of findings that are not shown
     write_baseline: str | None = None  # the file to write the findings to
+    log: bytes | None = None  # the end of a log that is explained
 
     @property
     def saves(self) -> Saves[InspectFormat]:
@@ -164,6 +165,7 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
         chosen = _named(request.robot, read)
         shown = _inspected(opened, chosen, joints, relative_to)
         inspection = Inspection(chosen.path, (shown,), source_of=opened.source, base=base)
+        inspection = _with_log(inspection, opened, request.log)
         return without_ignored(inspection, opened.whole_tree, _texts_of(chosen), selection)
     if (joints or relative_to is not None) and len(read) != 1:
         raise GraderError(_which_one(path, read))
@@ -179,6 +181,7 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
         base,
         is_posed=bool(joints) or relative_to is not None,
     )
+    inspection = _with_log(inspection, opened, request.log)
     return without_ignored(inspection, opened.whole_tree, [*opened.whole_tree.files], selection)
 
 
@@ -199,8 +202,18 @@ def _inspect_file(
     inspection = Inspection(
         urdf.path, (robot,), source_of=opened.source, base=base, besides=tuple(besides)
     )
+    inspection = _with_log(inspection, opened, request.log)
     tree = overlaid(opened.whole_tree, {urdf.path: urdf.data})
     return without_ignored(inspection, tree, _texts_of(urdf), selection._replace(folder=folder))
+
+
+def _with_log(inspection: Inspection, opened: OpenedWorkspace, log: bytes | None) -> Inspection:
+    """Return an inspection with what the files say of a log, also by findings that are ignored."""
+    if log is None:
+        return inspection
+    from grader.ros.api import explain_log  # late: few inspections have a log
+
+    return replace(inspection, log=explain_log(opened, inspection.problems, log))
 
 
 def _texts_of(urdf: Read) -> list[str]:

@@ -3,6 +3,7 @@
 from dataclasses import replace
 from functools import cache
 
+from grader.base.extents import ended
 from grader.base.transforms import Transform
 from grader.report.inspection import EFFECTS, InspectedRobot, Inspection, main_root
 from grader.report.json_data import (
@@ -21,7 +22,7 @@ from grader.report.json_data import (
     schema_key,
     to_json,
 )
-from grader.report.writers.problem_json import PROBLEM, problems_with_ends
+from grader.report.writers.problem_json import LOCATION, PROBLEM, problems_with_ends
 
 
 def _poses(robot: InspectedRobot) -> dict[str, list[list[float]] | None]:
@@ -79,6 +80,15 @@ _EXTENT = JsonObject(
         "unread_files": (Many(_UNREAD_FILE), "calls.unread_files"),
     }
 )
+_LOG_ANSWER = JsonObject(
+    {
+        "line": COUNT,
+        **each(TEXT, "text message"),
+        "output": (nullable(TEXT), lambda answer: answer.output or None),
+        "code": (nullable(TEXT), lambda answer: answer.code or None),
+        "location": Maybe(LOCATION),
+    }
+)
 INSPECTION = JsonObject(
     {
         **schema_key("grader/inspect/v2"),
@@ -91,7 +101,9 @@ INSPECTION = JsonObject(
             array(TEXT),
             lambda robot: robot.extent.stated.places if robot.extent else (),
         ),
-    }
+        "log": (Many(_LOG_ANSWER), lambda inspection: inspection.log or ()),
+    },
+    ("log",),
 )
 
 
@@ -110,4 +122,10 @@ def _with_ends(inspection: Inspection) -> Inspection:
         reading = robot.reading._replace(problems=problems)
         robots.append(replace(robot, reading=reading, hidden=hidden))
     of_packages = problems_with_ends(inspection.package_problems, source_of)
-    return replace(inspection, robots=tuple(robots), package_problems=of_packages)
+    log = []
+    for answer in inspection.log or ():
+        at = answer.location
+        log.append(answer if at is None else answer._replace(location=ended(at, source_of)))
+    return replace(
+        inspection, robots=tuple(robots), package_problems=of_packages, log=tuple(log) or None
+    )

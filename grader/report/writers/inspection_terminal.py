@@ -45,6 +45,8 @@ def inspection_terminal(inspection: Inspection, console: Console, *, verbose: bo
     """Print the inspection, with `verbose` everything in it."""
     page = Page(console, [])
     page.inset(_head(inspection), indent=0)
+    for answer in _log_lines(inspection):
+        page.inset(answer)
     remarks = [block(console, Text(remark, "dim"), 0) for remark in _remarks_on(inspection)]
     problems = _ProblemRows(inspection, console, verbose=verbose)
     # The title of problems, its empty row, that above the remarks, and the last row of problems.
@@ -76,6 +78,21 @@ def _head(inspection: Inspection) -> Text:
         style = _STYLES["rejected"]
     path = printable(inspection.path)
     return Text.assemble((path, "bold"), ": ", (problem_counts(inspection), style))
+
+
+def _log_lines(inspection: Inspection) -> Iterator[str]:
+    """Yield what is said of a log, a line for each message."""
+    if inspection.log is None:
+        return
+    if not inspection.log:
+        yield "no line of the log says that something fails"
+    for answer in inspection.log:
+        place = f"line {answer.line} of the log"
+        if answer.location is not None:
+            where = printable(answer.location.file_and_line)
+            yield f"{where} explains {place}: {printable(answer.message)}"
+        else:
+            yield f"{place}: {printable(answer.message)}"
 
 
 def _remarks_on(inspection: Inspection) -> Iterator[str]:

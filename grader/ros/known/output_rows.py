@@ -1,0 +1,54 @@
+"""What programs of ROS 2 say when something is wrong: the rows of outputs.toml."""
+
+import re
+from collections.abc import Mapping
+from functools import cache
+from typing import Literal, NamedTuple
+
+from grader.ros.known.typed_rows import read_file
+
+# Where the files say why, besides the findings of rules.
+OutputPlace = Literal[
+    "", "package", "parameter", "traceback", "module", "copies", "spaced path", "frame"
+]
+
+
+class OutputRow(NamedTuple):
+    """A message of a program, and what explains it in a workspace.
+
+    The groups of its pattern are the names that the message has. A finding explains it if a rule of
+    the row made it and the lines that it names have these names.
+    """
+
+    name: str
+    pattern: str  # which is searched in the message, whose white space is single spaces
+    program: str  # that says it
+    source: str  # repository, file and line
+    sentence: str  # what it means
+    rules: tuple[str, ...] = ()  # that are asked, the first that has an answer counts
+    within: tuple[str, ...] = ()  # the groups that must be in the lines of the finding
+    processes: tuple[str, ...] = ()  # one of which must be started by a launch file
+    place: OutputPlace = ""
+    key: str = ""  # of a parameter, with groups in braces: its parent is there, and it is not
+    otherwise: str = ""  # what is said if no finding fits but the place has an answer
+    follows: bool = False  # whether another message before it says the cause
+
+    @property
+    def compiled(self) -> "re.Pattern[str]":
+        """The pattern, compiled once."""
+        return _compiled()[self.name]
+
+
+class _Outputs(NamedTuple):
+    output: tuple[OutputRow, ...]
+
+
+@cache
+def known_outputs() -> tuple[OutputRow, ...]:
+    """Return the messages that are known, in the order in which they are tried."""
+    return read_file(_Outputs, "outputs").output
+
+
+@cache
+def _compiled() -> "Mapping[str, re.Pattern[str]]":
+    return {row.name: re.compile(row.pattern) for row in known_outputs()}

@@ -1,0 +1,127 @@
+"""The messages of a log: without colours and prefixes, and with the lines that continue them."""
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+MAX_LOG = 1024 * 1024  # bytes, of which the last ones are read
+MAX_LINES = 2000  # the last ones are read
+_MAX_WIDTH = 2000  # characters of a line
+_MAX_CONTINUED = 40  # lines of a message
+# What a terminal does not show: colours and other commands, titles, and the rest of the controls.
+_CONTROLS = re.compile(
+    "\x1b\\[[0-?]*+[ -/]*+[@-~]"
+    "|\x1b\\][^\x07\x1b]{0,200}+(?:\x07|\x1b\\\\)?"
+    "|[\x00-\x08\x0b-\x1f\x7f]"
+)
+_PROCESS = re.compile(r"\[(?P<name>[\w.+-]{1,100}?)-[0-9]{1,6}\] ?+")
+_TIME = re.compile(r"(?:[0-9]{1,12}\.[0-9]{1,12}s? |\[[0-9]{1,12}\.[0-9]{1,12}s?\] ?)")
+_SEVERITY = re.compile(r"\[(?P<severity>DEBUG|INFO|WARN|WARNING|ERROR|FATAL|CRITICAL)\] ?+")
+_LOGGER = re.compile(r"\[(?P<name>[\w./-]{1,200})\]: ?+")
+_TRACEBACK = "Traceback (most recent call last):"
+# Messages that are said in several lines, none of which has a prefix of its own.
+_OPEN_ENDED = ("Caught exception in launch", "CMake Error at ", "CMake Warning at ")
+_LISTS = ("- ", "when ", "instantiated ", "included from", "in file:", "Check that:")
+
+
+class LogMessage(NamedTuple):
+    r"""A message of a log, which a program said in one line or several.
+
+    >>> text = "[rviz2-2] [ERROR] [17.5] [rviz2]: no frame\n[rviz2-2]   at line 9\n"
+    >>> [message] = read_messages(text.encode())
+    >>> message.line, message.process, message.severity, message.logger, message.text
+    (1, 'rviz2', 'ERROR', 'rviz2', 'no frame at line 9')
+    """
+
+    line: int  # where it begins, from 1
+    text: str  # in one line, with single spaces
+    process: str = ""  # the program that ros2 launch started; empty without one
+    severity: str = ""
+    logger: str = ""  # the name of the node
+    is_traceback: bool = False
+
+
+class _LogLine(NamedTuple):
+    number: int
+    text: str  # without its prefix
+    process: str
+    severity: str
+    logger: str
+
+    @property
+    def begins(self) -> bool:
+        """Whether it has a prefix with which messages begin."""
+        return bool(self.severity or self.logger)
+
+
+def read_messages(data: bytes) -> tuple[LogMessage, ...]:
+    """Return the messages of a log, of a long one the last ones. It never raises.
+
+    Lines are counted from the first that is read if the log is larger than its limits.
+    """
+    lines = data[-MAX_LOG:].decode("utf-8", "replace").replace("\r\n", "\n").split("\n")
+    first = max(0, len(lines) - MAX_LINES - 1)
+    read = [_without_prefix(first + n, line) for n, line in enumerate(lines[first:], 1)]
+    messages = _joined([line for line in read if line.text or line.begins])
+    return tuple(sorted(messages, key=lambda message: message.line))
+
+
+def _without_prefix(number: int, text: str) -> _LogLine:
+    """Return a line without colours, and its prefix apart.
+
+    ros2 launch puts the process before the line of a node, which has severity, time and name.
+    """
+    text = _CONTROLS.sub("", text.expandtabs(1)[: 2 * _MAX_WIDTH])[:_MAX_WIDTH]
+    names = {"process": "", "severity": "", "logger": ""}
+    rest = text
+    for key, pattern in (
+        ("", _TIME),
+        ("process", _PROCESS),
+        ("severity", _SEVERITY),
+        ("", _TIME),
+        ("logger", _LOGGER),
+    ):
+        match = pattern.match(rest)
+        if match is None or (key == "logger" and not names["severity"]):
+            continue
+        if key:
+            names[key] = match[1]
+        rest = rest[match.end() :]
+    return _LogLine(number, rest.rstrip(), **names)
+
+
+def _joined(lines: Sequence[_LogLine]) -> Iterator[LogMessage]:
+    """Yield the messages, each with the lines that continue it."""
+    waiting: dict[str, list[_LogLine]] = {}
+    for line in lines:
+        open_lines = waiting.get(line.process)
+        if open_lines and _continues(open_lines, line):
+            open_lines.append(line)
+            continue
+        if open_lines:
+            yield _message_of(open_lines)
+        waiting[line.process] = [line]
+    for open_lines in waiting.values():
+        yield _message_of(open_lines)
+
+
+def _continues(before: Sequence[_LogLine], line: _LogLine) -> bool:
+    """Return whether a line continues the message of the same process."""
+    if line.begins or len(before) >= _MAX_CONTINUED:
+        return False
+    first, text = before[0].text, line.text
+    if text.startswith((_TRACEBACK, *_OPEN_ENDED)):
+        return False
+    if first.startswith(_TRACEBACK):
+        return text.startswith(" ") or before[-1].text.startswith((" ", _TRACEBACK))
+    is_open = first.startswith(_OPEN_ENDED[:1])
+    return is_open or text.startswith((" ", *_LISTS))
+
+
+def _message_of(lines: Sequence[_LogLine]) -> LogMessage:
+    first = lines[0]
+    words = " ".join(line.text for line in lines).split()
+    is_traceback = first.text.startswith(_TRACEBACK)
+    return LogMessage(
+        first.number, " ".join(words), first.process, first.severity, first.logger, is_traceback
+    )

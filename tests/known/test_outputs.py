@@ -1,0 +1,60 @@
+"""Each row of outputs.toml knows what its program says, by the format string of the source."""
+
+import re
+import string
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from grader.ros.api import RULES
+from grader.ros.known.output_rows import OutputRow, known_outputs
+from grader.ros.log.log_messages import read_messages
+
+_SAID = tomllib.loads(Path(__file__).with_name("outputs_said.toml").read_text("utf-8"))["said"]
+# Repository and commit or version, a file, and its line.
+_SOURCE = re.compile(r"[\w.-]+/[\w.-]+ [\w.]+, [\w./-]+:\d+")
+
+
+def _text_of(said: Mapping[str, Any]) -> str:
+    values = iter(said.get("values", ()))
+    return re.sub(r"\{\}|%s", lambda _: next(values), said["format"])
+
+
+@pytest.mark.parametrize("said", _SAID, ids=lambda said: said["output"])
+def test_a_row_knows_the_text_of_its_source(said: Mapping[str, Any]) -> None:
+    """It is the first that does, behind a prefix as well, and finds the names in it."""
+    text = _text_of(said)
+    for log in (text, f"[ERROR] [17.5] [node]: {text}"):
+        [message] = read_messages(log.encode())
+        row = next(row for row in known_outputs() if row.compiled.search(message.text))
+        match = row.compiled.search(message.text)
+        assert match is not None
+        assert (row.name, match.groupdict()) == (said["output"], said["names"])
+
+
+def test_each_row_has_a_text() -> None:
+    """No row is without one, and no two have one name."""
+    names = [row.name for row in known_outputs()]
+    assert len(names) == len(set(names))
+    assert {said["output"] for said in _SAID} == set(names)
+
+
+@pytest.mark.parametrize("row", known_outputs(), ids=lambda row: row.name)
+def test_a_row_names_what_exists(row: OutputRow) -> None:
+    """Its rules are rules or codes, its groups are those of its pattern, and its source has a line."""
+    for rule in row.rules:
+        assert rule in RULES or re.fullmatch(r"(URDF|XACRO)\d*", rule), rule
+    groups = {*row.compiled.groupindex}
+    assert {*row.within} <= groups
+    for text in (row.otherwise, row.key):
+        fields = {field for _, field, _, _ in string.Formatter().parse(text) if field is not None}
+        assert fields <= groups | {"others"}
+    for source in row.source.split("; "):
+        assert _SOURCE.match(source), source
+    assert row.sentence.endswith(".")
+    assert bool(row.key) == (row.place == "parameter")
+    # What has no name must be of a program that the workspace starts, or follow from another message.
+    assert row.within or row.processes or row.place or row.follows

@@ -1,0 +1,264 @@
+"""What the files of a workspace explain of a log, and that nothing else is said."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from grader.files.tree import make_tree, overlaid
+from grader.ros.api import LogAnswer, Read, explain_log, read_workspace
+
+_SETUP = """
+from setuptools import setup
+setup(
+    name='cell',
+    packages=['cell'],
+    data_files=[('share/cell', ['package.xml']), ('share/cell/launch', ['launch/c.launch.py'])],
+    entry_points={'console_scripts': ['mover = cell.mover:main']},
+)
+"""
+_LAUNCH = """
+from launch import LaunchDescription
+from launch.substitutions import Command
+from launch_ros.actions import Node
+
+def generate_launch_description():
+    return LaunchDescription([
+        NODES
+    ])
+"""
+_CODE = "def main():\n    print(missing)\n"
+
+
+def _workspace(
+    files: Mapping[str, str] = {}, nodes: str = "", name: str = "cell"
+) -> dict[str, str]:
+    """Return the files of a package in src/, with a launch file that starts nodes."""
+    manifest = f"<package format='3'><name>{name}</name><version>1.0.0</version><description/>"
+    manifest += "<maintainer email='a@b.c'>A</maintainer><license>MIT</license>"
+    manifest += "<export><build_type>ament_python</build_type></export></package>"
+    package = {
+        "package.xml": manifest,
+        "setup.py": _SETUP.replace("cell", name),
+        "setup.cfg": f"[install]\ninstall_scripts=$base/lib/{name}\n",
+        f"resource/{name}": "",
+        f"{name}/__init__.py": "",
+        f"{name}/mover.py": _CODE,
+        "launch/c.launch.py": _LAUNCH.replace("NODES", nodes),
+        **files,
+    }
+    return {f"src/{name}/{path}": text for path, text in package.items()}
+
+
+def _explained(files: Mapping[str, str], log: str) -> list[LogAnswer]:
+    data = {path: text.encode() for path, text in files.items()}
+    opened = read_workspace(overlaid(make_tree("ws", (), ()), data), "ws", 1 << 20, {})
+    problems = opened.package_problems()
+    for robot in opened.robots:
+        if isinstance(robot, Read):
+            problems += opened.problems_of(robot)
+    return [*explain_log(opened, problems, log.encode())]
+
+
+def _places(files: Mapping[str, str], log: str) -> list[str]:
+    """Return the places that explain a log."""
+    answers = _explained(files, log)
+    return [answer.location.file_and_line for answer in answers if answer.location is not None]
+
+
+_NOT_FOUND = "package 'NAME' not found, searching: ['/opt/ros/jazzy']"
+_NO_TYPE = "[gz-1] [ERROR] [1.5] [controller_manager]: The 'type' param was not defined for 'arm'."
+_NO_ACTION = (
+    "No action namespace specified for controller `arm` through parameter `m.arm.action_ns`"
+)
+_NO_MODULE = """Traceback (most recent call last):
+  File "/home/ann/ws/install/cell/lib/python3.12/site-packages/cell/mover.py", line 1, in <module>
+    from cell.tools.maths import half
+ModuleNotFoundError: No module named 'cell.tools'
+"""
+_TRACE = """[mover-1] Traceback (most recent call last):
+[mover-1]   File "/usr/lib/python3.12/runpy.py", line 2, in main
+[mover-1]     main()
+[mover-1]   File "PATH/cell/mover.py", line 2, in main
+[mover-1]     print(missing)
+[mover-1] NameError: name 'missing' is not defined
+[ERROR] [mover-1]: process has died [pid 7, exit code 1, cmd '/home/ann/mover'].
+"""
+_SPACED = """[ERROR] [launch]: Caught exception in launch (see debug for traceback): executed command failed. Command: xacro /home/ann/my ws/install/cell/share/cell/urdf/arm.urdf.xacro
+Captured stderr output: Usage: xacro [options] <input>
+
+xacro: error: expected exactly one input file as argument
+"""
+_TYPES = """controller_manager:
+  ros__parameters:
+    update_rate: 100
+arm:
+  ros__parameters:
+    joints: [a]
+"""
+_MOVEIT = """moveit_simple_controller_manager:
+  controller_names: [arm]
+  arm:
+    type: FollowJointTrajectory
+"""
+_WITH_ROBOT = {
+    "urdf/arm.urdf.xacro": "<robot name='a'/>",
+    "setup.py": _SETUP.replace("[('", "[('share/cell/urdf', ['urdf/arm.urdf.xacro']), ('", 1),
+}
+_MOVER = "Node(package='cell', executable='moover'),"
+_BRIDGE = "Node(package='joint_state_publisher', executable='joint_state_publisher'),"
+_COMMAND = "Command(['xacro ', 'arm.urdf.xacro']),"
+_EMPTY = "[robot_state_publisher-1] Error:   Error document empty.\n"
+_PATH_AS_TEXT = (
+    "Node(package='robot_state_publisher', executable='robot_state_publisher',"
+    " parameters=[{'robot_description': '/a.urdf'}]),"
+)
+_AMCL = "Node(package='nav2_amcl', executable='amcl', parameters=['src/cell/config/amcl.yaml']),"
+
+
+@pytest.mark.parametrize(
+    ("files", "log", "place"),
+    [
+        pytest.param(
+            _workspace(), _NOT_FOUND.replace("NAME", "cell"), "src/cell/package.xml:1", id="unbuilt"
+        ),
+        pytest.param(
+            _workspace(nodes=_BRIDGE),
+            _NOT_FOUND.replace("NAME", "joint_state_publisher"),
+            "src/cell/launch/c.launch.py:8",
+            id="not installed",
+        ),
+        pytest.param(
+            _workspace(nodes=_MOVER),
+            "executable 'moover' not found on the libexec directory '/ws/install/cell/lib/cell' ",
+            "src/cell/launch/c.launch.py:8",
+            id="program",
+        ),
+        pytest.param(
+            _workspace({"config/c.yaml": _TYPES}), _NO_TYPE, "src/cell/config/c.yaml:2", id="type"
+        ),
+        pytest.param(
+            _workspace({"config/m.yaml": _MOVEIT}),
+            _NO_ACTION,
+            "src/cell/config/m.yaml:3",
+            id="action",
+        ),
+        pytest.param(
+            _workspace({"cell/tools/__init__.py": "", "cell/tools/maths.py": ""}),
+            _NO_MODULE,
+            "src/cell/setup.py:5",
+            id="module",
+        ),
+        pytest.param(
+            _workspace(),
+            _TRACE.replace("PATH", "/ws/install/cell/lib/python3.12/site-packages"),
+            "src/cell/cell/mover.py:2",
+            id="traceback",
+        ),
+        pytest.param(
+            _workspace(),
+            _TRACE.replace("PATH", "/home/ann/ws/src/cell"),
+            "src/cell/cell/mover.py:2",
+            id="traceback of a source",
+        ),
+        pytest.param(
+            {**_workspace(), "src/old/cell/package.xml": _workspace()["src/cell/package.xml"]},
+            "Duplicate package names not supported:\n- cell:\n  - ws/src/cell\n  - ws/src/old/cell",
+            "src/old/cell/package.xml:1",
+            id="copies",
+        ),
+        pytest.param(
+            _workspace(_WITH_ROBOT, _COMMAND),
+            _SPACED,
+            "src/cell/launch/c.launch.py:8",
+            id="spaced path",
+        ),
+        pytest.param(
+            _workspace(nodes=_PATH_AS_TEXT), _EMPTY, "src/cell/launch/c.launch.py:8", id="document"
+        ),
+    ],
+)
+def test_the_files_explain_a_message(files: Mapping[str, str], log: str, place: str) -> None:
+    """The place is that of the cause, and with a workspace that has other names nothing is said."""
+    assert _places(files, log) == [place]
+    assert _places(_workspace(name="other"), log) == []
+
+
+@pytest.mark.parametrize(
+    ("files", "log"),
+    [
+        pytest.param(_workspace(), _NOT_FOUND.replace("NAME", "cel"), id="no such package"),
+        pytest.param(_workspace(), _NOT_FOUND.replace("NAME", "rviz2"), id="a package not used"),
+        pytest.param(
+            _workspace({"config/c.yaml": _TYPES.replace("arm:", "hand:")}), _NO_TYPE, id="type"
+        ),
+        pytest.param(
+            _workspace({"config/m.yaml": _MOVEIT + "    action_ns: go\n"}), _NO_ACTION, id="action"
+        ),
+        pytest.param(_workspace(), _NO_MODULE, id="no such module"),
+        pytest.param(
+            _workspace({"cell/mover.py": "x = 1\n\n"}),
+            _TRACE.replace("PATH", "/ws/src/cell"),
+            id="another line",
+        ),
+        pytest.param(
+            _workspace(),
+            "Duplicate package names not supported:\n- cell:\n  - a\n  - b",
+            id="copies",
+        ),
+        pytest.param(_workspace(_WITH_ROBOT), _SPACED, id="no command"),
+        pytest.param(
+            _workspace(_WITH_ROBOT, _COMMAND),
+            _SPACED.replace("my ws", "ws"),
+            id="no space",
+        ),
+        pytest.param(_workspace(), _EMPTY, id="not started"),
+        pytest.param(_workspace(nodes=_MOVER), "ValueError: wrong", id="no traceback"),
+    ],
+)
+def test_what_the_files_do_not_prove_is_not_said(files: Mapping[str, str], log: str) -> None:
+    """The message has an answer without a place: that nothing is said."""
+    [answer, *_] = _explained(files, log)
+    assert (answer.location, answer.output) == (None, "")
+    assert answer.message == "no rule; nothing said"
+
+
+def test_what_keeps_a_node_from_publishing_a_frame_explains_it() -> None:
+    """The finding is in the parameters of the node, and does not name the frame."""
+    amcl = "amcl:\n  ros__parameters:\n    robot_model_type: differential\n"
+    files = _workspace({"config/amcl.yaml": amcl})
+    setup = files["src/cell/setup.py"].replace(
+        "data_files=[", "data_files=[('share/cell/config', ['config/amcl.yaml']), "
+    )
+    share = "__import__('ament_index_python').get_package_share_directory('cell')"
+    node = _AMCL.replace("'src/cell/config/amcl.yaml'", f"{share} + '/config/amcl.yaml'")
+    imports = "from ament_index_python.packages import get_package_share_directory as share\n"
+    node = node.replace(share, "share('cell')")
+    launch = imports + _LAUNCH.replace("NODES", node)
+    files |= {
+        "src/cell/setup.py": setup,
+        "src/cell/launch/c.launch.py": launch,
+        "README.md": "For ROS 2 Jazzy.",
+    }
+    log = '[rviz2-2] Warning: Invalid frame ID "FRAME" passed to canTransform argument target_frame - frame does not exist'
+    assert _places(files, log.replace("FRAME", "map")) == ["src/cell/config/amcl.yaml:3"]
+    assert _places(files, log.replace("FRAME", "camera")) == []
+
+
+def test_a_root_cause_is_said_before_what_follows() -> None:
+    """What follows has no line of its own, except where nothing else is explained."""
+    died = "[ERROR] [mover-1]: process has died [pid 7, exit code 1, cmd '/home/ann/mover'].\n"
+    trace = _TRACE.replace("PATH", "/ws/src/cell")
+    assert [answer.output for answer in _explained(_workspace(), died + trace)] == [
+        "python-exception"
+    ]
+    [only] = _explained(_workspace(), died * 3)
+    assert (only.line, only.location) == (1, None)
+
+
+def test_the_answers_have_a_limit() -> None:
+    """Of messages that no row knows, the first few are named; what is no failure is not."""
+    log = "".join(f"[INFO] [1.5] [a]: error {n}\n[ERROR] [1.5] [a]: wrong {n}\n" for n in range(50))
+    answers = _explained(_workspace(), log)
+    assert [(answer.line, answer.text) for answer in answers] == [
+        (2 * n + 2, f"wrong {n}") for n in range(5)
+    ]
