@@ -8,6 +8,8 @@ from grader.files.tree import make_tree, overlaid
 from grader.lab.submission.opening import submission_of
 from grader.lab.submission.submission import Lab
 from grader.ros.workspace.rules.reading import read_agreement
+from tests.command_line import run
+from tests.workspace.rule_examples import files_of_rule
 
 pytestmark = pytest.mark.slow
 
@@ -187,7 +189,7 @@ _NOTHING = _SPAWN.partition("        Node")[0] + "    ])\n"
 def test_the_controllers_of_moveit_are_started() -> None:
     """MoveIt waits for the action of one that no spawner starts; that none is started is said of all."""
     names = _MOVEIT.replace("[arm_controller]", "[arm_controller, hand_controller]")
-    hand = "  hand_controller: {type: FollowJointTrajectory, joints: [shoulder]}\n"
+    hand = "  hand_controller: {type: FollowJointTrajectory, action_ns: follow_joint_trajectory, joints: [shoulder]}\n"
     own = _CONTROLLERS.replace("    joint_state_broadcaster", _HAND)
     section = "hand_controller:\n  ros__parameters: {joints: [shoulder], command_interfaces: [position]}\n"
     files = {
@@ -327,3 +329,17 @@ def test_nothing_is_said_of_a_robot_that_is_not_known() -> None:
         )
         == []
     )
+
+
+@pytest.mark.parametrize(
+    ("distro", "count"), [(["--distro", "jazzy"], 1), (["--distro", "humble"], 0), ([], 0)]
+)
+def test_the_adapters_of_a_pipeline_are_a_list_from_jazzy_on(
+    distro: list[str], count: int, tmp_path: Path
+) -> None:
+    """Until Iron they are a text, and without a stated release nothing is said."""
+    for path, text in files_of_rule("planning-list", "wrong").files.items():
+        (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / path).write_text(text, encoding="utf-8")
+    done = run(("inspect", tmp_path, "--format", "concise", *distro))
+    assert done.stdout.count(b"request_adapters is a text") == count

@@ -18,7 +18,7 @@ _FRAME = re.compile(
 )
 _INSTALLED = re.compile(r"/(?:install|build)/(?P<package>[\w-]{1,100})/(?P<path>\S[^\n]{0,400})")
 _MODULES = re.compile(r"(?:site|dist)-packages/")
-_PACKAGES = re.compile(r"^\s*+packages\s*+=", re.MULTILINE)
+_PACKAGES = re.compile(r"^[ \t]*+packages[ \t]*+=", re.MULTILINE)
 _COPY = re.compile(r"(?<= - )(?P<path>[^\s:]{1,300})(?= |\Z)")
 _COMMAND = re.compile(r"\bCommand\(")
 _MAX_TEXT = 512 * 1024  # bytes of a file in which a line is searched

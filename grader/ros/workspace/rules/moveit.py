@@ -8,6 +8,7 @@ from grader.base.text import quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.package_tables import moveit_actions
+from grader.ros.known.releases import is_before
 from grader.ros.workspace.graph.compared_robots import robots_for_file
 from grader.ros.workspace.graph.started_controllers import defined_controllers
 from grader.ros.workspace.model.workspace import Workspace
@@ -16,10 +17,12 @@ from grader.ros.workspace.rules.rule_table import (
     MOVEIT_ACTION,
     MOVEIT_CONTROLLER,
     MOVEIT_JOINTS,
+    PLANNING_LIST,
 )
 from grader.ros.workspace.rules.spawners import started_controllers
 
 _MANAGER = "moveit_simple_controller_manager"
+_OF_PIPELINE = "_planning.yaml"  # MoveItConfigsBuilder finds the files by their names
 _TABLES_OF_JOINTS = ("joint_limits", "initial_positions")
 
 
@@ -29,6 +32,8 @@ def moveit_facts(workspace: Workspace) -> Iterator[Fact]:
         return
     left_out = _not_spawned(workspace)
     for path, tree in workspace.installed.trees:
+        if path.endswith(_OF_PIPELINE):
+            yield from _text_for_list(workspace, tree)
         compared = robots_for_file(workspace, path)
         for use in _joints_and_groups(tree):
             yield among(use, compared)
@@ -39,6 +44,23 @@ def moveit_facts(workspace: Workspace) -> Iterator[Fact]:
             yield from _not_started(controller, left_out)
             yield from _other_joints(workspace, controller)
             yield from _other_action(controller)
+
+
+def _text_for_list(workspace: Workspace, tree: YamlNode) -> Iterator[Mismatch]:
+    """Yield that the file of a pipeline has the form of Humble, and all stated releases are later.
+
+    planning_pipeline_parameters.yaml of Jazzy declares a list: ParameterTypeException.
+    """
+    releases = workspace.releases
+    adapters = tree.get("request_adapters")
+    if not releases or any(is_before(release, "jazzy") for release in releases):
+        return
+    if adapters is not None and isinstance(adapters.value, str):
+        message = (
+            "request_adapters is a text, so move_group stops: from Jazzy on it is a list, as "
+            "planning_plugins is in place of planning_plugin"
+        )
+        yield Mismatch(PLANNING_LIST, message, tree.key_location("request_adapters"))
 
 
 def _joints_and_groups(tree: YamlNode) -> Iterator[Use]:
@@ -113,11 +135,22 @@ def _not_spawned(workspace: Workspace) -> frozenset[str]:
 
 
 def _other_action(controller: _MoveItController) -> Iterator[Mismatch]:
-    """Yield that MoveIt sends the goals of a controller to an action that it does not have."""
+    """Yield that MoveIt sends the goals of a controller to no action, or to one that is not there.
+
+    moveit_simple_controller_manager.cpp of Humble and Jazzy leaves out one without action_ns.
+    """
     kind, action = controller.section.get("type"), controller.section.get("action_ns")
-    if kind is None or action is None:
+    if kind is None:
         return
     wanted = moveit_actions().get(kind.text or "")
+    if action is None:
+        if wanted is not None:
+            message = (
+                f"{controller.name} has no action_ns, so MoveIt leaves it out: add action_ns: "
+                f"{wanted}"
+            )
+            yield Mismatch(MOVEIT_ACTION, message, controller.section.location, kind.location)
+        return
     if wanted is not None and action.text not in ("", wanted):
         message = (
             f"{controller.name}.action_ns is {action.text!r}; the action of its controller is "

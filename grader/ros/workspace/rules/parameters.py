@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from grader.base.names import near
 from grader.base.source import Location
+from grader.files.reading import URDF_LIMIT
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, first_alias
 from grader.ros.config.yaml_values import (
     PARAMETERS,
@@ -23,7 +24,7 @@ from grader.ros.config.yaml_values import (
 from grader.ros.known.package_rows import package_row, plugin_classes, usual_names
 from grader.ros.known.parameter_rows import row_for, rows_of
 from grader.ros.known.releases import RELEASES, Release, releases_with
-from grader.ros.launch.launch_model import ParameterValue, StartedNode
+from grader.ros.launch.launch_model import FileText, ParameterValue, StartedNode
 from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.package.mesh_content import LFS_POINTER
 from grader.ros.package.package import Package
@@ -570,12 +571,36 @@ def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) ->
     if row is None or not row.is_required or node.arguments != ():
         return
     robot = workspace.parameters.given_to(package, node).values.get(_ROBOT)
+    if robot is not None and isinstance(robot.value, FileText):
+        yield from _xacro_as_text(workspace, node, robot)
     if robot is not None and isinstance(robot.value, str):
         text = robot.value.strip()
         if text and not text.startswith("<"):
             advice = "give it the content of the file, not the path"
             message = f"robot_description is no XML, so {node.executable} stops: {advice}"
             yield Mismatch(ROBOT_TEXT, message, robot.location)
+
+
+def _xacro_as_text(
+    workspace: Workspace, node: StartedNode, robot: ParameterValue
+) -> Iterator[Fact]:
+    """Yield that a program gets the text of a xacro file, whose tags only xacro expands."""
+    assert isinstance(robot.value, FileText)
+    contents = robot.value.contents
+    path = workspace.installed.source_of(contents.path)
+    data = workspace.tree.read(path, URDF_LIMIT) if path is not None else None
+    if contents.by == "xacro" or path is None or data is None:
+        return
+    first, *others = data.split(b"<!--")
+    written = [first, *(text.partition(b"-->")[2] for text in others)]
+    if not any(b"<xacro:" in text for text in written):
+        return
+    name = path.rpartition("/")[2]
+    message = (
+        f"robot_description is the text of {name}, which is xacro, and {node.executable} does not "
+        "expand it: give it Command(['xacro ', path])"
+    )
+    yield Mismatch(ROBOT_TEXT, message, robot.location, Location(path, 1, 1))
 
 
 def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:

@@ -227,6 +227,11 @@ PARAMETER_TYPE = _parameter(
 PARAMETER_VALUE = _parameter(
     "parameter-value", sentence="A parameter has a value that its node accepts."
 )
+PLANNING_LIST = _parameter(
+    "planning-list",
+    sentence="The adapters of a planning pipeline of MoveIt are a list from Jazzy on.",
+    is_of_type=True,
+)
 FILTER_SIZE = _parameter(
     "filter-size", sentence="An input of a robot_localization filter has 15 values."
 )

@@ -34,6 +34,7 @@ from grader.ros.workspace.rules.rule_table import (
 )
 
 _OTHER_STARTS = re.compile(r"(load|switch|set)_controller|(Load|Switch)Controller")
+_OF_GAZEBO = ("gz_ros2_control/", "ign_ros2_control/", "gazebo_ros2_control/")  # hardware
 _MAX_CONTROLLERS = 3  # in a message
 
 
@@ -53,9 +54,37 @@ def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
     if not workspace.robots.has_controller_manager:
         yield Open("controller")
     yield from _names_in_spawners(workspace)
+    yield from _without_plugin(workspace)
     for package, launch in workspace.launches.roots:
         yield from _without_type(workspace, package, launch, controllers)
     yield from _not_started(workspace, controllers)
+
+
+def _without_plugin(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that a spawner waits for the controller manager of a simulation that starts none.
+
+    <ros2_control> names the hardware of Gazebo, which its plugin in <gazebo> loads.
+    """
+    if workspace.robots.has_controller_manager or workspace.robots.may_be_others:
+        return
+    for number, (_, launch) in enumerate(workspace.launches.roots):
+        spawners = [node for node in launch.nodes if _is_spawner(node)]
+        systems = [
+            robot.place(system)
+            for robot in robots_for_launch(workspace, number).robots
+            for system in robot.systems
+            if system.findtext("hardware/plugin", "").strip().startswith(_OF_GAZEBO)
+        ]
+        if spawners and systems:
+            message = (
+                "no plugin in <gazebo> loads this hardware and starts the controller manager, for "
+                f"which the spawner waits ({spawners[0].location.file_and_line}): add that of "
+                "gz_ros2_control"
+            )
+            is_certain = not launch.more
+            yield Mismatch(
+                SPAWNER_MANAGER, message, systems[0], spawners[0].location, is_certain=is_certain
+            )
 
 
 def _names_in_spawners(workspace: Workspace) -> Iterator[Fact]:
