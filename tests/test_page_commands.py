@@ -65,6 +65,7 @@ NOT_RUN = {  # beginnings of command lines that no test runs, and why
     ".venv/bin/pip install --upgrade 'pip>=25.1'": "takes what .ci/run installs from the network",
     "git tag v0.9.0": "a release",
     "uv pip compile ": "takes the newest versions from the network",
+    "ros2 launch ": "needs ROS 2; cli/test_log_option.py runs the pipe",
     "docker ": "needs Docker; ci/test_templates.py runs what the image runs",
 }
 CODES = {  # the robot has a mistake
