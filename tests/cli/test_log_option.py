@@ -3,11 +3,15 @@
 import json
 import signal
 import subprocess
+import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
-from grader.files.log_file import read_log
+from grader.base.errors import InputError
+from grader.files import log_file
+from grader.files.log_file import read_log, read_piped_log
 from grader.ros.api import MAX_LOG
 from tests.command_line import GRADER, ROOT, Done, run, run_with_input
 
@@ -111,3 +115,43 @@ def test_ctrl_c_ends_the_reading_and_not_the_answer() -> None:
         text = " ".join(program.stdout.read().decode().split())
         assert program.wait() == 1
     assert ANSWER in text
+
+
+def _standard_input(*parts: bytes | BaseException) -> SimpleNamespace:
+    """Return a stream that gives these parts, or raises them."""
+    left = [*parts, b""]
+
+    def read1(_: int) -> bytes:
+        part = left.pop(0)
+        if isinstance(part, BaseException):
+            raise part
+        return part
+
+    return SimpleNamespace(buffer=SimpleNamespace(read1=read1))
+
+
+def test_the_end_of_a_pipe_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All of it is passed on, and an interrupt ends it; that it cannot be read is an error."""
+    passed: list[bytes] = []
+    monkeypatch.setattr(sys, "stdin", _standard_input(b"abc", b"def", KeyboardInterrupt(), b"g"))
+    assert read_piped_log(4, passed.append) == b"cdef"
+    assert passed == [b"abc", b"def"]
+    monkeypatch.setattr(sys, "stdin", _standard_input(OSError(5, "Input/output error")))
+    with pytest.raises(InputError, match="cannot read standard input: Input/output error"):
+        read_piped_log(4, passed.append)
+    monkeypatch.setattr(sys, "stdin", None)
+    with pytest.raises(InputError, match="standard input is closed"):
+        read_piped_log(4, passed.append)
+
+
+def test_a_large_folder_and_a_file_that_is_none_have_limits(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """No more than so many files are read, and what is no file hides no other one."""
+    monkeypatch.setattr(log_file, "_MAX_FILES", 2)
+    for name in "abcd":
+        (tmp_path / f"{name}.log").write_text(name, encoding="utf-8")
+    assert read_log(str(tmp_path), MAX_LOG) == b"a\nb"
+    (tmp_path / "a.log").unlink()
+    (tmp_path / "a.log").symlink_to(tmp_path / "none")
+    assert read_log(str(tmp_path), MAX_LOG) == b"b"

@@ -4,8 +4,10 @@ from collections.abc import Mapping
 
 import pytest
 
+from grader.base.errors import NotDecided
 from grader.files.tree import make_tree, overlaid
 from grader.ros.api import LogAnswer, Read, explain_log, read_workspace
+from grader.ros.log import explaining
 
 _SETUP = """
 from setuptools import setup
@@ -106,6 +108,9 @@ _WITH_ROBOT = {
 }
 _MOVER = "Node(package='cell', executable='moover'),"
 _BRIDGE = "Node(package='joint_state_publisher', executable='joint_state_publisher'),"
+_DECLARING = _workspace()["src/cell/package.xml"].replace(
+    "<export>", "<exec_depend>joint_state_publisher</exec_depend><export>"
+)
 _COMMAND = "Command(['xacro ', 'arm.urdf.xacro']),"
 _EMPTY = "[robot_state_publisher-1] Error:   Error document empty.\n"
 _PATH_AS_TEXT = (
@@ -126,6 +131,15 @@ _AMCL = "Node(package='nav2_amcl', executable='amcl', parameters=['src/cell/conf
             _NOT_FOUND.replace("NAME", "joint_state_publisher"),
             "src/cell/launch/c.launch.py:8",
             id="not installed",
+        ),
+        pytest.param(
+            _workspace(
+                {"package.xml": _DECLARING},
+                _MOVER.replace("moover", "mover") + _BRIDGE,
+            ),
+            _NOT_FOUND.replace("NAME", "joint_state_publisher"),
+            "src/cell/launch/c.launch.py:8",
+            id="declared and not installed",
         ),
         pytest.param(
             _workspace(nodes=_MOVER),
@@ -262,3 +276,26 @@ def test_the_answers_have_a_limit() -> None:
     assert [(answer.line, answer.text) for answer in answers] == [
         (2 * n + 2, f"wrong {n}") for n in range(5)
     ]
+
+
+def test_without_a_budget_findings_are_asked(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What cannot be determined is not said, and raises nothing."""
+
+    def spent(*_: object) -> None:
+        raise NotDecided("too much")
+
+    monkeypatch.setattr(explaining, "placed_answers", spent)
+    [answer] = _explained(_workspace(), _NOT_FOUND.replace("NAME", "cell"))
+    assert answer.location is None
+
+
+def test_a_module_is_explained_by_setup_py_only() -> None:
+    """A package without one, or whose setup.py names the module, says nothing."""
+    tools = {"cell/tools/__init__.py": ""}
+    named = _SETUP.replace("packages=['cell']", "packages=['cell', 'cell.tools']")
+    assert _places(_workspace({**tools, "setup.py": named}), _NO_MODULE) == []
+    without = _workspace(tools)
+    del without["src/cell/setup.py"]
+    assert _places(without, _NO_MODULE) == []
+    computed = "from setuptools import setup\nsetup(**{'name': 'cell'})\n"
+    assert _places(_workspace({**tools, "setup.py": computed}), _NO_MODULE) == []
