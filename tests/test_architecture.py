@@ -163,7 +163,7 @@ WEIGHTS = {
     "ros.interfaces": 4_400,  # since and until when there is a type; functions for the checks of one default
     "ros.known": 9_000,  # the rows of outputs; the packages that are released; when each table was read, and the last release that was read for it
     "ros.launch": 45_100,  # what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing
-    "ros.log": 3_700,
+    "ros.log": 3_900,
     "ros.mesh": 4_300,
     "ros.nodes": 47_700,  # calls are bound as Python binds them
     "ros.package": 26_950,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean

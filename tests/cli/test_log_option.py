@@ -1,6 +1,7 @@
 """`grader inspect --log`: a file, a folder or a pipe, beside the findings."""
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -155,3 +156,11 @@ def test_a_large_folder_and_a_file_that_is_none_have_limits(
     (tmp_path / "a.log").unlink()
     (tmp_path / "a.log").symlink_to(tmp_path / "none")
     assert read_log(str(tmp_path), MAX_LOG) == b"b"
+
+    def broken(handle: int, _: str) -> None:
+        os.close(handle)
+        raise OSError(21, "Is a directory")
+
+    monkeypatch.setattr(os, "fdopen", broken)
+    with pytest.raises(InputError, match="Is a directory"):
+        read_log(str(tmp_path / "b.log"), MAX_LOG)

@@ -51,7 +51,7 @@ def test_a_row_names_what_exists(row: OutputRow) -> None:
     assert {*row.within} <= groups
     for text in (row.otherwise, row.key):
         fields = {field for _, field, _, _ in string.Formatter().parse(text) if field is not None}
-        assert fields <= groups | {"others"}
+        assert fields <= groups | {"others", "reason"}
     for source in row.source.split("; "):
         assert _SOURCE.match(source), source
     assert row.sentence.endswith(".")

@@ -120,6 +120,24 @@ _PATH_AS_TEXT = (
 _AMCL = "Node(package='nav2_amcl', executable='amcl', parameters=['src/cell/config/amcl.yaml']),"
 
 
+_NO_LIBEXEC = (
+    "package 'cell' found at '/ws/install/cell', but libexec directory '/ws/install/cell/lib/cell' "
+    "does not exist"
+)
+_CMAKE = """cmake_minimum_required(VERSION 3.8)
+project(cell)
+find_package(ament_cmake REQUIRED)
+add_executable(mover src/mover.cpp)
+INSTALL
+ament_package()
+"""
+_OF_CMAKE = {
+    "package.xml": _workspace()["src/cell/package.xml"].replace("ament_python", "ament_cmake"),
+    "src/mover.cpp": "int main() {}\n",
+}
+_TARGETS = "install(TARGETS mover DESTINATION lib/${PROJECT_NAME})"
+
+
 @pytest.mark.parametrize(
     ("files", "log", "place"),
     [
@@ -187,6 +205,15 @@ _AMCL = "Node(package='nav2_amcl', executable='amcl', parameters=['src/cell/conf
             id="spaced path",
         ),
         pytest.param(
+            _workspace({"setup.cfg": ""}), _NO_LIBEXEC, "src/cell/setup.py:1", id="setup.cfg"
+        ),
+        pytest.param(
+            _workspace({**_OF_CMAKE, "CMakeLists.txt": _CMAKE.replace("INSTALL", "")}),
+            _NO_LIBEXEC,
+            "src/cell/CMakeLists.txt:1",
+            id="install",
+        ),
+        pytest.param(
             _workspace(nodes=_PATH_AS_TEXT), _EMPTY, "src/cell/launch/c.launch.py:8", id="document"
         ),
     ],
@@ -209,6 +236,12 @@ def test_the_files_explain_a_message(files: Mapping[str, str], log: str, place: 
             _workspace({"config/m.yaml": _MOVEIT + "    action_ns: go\n"}), _NO_ACTION, id="action"
         ),
         pytest.param(_workspace(), _NO_MODULE, id="no such module"),
+        pytest.param(_workspace(), _NO_LIBEXEC, id="installed"),
+        pytest.param(
+            _workspace({**_OF_CMAKE, "CMakeLists.txt": _CMAKE.replace("INSTALL", _TARGETS)}),
+            _NO_LIBEXEC,
+            id="installed by CMake",
+        ),
         pytest.param(
             _workspace({"cell/mover.py": "x = 1\n\n"}),
             _TRACE.replace("PATH", "/ws/src/cell"),

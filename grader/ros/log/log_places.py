@@ -130,6 +130,26 @@ def _of_traceback(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_Pla
         yield _PlacedAnswer(places[-1], known.said())
 
 
+def _of_programs(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_PlacedAnswer]:
+    """Yield that a build of a package installs no program in the folder of its programs."""
+    name = known.groups["package"]
+    folder = f"lib/{name}"
+    for package in opened.packages:
+        installation = package.installation
+        if package.name != name or installation is None:
+            continue
+        place = Location(installation.source.path, 1, 1)
+        paths = (*package.installed, *installation.programs)
+        if any(path.startswith(f"{folder}/") for path in paths):
+            continue
+        if package.is_cmake and not installation.unknown:
+            reason = f"CMakeLists.txt has no install(TARGETS ... DESTINATION {folder})"
+            yield _PlacedAnswer(place, known.said(reason=reason))
+        elif not package.is_cmake and installation.scripts_folder != folder:
+            reason = f"setup.cfg has no install_scripts=$base/{folder}"
+            yield _PlacedAnswer(place, known.said(reason=reason))
+
+
 def _of_module(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_PlacedAnswer]:
     """Yield that setup.py does not install a module that its package has."""
     path = known.groups["module"].replace(".", "/")
@@ -213,6 +233,7 @@ _SEARCHES: Mapping[OutputPlace, _Search] = {
     "parameter": _of_parameter,
     "traceback": _of_traceback,
     "module": _of_module,
+    "programs": _of_programs,
     "copies": _of_copies,
     "spaced path": _of_spaced_path,
 }

@@ -51,6 +51,7 @@ from grader.ros.workspace.rules.rule_table import (
     PARAMETER_REQUIRED,
     PARAMETER_TYPE,
     PLUGIN_NAME,
+    ROBOT_EXPANDED,
     ROBOT_TEXT,
 )
 
@@ -600,7 +601,7 @@ def _xacro_as_text(
         f"robot_description is the text of {name}, which is xacro, and {node.executable} does not "
         "expand it: give it Command(['xacro ', path])"
     )
-    yield Mismatch(ROBOT_TEXT, message, robot.location, Location(path, 1, 1))
+    yield Mismatch(ROBOT_EXPANDED, message, robot.location, Location(path, 1, 1))
 
 
 def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:

@@ -236,6 +236,9 @@ FILTER_SIZE = _parameter(
     "filter-size", sentence="An input of a robot_localization filter has 15 values."
 )
 ROBOT_TEXT = _parameter("robot-text", sentence="robot_description is the text of a robot.")
+ROBOT_EXPANDED = _parameter(
+    "robot-expanded", sentence="The text of a robot is what xacro makes of its file."
+)
 CREATED_FROM = _parameter(
     "created-from", sentence="The program that creates a robot in Gazebo gets its source."
 )
