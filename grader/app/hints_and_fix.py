@@ -47,7 +47,10 @@ def add_hints(
         return report, fix
     try:
         hinted_report = hinted(report, submission, level)
-    except (Exception, OutOfTime) as error:  # noqa: BLE001  a fault of the search must not cost the report
+    except OutOfTime as error:  # the report is there already
+        warn(f"no hints: the search for them ran out of time: {error}")
+        return report, fix._replace(why_nothing="the search for edits ran out of time")
+    except Exception as error:  # noqa: BLE001  a fault of the search must not cost the report
         own_fault = f"the grader itself failed ({type(error).__name__}); please report it"
         warn(f"no hints: {error if isinstance(error, MachineError) else own_fault}")
         return report, fix._replace(why_nothing="the search for edits failed")
