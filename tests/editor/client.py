@@ -3,7 +3,7 @@
 import asyncio
 import logging
 import sys
-from collections.abc import AsyncIterator, Callable, Coroutine, Iterator
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterator, Sequence
 from contextlib import AsyncExitStack, asynccontextmanager, contextmanager
 from pathlib import Path
 
@@ -89,11 +89,13 @@ class Editor:
 
 
 @asynccontextmanager
-async def editor(root: Path, *options: str, looks: bool = True) -> AsyncIterator[Editor]:
+async def editor(
+    root: Path, *options: str, looks: bool = True, command: Sequence[str] = COMMAND
+) -> AsyncIterator[Editor]:
     """Start a server for a folder, and end it as editors do; it has to end with code 0."""
     logging.getLogger("pygls").setLevel(logging.CRITICAL)
     client = make_test_lsp_client()
-    await client.start_io(*COMMAND, *options)
+    await client.start_io(*command, *options)
     folder = lsp.WorkspaceFolder(root.as_uri(), root.name)
     params = lsp.InitializeParams(
         capabilities=client_capabilities("neovim"),

@@ -1,24 +1,59 @@
 """The files of a workspace as an editor has them: those on the disk, and what is typed."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
-from grader.base.errors import InputError
+from grader.base.errors import FileError, InputError
 from grader.files.gitignore import without_git_ignored
 from grader.files.limits import ignored_part
 from grader.files.opening import open_tree
 from grader.files.reading import URDF_LIMIT
-from grader.files.tree import File, Tree, make_tree, overlaid
+from grader.files.tree import File, IgnoredFile, Tree, make_tree, overlaid
+
+_TOOK_TOO_LONG = "takes too long to read, and was ignored"
+
+
+class SkippedText(NamedTuple):
+    """A text that takes too long to read, and that which is read instead; None to read none.
+
+    Without `slow` it is the first text that the file has.
+    """
+
+    slow: str | None
+    instead: str | None
 
 
 class EditedFiles:
     """The files of a folder, with the typed text of those that are open in the editor.
 
-    What is on the disk is read once, until `read_again` says that it has changed.
+    What is on the disk is read once, until `read_again` says that it has changed. Of a file with a
+    skipped text another one is read until it changes, or none.
     """
 
-    def __init__(self, root: Path) -> None:
+    def __init__(
+        self,
+        root: Path,
+        skipped: Mapping[str, SkippedText] | None = None,
+        begin_file: Callable[[str], object] = lambda _: None,
+    ) -> None:
+        """Take the files of a folder.
+
+        Args:
+            root: The folder.
+            skipped: The texts that take too long to read, by the paths of their files in the
+                folder.
+            begin_file: Called with a path before its file is read.
+        """
         self.root = root
+        self._skipped = dict(skipped or {})
+        self._slow: dict[str, bytes | None] = {}  # the skipped texts
+        for path, text in self._skipped.items():
+            if text.slow is not None:
+                self._slow[path] = text.slow.encode("utf-8", "surrogatepass")
+        self._begin_file = begin_file
         self._typed: dict[str, bytes] = {}
         self._on_disk: Tree | None = None
 
@@ -45,12 +80,46 @@ class EditedFiles:
             opened_tree = open_tree(self.root)
             if opened_tree is None:
                 raise InputError(f"{self.root.name} is no folder")
-            self._on_disk = _kept(without_git_ignored(opened_tree, self.root))
+            self._on_disk = self._keep_contents(without_git_ignored(opened_tree, self.root))
         on_disk, typed = self._on_disk, dict[str, bytes | None]()
         for path, data in dict(self._typed).items():
             if path in on_disk.files or not ignored_part(path):
                 typed[path] = data
-        return overlaid(on_disk, typed) if typed else on_disk
+        tree = self._watch(overlaid(on_disk, typed), typed) if typed else on_disk
+        return self._without_skipped(tree)
+
+    def _keep_contents(self, tree: Tree) -> Tree:
+        """Return a tree whose files are read once each."""
+        kept = [file._replace(read=_read_once(file)) for file in tree.files.values()]
+        kept_tree = make_tree(
+            tree.name, kept, tree.folders, tree.ignored, tree.generated, tree.unseen, (tree,)
+        )
+        return self._watch(kept_tree, kept_tree.files)
+
+    def _watch(self, tree: Tree, paths: Iterable[str]) -> Tree:
+        """Return a tree in which it is noted that one of these files is read."""
+
+        def read(file: File, limit: int, *, first: bool = False) -> bytes:
+            self._begin_file(file.path)
+            return file.read(limit, first=first)
+
+        files = dict(tree.files)
+        for path in paths:
+            if path in files:
+                files[path] = files[path]._replace(read=partial(read, files[path]))
+        return replace(tree, files=files)
+
+    def _without_skipped(self, tree: Tree) -> Tree:
+        """Return a tree without the text of the files that take too long to read."""
+        for path, (_, instead) in self._skipped.items():
+            data = tree.read(path, URDF_LIMIT)
+            if data is None or data != self._slow.setdefault(path, data):
+                continue
+            if instead is not None:
+                tree = overlaid(tree, {path: instead.encode("utf-8", "surrogatepass")})
+            else:
+                tree = _unread(tree, path)
+        return tree
 
     def text(self, path: str) -> str:
         """Return the text of a file, as far as it can be read; empty without one."""
@@ -68,14 +137,6 @@ class EditedFiles:
         return path.as_posix()
 
 
-def _kept(tree: Tree) -> Tree:
-    """Return a tree whose files are read once each."""
-    kept = [file._replace(read=_read_once(file)) for file in tree.files.values()]
-    return make_tree(
-        tree.name, kept, tree.folders, tree.ignored, tree.generated, tree.unseen, (tree,)
-    )
-
-
 def _read_once(file: File) -> Callable[..., bytes]:
     whole: bytes | None = None
 
@@ -90,3 +151,15 @@ def _read_once(file: File) -> Callable[..., bytes]:
         return whole if len(whole) <= limit else file.read(limit)
 
     return read
+
+
+def _unread(tree: Tree, path: str) -> Tree:
+    """Return a tree in which a file is there, and cannot be read."""
+
+    def refuse(limit: int, *, first: bool = False) -> bytes:
+        del limit, first
+        raise FileError(path, _TOOK_TOO_LONG)
+
+    files = [*tree.files.values(), tree.files[path]._replace(read=refuse)]
+    ignored = (*tree.ignored, IgnoredFile(path, _TOOK_TOO_LONG))
+    return make_tree(tree.name, files, tree.folders, ignored, tree.generated, tree.unseen, (tree,))

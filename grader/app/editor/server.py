@@ -4,12 +4,13 @@ import asyncio
 import gc
 import logging
 import os
+import sys
 import time
 from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, BinaryIO, TypeVar
 
 from lsprotocol import types as lsp
 from pygls.lsp.server import LanguageServer
@@ -20,9 +21,12 @@ from grader.app.editor import completions, describing, fixes, places, renaming, 
 from grader.app.editor.diagnostics import SOURCE, diagnostics_of
 from grader.app.editor.edited_files import EditedFiles
 from grader.app.editor.look import Look
+from grader.app.editor.reading_limits import ReadingLimits, SharedPath
 from grader.app.editor.session import EditorSession, SupersededError
+from grader.app.editor.supervisor import LOOKED, Skipped, Supervisor
 from grader.app.editor.text_ranges import TextRanges
 from grader.base.errors import GraderError
+from grader.base.processor_time import CAN_LIMIT
 from grader.base.text import counted
 from grader.files.limits import ROBOT_ENDINGS
 
@@ -48,9 +52,11 @@ _OPTIONS = {
 class _GraderServer(LanguageServer):
     """The server of one editor, with a session for each folder that is open in it."""
 
-    def __init__(self, rubric: str) -> None:
+    def __init__(self, rubric: str, limits: ReadingLimits, skipped: Skipped) -> None:
         super().__init__("grader", __version__, lsp.TextDocumentSyncKind.Incremental)
         self.rubric = rubric
+        self._limits = limits
+        self._skipped = skipped
         self.sessions: dict[Path, EditorSession] = {}
         self._pool = ThreadPoolExecutor(max_workers=2)
         self._refreshing: dict[Path, asyncio.Task[None]] = {}
@@ -67,7 +73,7 @@ class _GraderServer(LanguageServer):
     def session_in(self, root: Path) -> EditorSession:
         """Return the session of a folder, which is started if there is none."""
         if root not in self.sessions:
-            self.sessions[root] = EditorSession(root, self.rubric)
+            self.sessions[root] = EditorSession(root, self.rubric, self._limits, self._skipped)
             self.refresh(root)
         return self.sessions[root]
 
@@ -117,6 +123,7 @@ class _GraderServer(LanguageServer):
             look = await self.in_thread(session.look)
             diagnostics = await self.in_thread(partial(diagnostics_of, look, root))
             self._publish(root, diagnostics)
+            self.protocol.notify(LOOKED)
             self._complain(session.complaint)
             graded = await self.in_thread(lambda: look.graded.mistakes)
             if graded:
@@ -142,7 +149,12 @@ class _GraderServer(LanguageServer):
 
     async def in_thread(self, work: Callable[[], _T]) -> _T:
         """Return what some work returns that is done beside the messages of the editor."""
-        return await asyncio.get_running_loop().run_in_executor(self._pool, work)
+
+        def limited_work() -> _T:
+            with self._limits.working():
+                return work()
+
+        return await asyncio.get_running_loop().run_in_executor(self._pool, limited_work)
 
     def _publish(self, root: Path, diagnostics: _Diagnostics) -> None:
         """Show what is wrong in a folder; of files in which nothing is wrong any more, nothing."""
@@ -195,12 +207,15 @@ def _fault(error: Exception) -> lsp.Diagnostic:
     )
 
 
-def _make_server(rubric: str) -> _GraderServer:
-    """Return the server of an editor, which grades with a rubric, an id or a file.
+def _make_server(rubric: str, limits: ReadingLimits, skipped: Skipped) -> _GraderServer:
+    """Return the server of an editor.
 
-    Empty for that of the settings, or none.
+    Args:
+        rubric: What it grades with, an id or a file; empty for that of the settings, or none.
+        limits: The limits of processor time.
+        skipped: The texts that take too long to read, by the paths of their files.
     """
-    server = _GraderServer(rubric)
+    server = _GraderServer(rubric, limits, skipped)
     _follow_texts(server)
     _answer_about_places(server)
     _offer_changes(server)
@@ -292,7 +307,28 @@ def _offer_changes(server: _GraderServer) -> None:
 
 
 def serve(rubric: str) -> None:
-    """Answer an editor on standard input and output until it says that it ends."""
+    """Answer an editor on standard input and output until it says that it ends.
+
+    A worker process reads, where the system has limits of processor time.
+    """
     logging.disable()  # what is refused is an answer, and no traceback on standard error
     gc.enable()  # unlike other commands, this one may run for hours
-    _make_server(rubric).start_io()
+    if CAN_LIMIT:
+        os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # none in a process that forks
+        supervisor = Supervisor(
+            partial(_serve_in_worker, rubric), sys.stdin.fileno(), sys.stdout.fileno()
+        )
+        supervisor.run()
+    else:
+        _make_server(rubric, ReadingLimits(), {}).start_io()
+
+
+def _serve_in_worker(
+    rubric: str,
+    its_input: BinaryIO,
+    its_output: BinaryIO,
+    reading: SharedPath,
+    skipped: Skipped,
+) -> None:
+    """Answer the process that started this one."""
+    _make_server(rubric, ReadingLimits(reading), skipped).start_io(its_input, its_output)

@@ -1,12 +1,13 @@
 """A workspace that is open in an editor: what was seen of it last, and what to look at next."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from threading import Lock
 
-from grader.app.editor.edited_files import EditedFiles
+from grader.app.editor.edited_files import EditedFiles, SkippedText
 from grader.app.editor.look import Graded, Look, look_at
+from grader.app.editor.reading_limits import ReadingLimits
 from grader.app.settings import Settings, read_settings
 from grader.base.errors import GraderError
 from grader.base.reuse import Memory
@@ -26,8 +27,27 @@ class EditorSession:
     early where the files change meanwhile.
     """
 
-    def __init__(self, root: Path, rubric: str = "") -> None:
-        self.files = EditedFiles(root)
+    def __init__(
+        self,
+        root: Path,
+        rubric: str = "",
+        limits: ReadingLimits | None = None,
+        skipped: Mapping[str, SkippedText] | None = None,
+    ) -> None:
+        """Open a folder.
+
+        Args:
+            root: The folder.
+            rubric: The rubric to grade with; default: that of the settings.
+            limits: The limits of processor time; default: none.
+            skipped: The texts that take too long to read, by the paths of their files.
+        """
+        self._limits = limits or ReadingLimits()
+        inside = {}
+        for path, text in (skipped or {}).items():
+            if Path(path).is_relative_to(root):
+                inside[Path(path).relative_to(root).as_posix()] = text
+        self.files = EditedFiles(root, inside, self._begin_file)
         self.complaint = ""  # why the settings are not used
         self._rubric = rubric
         self._version = 0  # of the files
@@ -72,9 +92,14 @@ class EditorSession:
     def _look_at(self, tree: Tree) -> Look:
         settings = self._read_settings()
         grade = partial(self._grade, settings)
-        return look_at(tree, self.files.root, settings, self._memory, grade, self._look_again)
+        with self._limits.looking():
+            return look_at(tree, self.files.root, settings, self._memory, grade, self._look_again)
+
+    def _begin_file(self, path: str) -> None:
+        self._limits.begin_file(str(self.files.root / path))
 
     def _check(self) -> None:
+        self._limits.restart()
         if self._looking != self._version:
             raise SupersededError
 
