@@ -12,6 +12,8 @@ from types import FrameType
 
 from grader.base.errors import OutOfTime
 
+GRADE_SECONDS = 20  # of processor time for `grader grade`
+INSPECT_SECONDS = 60  # and for `grader inspect`
 CAN_LIMIT = hasattr(signal, "setitimer")  # not on Windows
 _GRACE = 10  # more seconds, after which the process is ended, whatever it does
 _AGAIN = 2.0  # seconds after which it is raised again: where no exception can be, it is lost

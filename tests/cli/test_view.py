@@ -7,13 +7,18 @@ import signal
 import struct
 import subprocess
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from threading import Event, Thread
 from urllib.request import urlopen
 
 import pytest
 
+from grader.app.commands import view_server
 from grader.app.commands.view_server import RobotPages
+from grader.app.commands.viewed_robots import ViewedFiles, ViewRequest, read_robots
+from grader.base.processor_time import CAN_LIMIT
+from grader.files.reading import URDF_LIMIT
 from grader.report.drawing import mesh_data
 from grader.report.local_server import HOST
 from grader.report.open_browser import opened_in_browser
@@ -518,3 +523,30 @@ def test_without_a_place_for_that_file_the_address_is_printed(
     monkeypatch.setattr("grader.report.open_browser._has_window", lambda: True)
     with opened_in_browser("http://127.0.0.1/", tmp_path / "none" / "open.html") as is_open:
         assert not is_open
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not CAN_LIMIT, reason="has no limits of processor time")
+def test_a_robot_that_takes_too_long_is_reported(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The page shows the reason above the last robot, until the file changes again."""
+    file = tmp_path / "a.urdf"
+    put("<robot name='a'><link name='b'/></robot>", file)
+
+    def read_or_hang(request: ViewRequest, tried: Mapping[str, str]) -> ViewedFiles:
+        hangs = file.read_bytes() == b"hangs"
+        while hangs:
+            pass
+        return read_robots(request, tried)
+
+    monkeypatch.setattr(view_server, "INSPECT_SECONDS", 3)
+    monkeypatch.setattr(view_server, "read_robots", read_or_hang)
+    pages = RobotPages()
+    versions = view_server.follow_files(ViewRequest(str(file), "", (), URDF_LIMIT), pages)
+    next(versions)
+    for text, is_late in (("hangs", True), ("<robot name='c'><link name='b'/></robot>", False)):
+        put(text, file)
+        next(versions)
+        page = pages(("",), None).body.decode()
+        assert ("takes more than 3 s of processor time" in page) == is_late

@@ -18,6 +18,9 @@ import pytest
 
 from grader.app.cli.streams import TERMINAL
 from grader.app.commands.repeating import changes, repeat_on_change
+from grader.app.grading import GradeRequest, GradeRun, grade_submission
+from grader.base.processor_time import CAN_LIMIT
+from grader.report.writing import Warn
 from tests.classroom.class_runs import shell_code, started
 from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment, run
 
@@ -234,7 +237,7 @@ def test_a_pause_follows_the_time_of_a_look_alone(
     monkeypatch.setattr("grader.app.commands.repeating.time", clock)
     first = robot.read_text()
     with pytest.raises(KeyboardInterrupt):
-        repeat_on_change([robot.parent], [], TERMINAL, work, show)
+        repeat_on_change([robot.parent], [], TERMINAL, 60, work, show)
     assert pauses == pytest.approx([pause] * 7)
     # A change is graded at the second look after it.
     assert rounds == [(first, 0), ("<robot name='1'/>", 2), ("<robot name='4'/>", 5)]
@@ -266,6 +269,26 @@ def test_ctrl_c_and_a_closed_standard_output_end_the_process(robot: Path) -> Non
         2,
         [b"grader: cannot write the report: standard output: Broken pipe"],
     )
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not CAN_LIMIT, reason="has no limits of processor time")
+def test_a_round_that_takes_too_long_is_reported(
+    robot: Path, watch: Watch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The next change is graded again, and compared with what was graded last."""
+    monkeypatch.setattr("grader.app.commands.watch.GRADE_SECONDS", 5)
+
+    def grade_or_hang(request: GradeRequest, warn: Warn) -> GradeRun:
+        hangs = robot.read_bytes() == b"hangs"
+        while hangs:
+            pass
+        return grade_submission(request, warn)
+
+    monkeypatch.setattr("grader.app.commands.watch.grade_submission", grade_or_hang)
+    done = watch([robot], partial(put, b"hangs", robot), partial(put, URDF, robot))
+    assert done.err[1:] == ["grader: this takes more than 5 s of processor time\n", ""]
+    assert (done.out[1], BETTER in done.out[2]) == ("", True)
 
 
 def test_an_inspection_is_repeated(tmp_path: Path, watch: Watch) -> None:

@@ -14,6 +14,7 @@ from grader import __version__
 from grader.app.cli.ending import outer_limits, quiet_interrupts
 from grader.app.cli.streams import warn
 from grader.base.errors import GraderError, NotThereError
+from grader.base.processor_time import GRADE_SECONDS, INSPECT_SECONDS
 from grader.base.text import printable_path
 from grader.report.invocation import ExitCode
 from grader.report.writing import write_stdout
@@ -37,7 +38,7 @@ COMMANDS = {
     "rubric": "rubric",
 }
 # The commands that read one submission or workspace, with their limit of processor time in seconds.
-_LIMITED = {"grade": 20, "inspect": 60}
+_LIMITED = {"grade": GRADE_SECONDS, "inspect": INSPECT_SECONDS}
 _COMPLETION = ("--show-completion", "--install-completion")
 
 

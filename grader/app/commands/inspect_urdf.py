@@ -16,6 +16,7 @@ from grader.app.saving import check_file, check_saves, save_texts
 from grader.app.settings import Settings, read_codes, read_settings
 from grader.base.errors import GraderError, InputError, MissingElement, NotDecided
 from grader.base.problems import Problem
+from grader.base.processor_time import INSPECT_SECONDS
 from grader.base.text import MAX_NAMED, enumerated, printable_path
 from grader.files.tree import overlaid
 from grader.report.formats import InspectFormat, render_inspection
@@ -112,7 +113,8 @@ def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
         is_first = False
         _show_and_save(inspection, request, known, terminal)
 
-    repeat_on_change([Path(request.path)], [file for _, file in saves], terminal, work, show)
+    own_paths = [file for _, file in saves]
+    repeat_on_change([Path(request.path)], own_paths, terminal, INSPECT_SECONDS, work, show)
     return True
 
 

@@ -5,15 +5,17 @@ import math
 import os
 import time
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from threading import current_thread, main_thread
 from time import time_ns
 from typing import TypeVar
 
 from rich.console import Console
 from rich.text import Text
 
-from grader.base.errors import GraderError, InputError, MachineError, RubricError
+from grader.base.errors import GraderError, InputError, MachineError, OutOfTime, RubricError
+from grader.base.processor_time import lift_processor_time, limit_processor_time
 from grader.base.text import printable_path
 from grader.files.folder import read_folder
 from grader.report.screen import Screen, draw
@@ -42,17 +44,20 @@ def repeat_on_change(
     watched: Sequence[Path],
     own_paths: Collection[Path],
     terminal: Terminal,
+    seconds: float,
     work: Callable[[], tuple[_Result, Sequence[Path]]],
     show: Callable[[_Result], None],
 ) -> None:
     """Work now and after every change, until Ctrl-C, which raises KeyboardInterrupt.
 
-    A file that cannot be read is reported, and the work is done again after the next change.
+    A file that cannot be read, or takes too long, is reported, and the work is done again after the
+    next change.
 
     Args:
         watched: The files and folders, the first of which is named.
         own_paths: The files that are written, whose changes do not count.
         terminal: Where it is said what is watched.
+        seconds: The processor time that the work may take each time.
         work: Returns a result, and the files that were read besides, which are watched as well.
         show: Shows the result; what it raises ends the watch.
     """
@@ -60,13 +65,29 @@ def repeat_on_change(
     terminal.warn(f"watching {printable_path(watched[0])}; stop with Ctrl-C")
     for besides in changes(watched, frozenset(map(os.path.realpath, own_paths))):
         try:
-            result, read = work()
+            with limited_time(seconds):
+                result, read = work()
         except (InputError, MachineError, RubricError) as error:
             for line in str(error).split("\n"):
                 terminal.warn(line)
             continue
         besides[:] = read
         show(result)
+
+
+@contextmanager
+def limited_time(seconds: float) -> Iterator[None]:
+    """Limit the processor time of what follows, in the main thread. Raises InputError."""
+    if current_thread() is not main_thread():
+        yield
+        return
+    try:
+        limit_processor_time(seconds)
+        yield
+    except OutOfTime as error:
+        raise InputError(str(error)) from None
+    finally:
+        lift_processor_time()
 
 
 def titled_with_time(text: str, screen: Screen) -> str:

@@ -10,10 +10,11 @@ from pathlib import Path
 from threading import Condition, Event, Thread, current_thread
 from urllib.parse import quote
 
-from grader.app.commands.repeating import changes
+from grader.app.commands.repeating import changes, limited_time
 from grader.app.commands.viewed_robots import ViewedFiles, ViewedRobot, ViewRequest, read_robots
 from grader.app.commands.watch import files_to_watch
 from grader.base.errors import GraderError
+from grader.base.processor_time import GRADE_SECONDS, INSPECT_SECONDS
 from grader.base.text import counted
 from grader.report.drawing.mesh_data import MeshStore
 from grader.report.local_server import (
@@ -205,7 +206,8 @@ def follow_files(
         if pages.is_ended:
             return
         try:
-            files = read_robots(request, pages.tried)
+            with limited_time(GRADE_SECONDS if request.rubric else INSPECT_SECONDS):
+                files = read_robots(request, pages.tried)
         except GraderError as error:
             if not pages.number:
                 raise

@@ -25,6 +25,7 @@ from grader.app.grading import (
 )
 from grader.app.saving import check_saves
 from grader.base.errors import GraderError
+from grader.base.processor_time import GRADE_SECONDS
 from grader.base.text import enumerated, format_points, printable, signed_points
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.rubric import find_rubric, shipped_rubrics
@@ -68,7 +69,7 @@ def watch(request: GradeRequest, terminal: Terminal) -> None:
         _show(run.report, last, terminal, verbose=request.verbose)
         last = run.report
 
-    repeat_on_change(watched, [file for _, file in saves], terminal, work, show)
+    repeat_on_change(watched, [file for _, file in saves], terminal, GRADE_SECONDS, work, show)
 
 
 def _watched(request: GradeRequest) -> list[Path]:

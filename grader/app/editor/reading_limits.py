@@ -15,8 +15,9 @@ from contextlib import contextmanager
 from math import ceil
 from threading import Lock
 
+from grader.base.processor_time import INSPECT_SECONDS
+
 MAX_FILE_SECONDS = 5.0  # of processor time, from one file to the next
-MAX_WORK_SECONDS = 60  # of processor time for one look at a workspace, as `grader inspect` has
 _LENGTH = struct.Struct("H")
 _SIZE = 8192  # bytes: a path and its length
 
@@ -99,7 +100,7 @@ class ReadingLimits:
         _, hard = resource.getrlimit(resource.RLIMIT_CPU)
         end = hard
         if self._starts:
-            end = ceil(min(self._starts)) + MAX_WORK_SECONDS
+            end = ceil(min(self._starts)) + INSPECT_SECONDS
             if hard != resource.RLIM_INFINITY:
                 end = min(end, hard)
         resource.setrlimit(resource.RLIMIT_CPU, (end, hard))

@@ -20,7 +20,8 @@ from pygls.uris import to_fs_path
 from pygls.workspace import PositionCodec, TextDocument
 
 from grader.app.editor.edited_files import SkippedText
-from grader.app.editor.reading_limits import MAX_FILE_SECONDS, MAX_WORK_SECONDS, SharedPath
+from grader.app.editor.reading_limits import MAX_FILE_SECONDS, SharedPath
+from grader.base.processor_time import INSPECT_SECONDS
 from grader.base.text import printable_path
 
 LOOKED = "$/grader/looked"  # a worker has looked at the files; the editor is not told
@@ -395,5 +396,5 @@ def _reason(code: int, name: str) -> str:
     if code == -signal.SIGPROF:
         return f"reading {name} takes more than {MAX_FILE_SECONDS:g} s of processor time"
     if code == -signal.SIGXCPU:
-        return f"reading {name} takes more than {MAX_WORK_SECONDS} s of processor time"
+        return f"reading {name} takes more than {INSPECT_SECONDS} s of processor time"
     return f"reading {name} ended the process that read it"
