@@ -54,6 +54,8 @@ def test_what_is_written_is_read(
 @pytest.mark.parametrize(
     ("text", "why"),
     [
+        ("", "class.toml is empty"),
+        ("# nothing\n", "class.toml is empty"),
         ("due = ", "class.toml is not TOML"),
         ('layuot = "x"', "unknown key 'layuot'; did you mean 'layout'?"),
         ("due = 2026-11-20", "due should be a text"),

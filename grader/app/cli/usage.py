@@ -96,6 +96,8 @@ def usage_message(error: Any, arguments: Sequence[str], root: Any) -> str:
         correction = correction or correct(line, error)
     if correction is not None:
         return f"{correction.why}: `grader {_shown(correction.words)}`"
+    if hasattr(error, "possibilities"):
+        error.possibilities = None  # guesses by letters alone
     what = " ".join(error.format_message().split())
     return f"{what} ({_usage(line, error)})"
 
@@ -235,7 +237,7 @@ def _correct_option(line: _CommandLine, error: Any) -> _Correction | None:
         if kinds:
             return _Correction(why, line.replaced(at, at + 2, "--save", f"{kinds[0]}={name}"))
     meant = _find_option(wrong, line)
-    if meant is None:
+    if meant is None or not _may_take_value(line, meant, at):
         return None
     return _Correction(why, line.replaced(at, at + 1, meant + line.words[at].removeprefix(wrong)))
 
@@ -246,6 +248,16 @@ def _find_option(wrong: str, line: _CommandLine) -> str | None:
         return closest(wrong, [name for name in line.options if name.startswith("--")])
     fitting = [name for name in line.options if name.startswith(f"-{wrong}")]
     return fitting[0] if len(fitting) == 1 else None
+
+
+def _may_take_value(line: _CommandLine, option: str, at: int) -> bool:
+    """Return whether the value of a wrong option may be meant for another one."""
+    choices = [str(choice) for choice in getattr(line.options[option].type, "choices", ())]
+    _, equals, value = line.words[at].partition("=")
+    if not equals:
+        value = next(iter(line.words[at + 1 :]), "")
+    is_choice = value.lower() in choices or closest(value, choices) is not None
+    return not choices or not value or is_choice
 
 
 def _correct_extra_words(line: _CommandLine, error: Any) -> _Correction | None:

@@ -178,6 +178,11 @@ def read_settings(folder: Path) -> ClassSettings:
         data = tomllib.loads(read_capped(file, _MAX_SIZE, advice="").decode())
     except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
         raise InputError(f"{shown} is not TOML: {printable(str(error))}") from None
+    if not data:
+        raise InputError(
+            f"{shown} is empty: restore it, or delete it and run `grader batch` with the options "
+            "of the class"
+        )
     types = {one.name: type(getattr(ClassSettings(), one.name)) for one in fields(ClassSettings)}
     for key, value in data.items():
         if key not in types:
