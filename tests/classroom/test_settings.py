@@ -1,5 +1,7 @@
 """`class.toml`: what is written is read; a mistake in it is one line; only an empty folder becomes a gradebook."""
 
+import errno
+import sys
 from pathlib import Path
 
 import pytest
@@ -16,6 +18,7 @@ from grader.classroom.marks.gradebook_folder import (
     make_gradebook,
     read_settings,
     settings_text,
+    warn_without_locks,
 )
 from tests.examples import examples
 
@@ -109,3 +112,20 @@ def test_one_batch_at_a_time(tmp_path: Path) -> None:
         pass
     with batch_lock(tmp_path):
         pass
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="replaces flock")
+def test_without_locks_it_is_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """On a file system without locks two programs are not kept apart, and the user is told."""
+    warnings = list[str]()
+    with batch_lock(tmp_path):
+        warn_without_locks(tmp_path, warnings.append)
+    assert warnings == []
+
+    def refuse(handle: int, how: int) -> None:
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr("fcntl.flock", refuse)
+    with batch_lock(tmp_path), batch_lock(tmp_path):
+        warn_without_locks(tmp_path, warnings.append)
+    assert len(warnings) == 1 and "is on a file system without locks" in warnings[0]

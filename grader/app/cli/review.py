@@ -77,7 +77,7 @@ def mark(
     if file is not None:
         if student or criterion or points or comment or missing:
             raise InputError("--import takes no argument and no other option but --by")
-        return import_marks(gradebook, file, by)
+        return import_marks(gradebook, file, by, warn)
     row = {
         "student": student,
         "criterion": criterion,

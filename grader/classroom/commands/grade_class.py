@@ -323,6 +323,7 @@ def grade_class(request: ClassRequest, terminal: Terminal) -> str:
     intake = _read_class(inputs, terminal.warn)
     refuse_symlinks(folder, inputs.roots)
     names.make_gradebook(folder)
+    names.warn_without_locks(folder, terminal.warn)
     with names.batch_lock(folder):
         results = Results(folder / names.RESULTS)
         _check_same_class(folder, results, intake)

@@ -53,7 +53,7 @@ def give_mark(gradebook: Path, row: Cells, warn: Warn) -> str:
         raise InputError("name a STUDENT and a CRITERION, and give POINTS or --comment")
     book = Gradebook(gradebook)
     [mark] = _mark_import(book).marks_in({**_EMPTY, **row})
-    now = _append_marks(book, [mark], row["by"])
+    now = _append_marks(book, [mark], row["by"], warn)
     for line in _warnings(book, mark):
         warn(printable(line))
     grade = now.grade(mark.student)
@@ -75,7 +75,7 @@ def mark_missing(gradebook: Path, row: Cells, warn: Warn) -> str:
     missing = [one.student.key for one in grades if Reason.MISSING in one.concerns]
     marks = [mark for key in missing for mark in reader.marks_in({**_EMPTY, **row, "student": key})]
     if marks:
-        _append_marks(book, marks, row["by"])
+        _append_marks(book, marks, row["by"], warn)
     for line in _unassigned(grades):
         warn(printable(line))
     return (
@@ -103,7 +103,7 @@ def _unassigned(grades: Sequence[StudentGrade]) -> Iterator[str]:
         yield f"no mark for {people_text(unclear)}: {Reason.UNCLEAR}"
 
 
-def import_marks(gradebook: Path, file: Path, by: str) -> str:
+def import_marks(gradebook: Path, file: Path, by: str, warn: Warn) -> str:
     """Append the marks in a CSV file; return how many.
 
     Raises InputError, and records none, if a row is wrong.
@@ -115,7 +115,7 @@ def import_marks(gradebook: Path, file: Path, by: str) -> str:
     points = {grade.student.key: points_of(book, grade) for grade in book}
     reader = _mark_import(book)._replace(answers=answers, points=points)
     new, same = reader.read(read_capped(file, SIZE_LIMIT, advice=""), printable_path(file))
-    _append_marks(book, new, by)
+    _append_marks(book, new, by, warn)
     return f"{printable_path(file)}: {len(new)} recorded, {same} the same as before\n"
 
 
@@ -127,7 +127,7 @@ def _mark_import(book: Gradebook) -> MarkImport:
     )
 
 
-def _append_marks(book: Gradebook, marks: Iterable[Mark], by: str) -> Gradebook:
+def _append_marks(book: Gradebook, marks: Iterable[Mark], by: str, warn: Warn) -> Gradebook:
     """Append marks to the file of a grader, and return the class with them.
 
     Its grades are written.
@@ -140,6 +140,7 @@ def _append_marks(book: Gradebook, marks: Iterable[Mark], by: str) -> Gradebook:
         OSError, KeyError
     ):  # of an account without a name: the files of two gradebooks can be merged
         by = by or getuser()
+    names.warn_without_locks(book.folder, warn)
     if new:
         append_marks(mark_file(book.folder / names.MARKS, by), new)
     now = Gradebook(book.folder)

@@ -5,15 +5,17 @@ The files in it, how it is recognised, who may write it, and its settings in `cl
 The settings are what a later run needs to grade the class again.
 """
 
+import errno
 import json
 import os
 import sys
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, fields
 from datetime import datetime
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import Any
 
 from grader.base.errors import InputError
@@ -27,6 +29,7 @@ RUBRIC, MARKS, REPORTS = "rubric", "marks", "reports"
 CLASS_FILE = "class.toml"
 _LOCK = ".lock"
 _WINDOWS_LOCK_AT = 1 << 30  # beyond the end of the file: others cannot read what is locked
+_NO_LOCKS = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.ENOTSUP}
 _MAX_SIZE = 1024 * 1024  # bytes of the settings
 _HEAD = (
     "# What `grader batch` needs to grade this class again. An option of the command replaces "
@@ -94,27 +97,45 @@ def make_gradebook(folder: Path) -> None:
         ) from None
 
 
-def lock(handle: int, *, wait: bool = True) -> None:
-    """Lock an open file until it is closed.
+def lock(handle: int, *, wait: bool = True) -> bool:
+    """Lock an open file until it is closed; return False where the file system has no locks.
 
     Raises OSError if another process has locked it, without `wait`.
     """
-    if sys.platform == "win32":
-        import msvcrt
+    try:
+        if sys.platform == "win32":
+            import msvcrt
 
-        os.lseek(handle, _WINDOWS_LOCK_AT, os.SEEK_SET)
-        msvcrt.locking(handle, msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
-    else:
-        import fcntl
+            os.lseek(handle, _WINDOWS_LOCK_AT, os.SEEK_SET)
+            msvcrt.locking(handle, msvcrt.LK_LOCK if wait else msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
 
-        fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+            fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+    except OSError as error:
+        if error.errno in _NO_LOCKS:
+            return False
+        raise
+    return True
+
+
+def warn_without_locks(folder: Path, warn: Callable[[str], None]) -> None:
+    """Say what is not protected, if the file system of a gradebook has no locks."""
+    has_locks = True
+    with suppress(OSError), TemporaryFile(dir=folder) as file:  # which no other program locks
+        has_locks = lock(file.fileno(), wait=False)
+    if not has_locks:
+        warn(
+            f"{printable_path(folder)} is on a file system without locks: nothing prevents that "
+            "two programs write marks or grades at the same time, so use one at a time"
+        )
 
 
 @contextmanager
 def batch_lock(folder: Path) -> Iterator[None]:
     """Hold the lock of a run over a class; raise InputError while another run holds it.
 
-    It ends with the process.
+    It ends with the process. Where the file system has no locks, nothing is held.
     """
     try:
         file = os.fdopen(os.open(folder / _LOCK, os.O_RDWR | os.O_CREAT, 0o600), "r+b")

@@ -19,6 +19,7 @@ from grader.base.text import counted, printable_path
 from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.gradebook.grades_file import write_grades
 from grader.classroom.gradebook.review_items import STATES, ReviewFilter
+from grader.classroom.marks.gradebook_folder import warn_without_locks
 from grader.classroom.marks.marks import is_open_in_libreoffice
 from grader.classroom.review import review_pages as pages
 from grader.classroom.review.opened_item import open_item
@@ -206,6 +207,7 @@ def review_in_browser(
     """
     if not session.places:
         return "nothing needs manual grading\n"
+    warn_without_locks(session.folder, terminal.warn)
     page = ReviewPage(session)
     with LocalServer(page, port) as server:
         if is_open_in_libreoffice(session.file):
