@@ -40,7 +40,7 @@ def limited_work(limit: int = sys.maxsize, of: Collection[str] = ()) -> Iterator
                 raise TooMuchWork(f"more than {limit} calls were made")
 
     before = sys.getprofile()
-    with _hang_limit():
+    with hang_limit():
         sys.setprofile(count)
         try:
             yield work
@@ -67,7 +67,7 @@ def counted_work() -> Iterator[Steps]:
         return count
 
     before = sys.gettrace()
-    with _hang_limit():
+    with hang_limit():
         sys.settrace(count)
         try:
             yield counted
@@ -76,16 +76,17 @@ def counted_work() -> Iterator[Steps]:
 
 
 @contextmanager
-def _hang_limit() -> Iterator[None]:
+def hang_limit(seconds: float = _HANG_SECONDS) -> Iterator[None]:
+    """End a block that takes more processor time, and fail."""
     if not hasattr(signal, "setitimer") or current_thread() is not main_thread():
         yield
         return
 
     def stop(_number: int, _frame: FrameType | None) -> None:
-        raise TooMuchWork(f"it hangs: more than {_HANG_SECONDS} s of processor time")
+        raise TooMuchWork(f"it hangs: more than {seconds:g} s of processor time")
 
     before = signal.signal(signal.SIGVTALRM, stop)
-    signal.setitimer(signal.ITIMER_VIRTUAL, _HANG_SECONDS)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
     try:
         yield
     finally:

@@ -554,7 +554,7 @@ def loose_robots(n: int) -> Files:
 # ----------------------------------------------------------------------
 
 
-def _compiled(text: str, more: str = "", count: int = 1) -> Files:
+def compiled(text: str, more: str = "", count: int = 1) -> Files:
     """Return the files of a package that CMake builds, with this text of one program."""
     targets = "".join(f"add_executable(p{i} src/p.cpp)\n" for i in range(count))
     head = "#include <rclcpp/rclcpp.hpp>\n"
@@ -562,7 +562,8 @@ def _compiled(text: str, more: str = "", count: int = 1) -> Files:
     return {**cmake(f"{targets}{more}"), "src/p.cpp": f"{head}{text}{main}"}
 
 
-def _node(body: str, members: str = "") -> str:
+def compiled_node(body: str, members: str = "") -> str:
+    """Return the text of a node in C++ that does this when it is made."""
     return (
         f'class N : public rclcpp::Node {{ public: N() : Node("n") {{\n{body}\n}} {members} }};\n'
     )
@@ -571,14 +572,16 @@ def _node(body: str, members: str = "") -> str:
 @_bomb
 def cpp_variables_of_variables(n: int) -> Files:
     names = lines(n, lambda i: f'const std::string a{i + 1} = a{i} + "a";')
-    return _compiled(f'const std::string a0 = "a";\n{names}\n{_node(f"create_client<A>(a{n});")}')
+    return compiled(
+        f'const std::string a0 = "a";\n{names}\n{compiled_node(f"create_client<A>(a{n});")}'
+    )
 
 
 @_bomb
 def cpp_constants_that_double(n: int) -> Files:
     names = lines(n, lambda i: f"const std::string a{i + 1} = a{i} + a{i};")
-    return _compiled(
-        f'const std::string a0 = "a";\n{names}\n{_node(f"create_client<A>(a{n}); create_client<A>(a20);")}'
+    return compiled(
+        f'const std::string a0 = "a";\n{names}\n{compiled_node(f"create_client<A>(a{n}); create_client<A>(a20);")}'
     )
 
 
@@ -588,96 +591,96 @@ def cpp_variables_of_each_other(n: int) -> Files:
         n,
         lambda i: f"std::string a{i}; a{i} = a{i - 1} + a{i - 2}; a{i} = a{i + 1};",
     )
-    return _compiled(_node(f"{body}\ncreate_client<A>(a{n - 1});"))
+    return compiled(compiled_node(f"{body}\ncreate_client<A>(a{n - 1});"))
 
 
 @_bomb
 def cpp_uses_of_one_variable(n: int) -> Files:
     uses = lines(n, lambda i: f"declare_parameter(name, {i});")
-    return _compiled(_node(f'std::string name = "a";\n{uses}'))
+    return compiled(compiled_node(f'std::string name = "a";\n{uses}'))
 
 
 @_bomb
 def cpp_declarations_of_one_variable(n: int) -> Files:
     body = lines(n, lambda i: f'{{ std::string name = "a"; declare_parameter(name, {i}); }}')
-    return _compiled(_node(body))
+    return compiled(compiled_node(body))
 
 
 @_bomb
 def cpp_uses_of_one_member(n: int) -> Files:
     uses = lines(n, lambda i: f"declare_parameter(name_, {i});")
-    return _compiled(_node(uses, 'std::string name_ = "a";'))
+    return compiled(compiled_node(uses, 'std::string name_ = "a";'))
 
 
 @_bomb
 def cpp_classes_of_classes(n: int) -> Files:
     classes = lines(n, lambda i: f"class A{i + 1} : public A{i} {{}};")
-    return _compiled(f"class A0 : public rclcpp::Node {{}};\n{classes}\n{_node('')}")
+    return compiled(f"class A0 : public rclcpp::Node {{}};\n{classes}\n{compiled_node('')}")
 
 
 @_bomb
 def cpp_names_of_names(n: int) -> Files:
     names = lines(n, lambda i: f"using A{i + 1} = A{i};")
-    return _compiled(f"using A0 = rclcpp::Node;\n{names}\nclass N : public A{n} {{}};\n")
+    return compiled(f"using A0 = rclcpp::Node;\n{names}\nclass N : public A{n} {{}};\n")
 
 
 @_bomb
 def cpp_namespaces(n: int) -> Files:
     opened = lines(n, lambda i: f"using namespace a{i};")
     body = lines(n, lambda i: f'create_publisher<B{i}>("b", 1);')
-    return _compiled(f"{opened}\n{_node(body)}")
+    return compiled(f"{opened}\n{compiled_node(body)}")
 
 
 @_bomb
 def cpp_nested_namespaces(n: int) -> Files:
     opened, closed = lines(n, lambda i: f"namespace a{i} {{"), "}" * n
-    return _compiled(f"{opened}\nconst auto b = c;\n{closed}\n{_node('')}")
+    return compiled(f"{opened}\nconst auto b = c;\n{closed}\n{compiled_node('')}")
 
 
 @_bomb
 def cpp_headers(n: int) -> Files:
     headers = {f"src/h{i}.hpp": f'#include "h{i + 1}.hpp"\n' for i in range(n)}
-    return {**_compiled(f'#include "h0.hpp"\n{_node("")}'), **headers}
+    return {**compiled(f'#include "h0.hpp"\n{compiled_node("")}'), **headers}
 
 
 @_bomb
 def cpp_headers_of_each_other(n: int) -> Files:
     names = lines(20, lambda i: f'#include "h{i}.hpp"')
     headers = {f"src/h{i}.hpp": f"{names}\n{'int a;' * (n // 20)}\n" for i in range(20)}
-    return {**_compiled(f"{names}\n{_node('')}"), **headers}
+    return {**compiled(f"{names}\n{compiled_node('')}"), **headers}
 
 
 @_bomb
 def cpp_targets_of_one_file(n: int) -> Files:
     body = lines(n, lambda i: f'declare_parameter("p{i}", {i});')
-    return _compiled(_node(body), count=max(1, n // 10))
+    return compiled(compiled_node(body), count=max(1, n // 10))
 
 
 @_bomb
 def cpp_macros(n: int) -> Files:
     macros = lines(n, lambda i: f"#define A{i + 1} A{i}")
-    return _compiled(f'#define A0 "a"\n{macros}\n{_node(f"declare_parameter(A{n}, 1);")}')
+    return compiled(f'#define A0 "a"\n{macros}\n{compiled_node(f"declare_parameter(A{n}, 1);")}')
 
 
 @_bomb
 def cpp_texts_side_by_side(n: int) -> Files:
     texts = lines(n, lambda _: '"a"', " ")
-    return _compiled(_node(f"declare_parameter({texts}, 1);"))
+    return compiled(compiled_node(f"declare_parameter({texts}, 1);"))
 
 
 @_bomb
 def cpp_calls_in_calls(n: int) -> Files:
-    return _compiled(_node(f"{'f(' * n}1{')' * n};"))
+    return compiled(compiled_node(f"{'f(' * n}1{')' * n};"))
 
 
 @_bomb
 def cpp_objects_that_are_given(n: int) -> Files:
     made = lines(n, lambda i: f"auto n{i} = std::make_shared<N>(); f{i}(n{i});")
-    program = f"{_node('')}int main() {{ {made} }}\n"
-    return {**_compiled(""), "src/p.cpp": program}
+    program = f"{compiled_node('')}int main() {{ {made} }}\n"
+    return {**compiled(""), "src/p.cpp": program}
 
 
 @_bomb
 def cpp_frames(n: int) -> Files:
     body = lines(n, lambda i: f't.child_frame_id = "b{i}"; b.sendTransform(t);')
-    return _compiled(_node(f"geometry_msgs::msg::TransformStamped t;\n{body}"))
+    return compiled(compiled_node(f"geometry_msgs::msg::TransformStamped t;\n{body}"))

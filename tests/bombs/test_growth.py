@@ -15,8 +15,9 @@ from grader.ros.python import budget
 from grader.ros.workspace.opening import open_workspace
 from tests.bombs.files import Files, package
 from tests.bombs.generators import BOMBS
+from tests.bombs.long_texts import LONG_TEXTS
 from tests.examples import spread
-from tests.work import counted_work
+from tests.work import counted_work, hang_limit
 
 pytestmark = pytest.mark.slow
 
@@ -67,3 +68,12 @@ def test_work_grows_as_the_input(
         work[size] = counted.steps
     one, two = (work[size] - work["empty"] for size in ("one", "two"))
     assert log2(max(two, 1) / max(one, work["empty"])) < _MOST
+
+
+@pytest.mark.parametrize("read", [_inspect, _grade])
+@pytest.mark.parametrize("name", LONG_TEXTS)
+def test_a_long_text_hangs_nothing(name: str, read: Callable[[str], None], tmp_path: Path) -> None:
+    """A text that takes some 0.3 s is not what hangs: each took 4 s and more, most of them minutes."""
+    folder = _written(tmp_path, LONG_TEXTS[name])
+    with hang_limit(4.0):
+        read(folder)
