@@ -151,7 +151,7 @@ WEIGHTS = {
     "lab.authoring": 38_000,  # functions of complexity at most 10
     "lab.checks": 44_200,  # functions of complexity at most 10
     "lab.documents": 10_900,
-    "lab.grading": 12_800,  # functions of complexity at most 10
+    "lab.grading": 13_000,  # what hides the base
     "lab.hints": 36_000,  # functions of complexity at most 10
     "lab.rubric": 10_000,
     "lab.submission": 9_600,  # the release that reads a URDF, slips that are proven by reading it again
@@ -169,7 +169,7 @@ WEIGHTS = {
     "ros.package": 26_950,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
     "ros.python": 28_950,  # the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
-    "ros.urdf": 49_650,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
+    "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
     "ros.workspace": 108_550,  # spawners that nothing serves, xacro that nothing expands, pipelines of MoveIt; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches
     "ros.xacro": 28_600,  # xacro:attribute, letters outside of ASCII; functions that do one thing
     "ros.xml": 13_400,  # the attributes of broken tags, end tags of macros, the attributes of newer versions of URDF

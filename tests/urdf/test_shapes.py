@@ -223,3 +223,40 @@ def test_the_size_of_a_mesh_is_unknown(ask: Callable[[], Any]) -> None:
     ) as caught:
         ask()
     assert caught.value.geometry is MESH
+
+
+@given(shapes, poses, shapes, poses)
+def test_no_point_of_a_shape_is_outside_of_one_around_it(
+    outer: Shape, T_w_outer: Transform, inner: Shape, T_w_inner: Transform
+) -> None:
+    """What is around a shape reaches as far as it in every direction."""
+    around, inside = PlacedShape(outer, T_w_outer), PlacedShape(inner, T_w_inner)
+    if around.is_around(inside):
+        for direction in (unit(point) for point in surface(inner)):
+            if direction is not None:
+                low, high = inside.extent(direction)
+                most_low, most_high = around.extent(direction)
+                assert most_low - 1e-6 <= low and high <= most_high + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("outer", "is_around"),
+    [
+        (Box((0.2, 0.2, 0.2)), True),
+        (Box((0.2, 0.2, 0.09)), False),
+        (Cylinder(0.08, 0.1), True),
+        (Cylinder(0.07, 0.1), False),
+        (Cylinder(0.08, 0.09), False),
+        (Capsule(0.08, 0.1), True),
+        (Capsule(0.08, 0.01), False),
+        (Sphere(0.09), True),
+        (Sphere(0.08), False),
+        (MESH, False),
+    ],
+)
+def test_what_is_around_a_box(outer: Geometry, *, is_around: bool) -> None:
+    """A cube with edges of 0.1 m reaches 0.0707 m from its axis, and 0.0866 m from its middle."""
+    cube = Box((0.1, 0.1, 0.1))
+    assert PlacedShape(outer, LYING).is_around(PlacedShape(cube, LYING)) == is_around
+    assert not PlacedShape(outer, IDENTITY).is_around(PlacedShape(cube, LYING))
+    assert not PlacedShape(outer, LYING).is_around(PlacedShape(MESH, LYING))

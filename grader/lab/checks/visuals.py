@@ -32,6 +32,22 @@ def visible(robot: Configuration, link: str) -> list[Visual]:
     ]
 
 
+def hiding_link(robot: Configuration, link: str) -> str:
+    """Return a link one opaque visual of which is around all that another link shows.
+
+    Empty if there is none, or nothing to hide. Raises MissingElement where a pose is not defined.
+    """
+    hidden = [placed(robot, link, visual, link) for visual in visible(robot, link)]
+    for other in robot.robot.links if hidden else ():
+        for visual in other.visuals if other.name != link else ():
+            is_opaque = visual.material is None or visual.material.rgba[3] >= 1.0
+            if is_opaque and not visual.geometry.is_empty:
+                shape = placed(robot, other.name, visual, link)
+                if all(map(shape.is_around, hidden)):
+                    return other.name
+    return ""
+
+
 def main_visual(robot: Configuration, link: str, shape: ShapeName = "any") -> Visual:
     """Return the visual that counts for a link.
 

@@ -11,10 +11,10 @@ from decimal import Decimal
 from itertools import chain
 from typing import TYPE_CHECKING
 
-from grader.base.errors import InputError
+from grader.base.errors import InputError, MissingElement, NotDecided
 from grader.base.problems import Problem, in_order
 from grader.base.slips import Slip
-from grader.base.text import counted_points, enumerated
+from grader.base.text import counted_points, enumerated, quoted
 from grader.lab.checks.manual import MANUAL_CHECKS, evidence_shown
 from grader.lab.grading.deciding import another_robot, decide
 from grader.lab.grading.report import EvidenceResult, Meant, Report, Result, without_gifts
@@ -36,6 +36,7 @@ _NOT_EXPANDED = (
 )
 _MAX_PICTURES = 50
 _MAX_UNREAD = 4
+_OF_COLOUR_OR_SHAPE = {"shows_box", "shows_cylinder", "shows_sphere", "shows_colour", "shows_grey"}
 _MIN_OF_CONVENTION = 2  # criteria that a convention decides
 _NO_HINTS = "no hints were searched, because reading this robot takes too much work"
 _ELSEWHERE = "the graded URDF is outside the graded package"
@@ -73,6 +74,7 @@ def grade(
     problems = _find_problems(rubric, submission, chosen, meant)
     evidence, other_pictures = _find_evidence(rubric, submission, chosen if is_whole else ())
     notes.append(_note_on_unread(submission, evidence))
+    notes.append(_note_on_hidden_base(rubric, submission))
     by_convention: frozenset[str] = frozenset()
     if is_explained:
         robot_owner = submission if meant is None else meant.submission
@@ -244,6 +246,27 @@ def _note_on_unread(submission: Submission, evidence: Sequence[EvidenceResult]) 
     if unread:
         return f"not searched for evidence: {enumerated(list(map(str, unread)), _MAX_UNREAD)}"
     return ""
+
+
+def _note_on_hidden_base(rubric: Rubric, submission: Submission) -> str:
+    """Return a note on a link that hides all that the base shows; empty without one.
+
+    The points stay: a part may be there to protect another one.
+    """
+    is_asked = any(
+        row.check.name in _OF_COLOUR_OR_SHAPE and row.arguments["link"] == rubric.base
+        for row in rubric.criteria
+    )
+    if submission.robot is None or not is_asked:
+        return ""
+    from grader.lab.checks.visuals import hiding_link  # late: it is loaded with the criteria
+
+    hiding = ""
+    with suppress(MissingElement, NotDecided):
+        hiding = hiding_link(Configuration(submission.robot), rubric.base)
+    if not hiding:
+        return ""
+    return f"{quoted(hiding)} hides all that {quoted(rubric.base)} shows: look at the robot"
 
 
 def _explain_by_convention(

@@ -20,6 +20,7 @@ Shape = Box | Cylinder | Capsule | Sphere  # whose size is known, in metres
 
 # relative to its length; a direction that leans less from a face's normal means the whole face
 _TIE = 1e-9
+_TOUCH = 1e-9  # metres
 _MESH_ANGLE = 1.0  # degrees that two poses of a mesh may differ, whose points are not known
 # the signs of four corners of a box; the others are opposite to these
 _CORNERS = tuple(product((1.0,), (1.0, -1.0), (1.0, -1.0)))
@@ -172,6 +173,18 @@ class PlacedShape(NamedTuple):
         """
         return self.pose.apply(support(self.geometry, self.pose.unrotate(direction)))
 
+    def is_around(self, other: "PlacedShape") -> bool:
+        """Return whether another shape is inside of this one, as far as its bounding box tells.
+
+        False where one is a mesh.
+        """
+        if isinstance(self.geometry, Mesh) or isinstance(other.geometry, Mesh):
+            return False
+        x, y, z = (half_width(other.geometry, axis) for axis in AXES)
+        T_self_other = self.pose.inverse() @ other.pose
+        corners = product((-x, x), (-y, y), (-z, z))
+        return all(_contains(self.geometry, T_self_other.apply(corner)) for corner in corners)
+
     def mismatch(
         self, other: "PlacedShape", tolerance: float, *, turned: bool = True
     ) -> ShapeDifference | None:
@@ -194,6 +207,20 @@ class PlacedShape(NamedTuple):
             return (not difference.size <= tolerance) + (not difference.turn <= tolerance)
 
         return min(differences, key=count_beyond, default=None)
+
+
+def _contains(shape: Shape, at: Vector) -> bool:
+    """Return whether a shape contains a point (m) in its frame, or touches it."""
+    x, y, z = map(abs, at)
+    if isinstance(shape, Box):
+        a, b, c = (abs(edge) / 2.0 + _TOUCH for edge in shape.size)
+        return x <= a and y <= b and z <= c
+    if isinstance(shape, Sphere):
+        return hypot(x, y, z) <= abs(shape.radius) + _TOUCH
+    z -= abs(shape.length) / 2.0
+    if isinstance(shape, Capsule) and z > 0.0:
+        return hypot(x, y, z) <= abs(shape.radius) + _TOUCH
+    return hypot(x, y) <= abs(shape.radius) + _TOUCH and z <= _TOUCH
 
 
 def _differences_by_pose(
