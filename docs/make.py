@@ -76,6 +76,7 @@ LANGUAGES = {
     ".xml": "xml",
 }
 DOCS = Path(__file__).resolve().parent
+WORKSPACES = DOCS.parent / "tests/workspace/public_workspaces.toml"
 SAMPLE = DOCS.parent / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf"
 
 
@@ -86,6 +87,7 @@ def pages() -> dict[str, str]:
         "problems.md": filled("problems.md", problems()),
         "checks.md": filled("checks.md", checks()),
         "misconfigurations.md": filled("misconfigurations.md", misconfigurations()),
+        "rules.md": filled("rules.md", rules_in_public()),
         "known-parameters.md": filled("known-parameters.md", known_parameters()),
         "rubric-reference.md": filled("rubric-reference.md", keys()),
         "grade-one-submission.md": filled(
@@ -152,6 +154,30 @@ def checks() -> Iterator[str]:
                 yield f"- `{cause}`: {escaped(meaning)}"
             yield ""
         yield from example(check.name)
+
+
+def rules_in_public() -> Iterator[str]:
+    """Yield how many errors each rule found in public workspaces, and the workspaces."""
+    workspaces = tomllib.loads(WORKSPACES.read_text(encoding="utf-8"))["workspace"]
+    places: dict[tuple[str, str], Counter[bool]] = {}
+    for workspace in workspaces:
+        for error in workspace.get("error", ()):
+            counts = places.setdefault((error["code"], error.get("rule", "")), Counter())
+            counts[error["is_true"]] += len(error["places"])
+    yield from ("| rule | code | true | false |", "|---|---|---|---|")
+    for (code, rule), counts in sorted(places.items()):
+        name = f"[`{rule}`](problems.md#{rule})" if rule else "its only one"
+        link = f"[{code}](problems.md#{code.lower()})"
+        yield f"| {name} | {link} | {counts[True]} | {counts[False]} |"
+    of_errors = [rule.name for kind in EVERY_KIND for rule in rules_of(kind) if rule.kind == kind]
+    found = {rule for _, rule in places}
+    others = [f"`{name}`" for name in of_errors if name not in found]
+    yield from ("", f"These rules found none: {enumerated(others)}.", "")
+    yield from ("| workspace | commit | errors |", "|---|---|---|")
+    for workspace in workspaces:
+        name, commit = workspace["repository"], workspace["commit"]
+        count = sum(len(error["places"]) for error in workspace.get("error", ()))
+        yield f"| [{name}](https://github.com/{name}/tree/{commit}) | `{commit[:12]}` | {count} |"
 
 
 def known_parameters() -> Iterator[str]:
