@@ -29,6 +29,7 @@ class OutputRow(NamedTuple):
     within: tuple[str, ...] = ()  # the groups that must be in the lines of the finding
     processes: tuple[str, ...] = ()  # one of which must be started by a launch file
     place: OutputPlace = ""
+    is_place_last: bool = False  # whether it is asked after the rules
     key: str = ""  # of a parameter, with groups in braces: its parent is there, and it is not
     otherwise: str = ""  # what is said if no finding fits but the place has an answer
     follows: bool = False  # whether another message before it says the cause

@@ -108,11 +108,12 @@ def _answers_to(
         placed = placed_answers(opened, known)
     except NotDecided:
         placed = ()
-    for place in placed[:_MAX_OF_A_MESSAGE]:
-        yield LogAnswer(line, text, row.name, place.text, place.location)
-    if placed:
+    problems = _findings_for(opened, problems, known)
+    if placed and not (row.is_place_last and problems):
+        for place in placed[:_MAX_OF_A_MESSAGE]:
+            yield LogAnswer(line, text, row.name, place.text, place.location)
         return
-    for problem in _findings_for(opened, problems, known)[:_MAX_OF_A_MESSAGE]:
+    for problem in problems[:_MAX_OF_A_MESSAGE]:
         yield LogAnswer(line, text, row.name, problem.message, problem.location, problem.code)
 
 

@@ -8,7 +8,7 @@ from grader.base.source import Location
 from grader.ros.known.output_rows import OutputPlace, OutputRow
 from grader.ros.known.released import is_released
 from grader.ros.log.log_messages import LogMessage
-from grader.ros.package.package import MANIFEST, SETUP
+from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
 from grader.ros.workspace.graph.transform_edges import edges_in
 from grader.ros.workspace.opened import OpenedWorkspace
 
@@ -91,13 +91,25 @@ def _of_package(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_Place
         return
     distro = releases[0] if len(releases) == 1 else "DISTRO"
     apt = f"sudo apt install ros-{distro}-{name.replace('_', '-')}"
+    for package, place in _uses_of(opened, name):
+        text = f"the package {name!r} is not installed: {apt}"
+        if not package.depends_on(name):
+            text += f"; package.xml of {package.name!r} does not declare it"
+        yield _PlacedAnswer(place, text)
+        return
+
+
+def _uses_of(opened: OpenedWorkspace, name: str) -> Iterator[tuple[Package, Location]]:
+    """Yield the packages that start a node of a package, or whose builds look for it."""
     for package, node in opened.workspace.launches.nodes:
         if node.package == name:
-            text = f"the package {name!r} is not installed: {apt}"
-            if not package.depends_on(name):
-                text += f"; package.xml of {package.name!r} does not declare it"
-            yield _PlacedAnswer(node.location, text)
-            return
+            yield package, node.location
+    sought = re.compile(rf"(?i)\bfind_package[ \t]*+\([ \t]*+{re.escape(name)}(?![\w-])")
+    for package in opened.packages:
+        text = package.tree.read(CMAKE, _MAX_TEXT)
+        place = _line_with(sought, package.path(CMAKE), text) if text is not None else None
+        if place is not None:
+            yield package, place
 
 
 def _of_parameter(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_PlacedAnswer]:
