@@ -3,6 +3,10 @@
 from typing import Any
 
 import pytest
+import yaml
+from hypothesis import example
+from hypothesis import given as hypothesis_given
+from hypothesis import strategies as st
 
 from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters, controllers_of, parameters_of
@@ -98,6 +102,11 @@ FILE = "CONFIG / 'named.yaml'"
             ),
             {},
             {"a": "5"},
+        ),
+        (
+            NAMED.format("{'a': 'y', 'b': '0483', 'c': ['n', 'off'], 'd': 'yes', 'e': '017'}"),
+            {},
+            {"a": True, "b": 483.0, "c": [False, "off"], "d": "yes", "e": "017"},
         ),
         (NAMED.format("{'a': Command(['cat ', str(CONFIG / 'named.yaml')])}"), {}, {"a": "?"}),
         (
@@ -360,3 +369,18 @@ def test_a_tag_makes_a_string() -> None:
     """!!str counts in every release; what other tags make of a text depends on the release."""
     action = "Node(package='p', executable='e', parameters=[str(CONFIG / 'tags.yaml')])"
     assert values(given(action)) == {"a": "1", "b": "?", "c": "", "d": ["1", "x"]}
+
+
+@example("y")
+@example("1.5e3")
+@hypothesis_given(st.text("yYnNof01789.eExX+- ", min_size=1, max_size=6))
+def test_a_text_is_what_rcl_reads_in_the_file_of_launch_ros(text: str) -> None:
+    """launch_ros writes a dict with PyYAML, which adds quotes only where PyYAML reads no text."""
+    written = yaml.dump({"/**": {"ros__parameters": {"a": text}}}).encode()
+    files = {f"{SHARE}/written.yaml": written}
+    of_file = read(
+        HEAD.format(NAMED.format("str(CONFIG / 'written.yaml')")).encode(), "a.launch.py", files
+    )
+    of_dict = given(NAMED.format(f"{{'a': {text!r}}}"))
+    expected = parameters_of(of_file.nodes[-1], Installed(files).open_installed)
+    assert values(of_dict) == values(expected)

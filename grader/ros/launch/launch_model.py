@@ -171,6 +171,12 @@ class ParameterValue(NamedTuple):
     value: Any
     location: Location
     named_at: Location | None = None
+    text: str = ""  # of a dict, which rcl reads as the value
+
+    @property
+    def remark(self) -> str:
+        """What explains that it is no text; empty where nothing does."""
+        return f" (launch_ros writes {self.text!r} without quotes)" if self.text else ""
 
 
 class GivenParameters(NamedTuple):

@@ -53,6 +53,7 @@ _EVERY_NODE = "/**"
 TO_ALL = "global_params"
 _MAX_YAML = 200_000  # characters
 _MAX_DEPTH = 40
+_MAX_WORD = 40  # characters of a text that may be read as a number
 _HEAD = '<?xml version="1.0" ?>\n<!-- by xacro -->\n'  # of what xacro writes
 # xacro writes blanks in place of tabs, but for those in comments.
 _COMMENT_OR_TAB = re.compile(r"<!--.*?(?:-->|\Z)|\t", re.DOTALL)
@@ -366,10 +367,28 @@ def _parameter_values(
     """Return what a value in a table gives by the names of parameters, with its place."""
     if isinstance(value, Call) and location.line != value.at.line:
         location = location._replace(line=value.at.line, column=value.at.column)
-    return {
-        name: ParameterValue(_replace_stand_ins(given, at), location)
-        for name, given in evaluated.items()
-    }
+    values = {}
+    for name, given in evaluated.items():
+        written = _replace_stand_ins(given, at)
+        read = _as_file_has(written)
+        is_other = isinstance(written, str) and not isinstance(read, str)
+        values[name] = ParameterValue(read, location, text=written if is_other else "")
+    return values
+
+
+def _as_file_has(value: Any) -> Any:
+    """Return a value as rcl reads it in the file that launch_ros writes for the node.
+
+    PyYAML writes a text without quotes if it would read a text there, and rcl reads some of these
+    as other values: y, 0483, 1e5.
+    """
+    if isinstance(value, list):
+        return [_as_file_has(item) for item in value]
+    if not isinstance(value, str) or len(value) > _MAX_WORD:
+        return value
+    read = _scalar(value)
+    has_quotes = not isinstance(read, str) and not isinstance(yaml_value(value), str)
+    return value if has_quotes else read
 
 
 def _replace_stand_ins(value: Any, at: Position) -> Any:

@@ -373,8 +373,8 @@ class _NodeReader:
         if not declared or not actual or actual == declared:
             return None
         message = (
-            f"the parameter {self._given.shown(name)!r} is given {actual}; {self._given.said} "
-            f"declares {declared}, and stops"
+            f"the parameter {self._given.shown(name)!r} is given {actual}{given.remark}; "
+            f"{self._given.said} declares {declared}, and stops"
         )
         return self._certain(PARAMETER_TYPE, name, message, given.location)
 

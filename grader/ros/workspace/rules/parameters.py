@@ -547,7 +547,8 @@ def _other_type(
         return
     there = f" ({at.file_and_line})" if at is not None else ""
     message = (
-        f"the parameter {name!r} is given {actual}; {reader} declares {declared}{there}, and stops"
+        f"the parameter {name!r} is given {actual}{given.remark}; {reader} declares "
+        f"{declared}{there}, and stops"
     )
     word = name if given.named_at is None else ""
     yield Mismatch(PARAMETER_TYPE, message, given.location, at, is_certain, word=word)
