@@ -43,7 +43,10 @@ def is_launch_file(path: str) -> bool:
 LaunchKind = Literal["launch", "ROS 1", "other"]
 _IS_YAML_LAUNCH = re.compile(r"^[\"']?launch[\"']?\s*:", re.MULTILINE)
 # What launch files of ROS 1 have, and those of ROS 2 never.
-_ROS1 = re.compile(r"<node\b(?![^<>]*\bexec=)[^<>]*\btype=|\$\((?:find|arg|optenv) |<rosparam\b")
+_ROS1 = re.compile(r"<node\b(?![^<>]*\bexec=)[^<>]*\btype=|<rosparam\b")
+# What those of ROS 1 have, and some of ROS 2 by mistake, and what those of ROS 2 alone have.
+_SUBSTITUTION_OF_ROS1 = re.compile(r"\$\((?:find|arg|optenv) ")
+_ROS2 = re.compile(r"<(?:node|executable)\b[^<>]*\b(?:exec|cmd)=|\$\((?:find-pkg-share|var) ")
 
 
 def launch_kind(path: str, text: str) -> LaunchKind:
@@ -57,10 +60,16 @@ def launch_kind(path: str, text: str) -> LaunchKind:
     elif path.endswith((".yaml", ".yml")):
         is_launch = is_named or _IS_YAML_LAUNCH.search(text) is not None
     else:
-        if "<launch" in text and _ROS1.search(text):
+        if "<launch" in text and _is_of_ros1(text):
             return "ROS 1"
         is_launch = is_named or "<launch" in text
     return "launch" if is_launch else "other"
+
+
+def _is_of_ros1(text: str) -> bool:
+    if _ROS1.search(text):
+        return True
+    return _SUBSTITUTION_OF_ROS1.search(text) is not None and _ROS2.search(text) is None
 
 
 def is_launch_named(path: str, name: str) -> bool:

@@ -224,6 +224,7 @@ _ROS1 = (
     "for $(find ...),"
     " $(var ...) for $(arg ...), and <param> inside of <node>"
 )
+_SUBSTITUTIONS_OF_ROS1 = {"arg": "var", "find": "find-pkg-share", "optenv": "env"}
 _RENAMED = {"node-name": ": write name"}
 _RAW = ("shell", "emulate_tty", "scoped", "autostart")
 _NAMED = ("name", "namespace")  # attributes that the class LifecycleNode needs
@@ -857,7 +858,7 @@ class _ValueParser:
         """Raise for a substitution that is not evaluated, or that does not exist."""
         if name in front_end("substitution"):
             raise Undetermined(f"the substitution $({name} ...) is not evaluated", self.at)
-        similar = closest(name, _SUBSTITUTIONS)
+        similar = _SUBSTITUTIONS_OF_ROS1.get(name) or closest(name, _SUBSTITUTIONS)
         hint = f"; did you mean $({similar} ...)?" if similar else ""
         raise EvaluationFails(f"there is no substitution $({name} ...){hint}", self.at)
 
