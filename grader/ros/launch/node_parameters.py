@@ -396,6 +396,8 @@ def _replace_stand_ins(value: Any, at: Position) -> Any:
     is_plain = isinstance(value, (*SCALARS, list)) and PART_UNKNOWN not in str(value)
     if is_plain or isinstance(value, Unknown):
         return value
+    if isinstance(value, Contents):
+        return FileText("the contents of a file are not evaluated", at, value)
     return Unknown("the contents of a file are not evaluated", at)
 
 

@@ -66,11 +66,14 @@ def bridge_facts(workspace: Workspace) -> Iterator[Fact]:
 
 
 def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
-    """Yield the files that bridges get and that cannot be parsed."""
+    """Yield the files that bridges get and that cannot be parsed, or are no lists."""
     for path in bridge_files(workspace):
-        fault = workspace.installed.yaml.get(path)
-        if isinstance(fault, YamlFault):
-            yield Mismatch(BRIDGE_FILE, f"this is not YAML: {fault}", fault.location)
+        tree = workspace.installed.yaml.get(path)
+        if isinstance(tree, YamlFault):
+            yield Mismatch(BRIDGE_FILE, f"this is not YAML: {tree}", tree.location)
+        elif tree is not None and isinstance(tree.value, dict):
+            message = "the file of a bridge is a list (a YAML sequence): begin each row with `- `"
+            yield Mismatch(BRIDGE_FILE, message, tree.location)
 
 
 class _GazeboTopics(NamedTuple):

@@ -10,7 +10,8 @@ from itertools import chain
 from typing import NamedTuple
 
 from grader.base.names import near
-from grader.base.source import Location
+from grader.base.source import Location, Source
+from grader.base.text import MAX_NAMED, enumerated, quoted
 from grader.files.reading import URDF_LIMIT
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, first_alias
 from grader.ros.config.yaml_values import (
@@ -52,13 +53,18 @@ from grader.ros.workspace.rules.rule_table import (
     PARAMETER_TYPE,
     PLUGIN_NAME,
     ROBOT_EXPANDED,
+    ROBOT_LINKS,
     ROBOT_TEXT,
 )
+from grader.ros.xml.parsing import XmlFault, XmlFile
 
 _OF_OPENCV = b"%YAML:"  # its FileStorage reads another YAML
 _OF_EVERY_NODE = ("use_sim_time", "start_type_description_service")
 _INPUT = re.compile(r"(odom|imu|pose|twist)\d+_config")  # of robot_localization
 _ROBOT = "robot_description"
+_XACRO = "{http://www.ros.org/wiki/xacro}"
+_MACRO = f"{_XACRO}macro"
+_WITHOUT_LINKS = {_MACRO, f"{_XACRO}property", f"{_XACRO}arg", "material"}
 _WILDCARD = re.compile(r"[*?\[]")
 _SEPARATORS = re.compile(r"[:/]+")
 # Keys of lists whose entries name sections beside them, in the files of Nav2, MoveIt and others.
@@ -575,6 +581,7 @@ def _robot_as_text(workspace: Workspace, package: Package, node: StartedNode) ->
     robot = workspace.parameters.given_to(package, node).values.get(_ROBOT)
     if robot is not None and isinstance(robot.value, FileText):
         yield from _xacro_as_text(workspace, node, robot)
+        yield from _only_macros(workspace, node, robot)
     if robot is not None and isinstance(robot.value, str):
         text = robot.value.strip()
         if text and not text.startswith("<"):
@@ -603,6 +610,28 @@ def _xacro_as_text(
         "expand it: give it Command(['xacro ', path])"
     )
     yield Mismatch(ROBOT_EXPANDED, message, robot.location, Location(path, 1, 1))
+
+
+def _only_macros(workspace: Workspace, node: StartedNode, robot: ParameterValue) -> Iterator[Fact]:
+    """Yield that a program gets a robot from a file that defines macros and calls none."""
+    assert isinstance(robot.value, FileText)
+    path = workspace.installed.source_of(robot.value.contents.path)
+    data = workspace.tree.read(path, URDF_LIMIT) if path is not None else None
+    if path is None or data is None or b"macro" not in data:
+        return
+    try:
+        elements = [*XmlFile(data, Source(path, data.decode("utf-8", "replace"))).root]
+    except XmlFault:  # a problem of the file
+        return
+    tags = {element.tag for element in elements if isinstance(element.tag, str)}
+    macros = [element.get("name") or "" for element in elements if element.tag == _MACRO]
+    if macros and tags <= _WITHOUT_LINKS:
+        named = enumerated([quoted(name) for name in macros], MAX_NAMED)
+        message = (
+            f"{path.rpartition('/')[2]} only defines {named} and calls no macro, so the robot has "
+            f"no link and {node.executable} stops: call the macro in the file"
+        )
+        yield Mismatch(ROBOT_LINKS, message, robot.location, Location(path, 1, 1))
 
 
 def _robot_as_argument(workspace: Workspace, package: Package, node: StartedNode) -> Iterator[Fact]:

@@ -239,6 +239,9 @@ ROBOT_TEXT = _parameter("robot-text", sentence="robot_description is the text of
 ROBOT_EXPANDED = _parameter(
     "robot-expanded", sentence="The text of a robot is what xacro makes of its file."
 )
+ROBOT_LINKS = _parameter(
+    "robot-links", sentence="The file of a robot that a launch file starts has links."
+)
 CREATED_FROM = _parameter(
     "created-from", sentence="The program that creates a robot in Gazebo gets its source."
 )
@@ -313,7 +316,7 @@ TOPIC_SUBSCRIBED = _topic(
     "topic-subscribed",
     sentence="The topic that a node publishes is the one that a controller waits for.",
 )
-BRIDGE_FILE = _topic("bridge-file", sentence="A file of bridge rows is YAML.")
+BRIDGE_FILE = _topic("bridge-file", sentence="A file of bridge rows is a list in YAML.")
 BRIDGE_ROW = _topic("bridge-row", sentence="A row of a bridge has the keys that the bridge needs.")
 BRIDGE_ARGUMENT = _topic(
     "bridge-argument", sentence="An argument of a bridge names a topic with its types."
