@@ -166,11 +166,11 @@ WEIGHTS = {
     "ros.log": 3_900,
     "ros.mesh": 4_300,
     "ros.nodes": 47_700,  # calls are bound as Python binds them
-    "ros.package": 26_950,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
+    "ros.package": 27_350,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
     "ros.python": 28_950,  # the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
-    "ros.workspace": 108_550,  # spawners that nothing serves, xacro that nothing expands, pipelines of MoveIt; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches
+    "ros.workspace": 109_200,  # spawners that nothing serves, xacro that nothing expands, pipelines of MoveIt; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches
     "ros.xacro": 28_600,  # xacro:attribute, letters outside of ASCII; functions that do one thing
     "ros.xml": 13_400,  # the attributes of broken tags, end tags of macros, the attributes of newer versions of URDF
     "": 400,

@@ -70,6 +70,7 @@ ALSO = {
     "URDF095": "URDF009",
     "URDF099": "URDF031",
 }
+_OF_WORKSPACE = ("PKG018", "PKG022", "PKG024")  # at the beginning of a file
 FOLDERS = {
     ".launch": "launch",
     ".launch.py": "launch",
@@ -212,7 +213,7 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
                 for package in read_packages(submission.tree, "")
                 for it in build_problems(package)
             ]
-        if code in ("PKG018", "PKG022"):
+        if code in _OF_WORKSPACE:
             found = listed_problems(submission.workspace)
         if code.startswith("IGN"):
             path, text = next(iter(files.items()))
@@ -221,7 +222,7 @@ def test_a_wrong_file_has_the_problem_and_a_right_one_has_none(code: str, tmp_pa
         if side == "right":
             assert found == []
         else:
-            lines = range(1, 2) if code in ("PKG018", "PKG022") else lines  # of the whole file
+            lines = range(1, 2) if code in _OF_WORKSPACE else lines  # of the whole file
             assert any(it.code == code and it.location.line in lines for it in found), (
                 found,
                 lines,

@@ -6,6 +6,7 @@ Nothing is run.
 from fnmatch import fnmatch
 
 from grader.base.errors import MissingElement
+from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.lab.checks.check import About
 from grader.lab.checks.installed_files import (
@@ -147,4 +148,7 @@ def setup_imports(package: Package, *, where_there: bool = False) -> Outcome:
         where_there: Whether what is to be installed and does not exist is no error, for `carried`.
     """
     setup = package.needed_installation()
+    if package.copies:
+        place = Location(f"{package.copies[0]}/{MANIFEST}", 1, 1)
+        return failed(package.copies_text, place, problem=package.copies_text)
     return build_error(package, where_there=where_there) or passed(f"{setup.file} builds")

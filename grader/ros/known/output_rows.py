@@ -9,7 +9,7 @@ from grader.ros.known.typed_rows import read_file
 
 # Where the files say why, besides the findings of rules.
 OutputPlace = Literal[
-    "", "package", "parameter", "traceback", "module", "copies", "spaced path", "frame", "programs"
+    "", "package", "parameter", "traceback", "module", "spaced path", "frame", "programs"
 ]
 
 

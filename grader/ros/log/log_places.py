@@ -19,7 +19,6 @@ _FRAME = re.compile(
 _INSTALLED = re.compile(r"/(?:install|build)/(?P<package>[\w-]{1,100})/(?P<path>\S[^\n]{0,400})")
 _MODULES = re.compile(r"(?:site|dist)-packages/")
 _PACKAGES = re.compile(r"^[ \t]*+packages[ \t]*+=", re.MULTILINE)
-_COPY = re.compile(r"(?<= - )(?P<path>[^\s:]{1,300})(?= |\Z)")
 _COMMAND = re.compile(r"\bCommand\(")
 _MAX_TEXT = 512 * 1024  # bytes of a file in which a line is searched
 
@@ -185,30 +184,6 @@ def _line_with(pattern: "re.Pattern[str]", path: str, data: bytes) -> Location |
     return Location(path, text.count("\n", 0, match.end()) + 1, 1)
 
 
-def _of_copies(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_PlacedAnswer]:
-    """Yield the folders of packages with one name that the log lists, if they are there."""
-    files = opened.whole_tree.files
-    folders = [folder.rstrip("/") for folder in _COPY.findall(known.message.text)]
-    manifests = [_manifest_below(files, folder) for folder in folders]
-    places = [path for path in manifests if path is not None]
-    if len(places) < 2:
-        return
-    for path in sorted(places, key=len, reverse=True)[:1]:
-        others = ", ".join(other.removesuffix(f"/{MANIFEST}") for other in places if other != path)
-        text = known.said(others=others)
-        yield _PlacedAnswer(Location(path, 1, 1), text)
-
-
-def _manifest_below(files: Mapping[str, object], folder: str) -> str | None:
-    """Return the package.xml of a folder, whose first parts may be above the workspace."""
-    parts = folder.split("/")
-    for start in range(len(parts)):
-        path = "/".join([*parts[start:], MANIFEST])
-        if path in files:
-            return path
-    return None
-
-
 def _of_spaced_path(opened: OpenedWorkspace, known: KnownMessage) -> Iterator[_PlacedAnswer]:
     """Yield where a launch file gives a command a path that has a space on this machine."""
     path = _source_path(opened, known.groups["path"])
@@ -246,6 +221,5 @@ _SEARCHES: Mapping[OutputPlace, _Search] = {
     "traceback": _of_traceback,
     "module": _of_module,
     "programs": _of_programs,
-    "copies": _of_copies,
     "spaced path": _of_spaced_path,
 }

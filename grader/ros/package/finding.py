@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import product
 
@@ -143,6 +144,8 @@ def read_packages(
             work=work,
         )
         packages.append(package)
+    copies = _copies([package for package in packages if not package.ignored_by])
+    packages = [replace(one, copies=copies.get(one.folder, ())) for one in packages]
     packages.sort(
         key=lambda candidate: (
             min(_name_distance(candidate, one) for one in wanted),
@@ -154,6 +157,27 @@ def read_packages(
     for package in packages:
         known.setdefault(package.name, package)
     return tuple(packages)
+
+
+def _copies(packages: Sequence[Package]) -> dict[str, tuple[str, ...]]:
+    """Return the folders of packages with one name that colcon finds below one folder src.
+
+    It refuses to build any of them. It does not search in the folders of packages, and what is
+    beside a folder src is another workspace.
+    """
+    by_place: dict[tuple[str, str], list[str]] = {}
+    folders = [package.folder for package in packages]
+    for package in packages:
+        above, src, _ = f"/{package.folder}".partition("/src/")
+        is_inner = any(package.folder.startswith(f"{other}/") for other in folders if other)
+        if src and not is_inner and package.manifest is not None:
+            by_place.setdefault((above, package.name), []).append(package.folder)
+    copies = dict[str, tuple[str, ...]]()
+    for alike in by_place.values():
+        if len(alike) > 1:
+            ordered = sorted(alike, key=lambda folder: (is_backup(folder), _depth(folder)))
+            copies |= dict.fromkeys(alike, tuple(reversed(ordered)))
+    return copies
 
 
 def package_around(packages: tuple[Package, ...], path: str | None) -> Package | None:

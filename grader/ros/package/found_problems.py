@@ -38,6 +38,9 @@ def package_problems(package: Package) -> tuple[Problem, ...]:
 def build_problems(package: Package, releases: Collection[Release] = ()) -> list[Problem]:
     """Return the problems of package.xml, and of setup.py or CMakeLists.txt, in some releases."""
     problems: list[Problem] = []
+    if package.copies:
+        place = Location(f"{package.copies[0]}/{MANIFEST}", 1, 1)
+        problems.append(Problem(kinds.PACKAGE_TWICE, package.copies_text, place))
     if package.manifest is not None:
         problems += sorted_problems(package.manifest.problems)
     if package.installation is not None:

@@ -77,6 +77,9 @@ class Package:
     wanted_packages: tuple[str, ...] = ()  # of several that were looked for, the names of all
     installed_besides: frozenset[str] = frozenset()  # packages that are on its machines
     ignored_by: str = ""  # the path of a file for which colcon ignores it
+    # The folders of packages with its name that colcon finds below one folder src, if there are
+    # several; first the one that seems to be kept of earlier work.
+    copies: tuple[str, ...] = ()
     # Folders of packages in it, each with a slash, whose files it has: a build copies them.
     inner: tuple[str, ...] = ()
     memory: Memory = field(default_factory=Memory)
@@ -134,6 +137,15 @@ class Package:
             if name in package.names:
                 return package
         return None
+
+    @property
+    def copies_text(self) -> str:
+        """What is wrong where a workspace has it more than once, at the first of `copies`."""
+        others = enumerated([folder or "." for folder in self.copies[1:]])
+        return (
+            f"{others} has the package {self.name!r} as well, so colcon builds nothing: remove one "
+            "of them, or put a file COLCON_IGNORE into its folder"
+        )
 
     def depends_on(self, name: str) -> bool:
         """Return whether its package.xml depends on a package of this name."""
