@@ -25,4 +25,6 @@ def test_copies(folders: list[str], others: list[str], copies: tuple[str, ...]) 
     """The one that seems to be kept of earlier work is first; each of the packages names all."""
     files = {f"{folder}/package.xml": _MANIFEST for folder in folders} | dict.fromkeys(others, b"")
     packages = read_packages(overlaid(make_tree("work", (), ()), files), "", most=9)
-    assert {package.folder: package.copies for package in packages} == dict.fromkeys(folders, copies)
+    assert {package.folder: package.copies for package in packages} == dict.fromkeys(
+        folders, copies
+    )

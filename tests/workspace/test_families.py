@@ -467,7 +467,7 @@ WRONG: list[tuple[Family, str, list[Edit]]] = [
     ),
     (
         "parameters",
-        "planner.plugin: there is no plugin 'nav2_navfn_planner/NavfnPlanner'; did you mean 'nav2_navfn_planner::NavfnPlanner'?",
+        "'nav2_behaviors::Spin' is a plugin from Jazzy on, and 'nav2_navfn_planner/NavfnPlanner' (cart_bringup/config/navigation.yaml:4) until Iron: no release has both",
         [
             (
                 "navigation.yaml",

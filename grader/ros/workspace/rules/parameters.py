@@ -16,6 +16,7 @@ from grader.files.reading import URDF_LIMIT
 from grader.ros.config.yaml_nodes import Visits, YamlFault, YamlNode, first_alias
 from grader.ros.config.yaml_values import (
     PARAMETERS,
+    YamlValue,
     is_misspelt_key,
     is_parameters,
     keys_of_sections,
@@ -723,17 +724,42 @@ def _plugin_names(tree: YamlNode, releases: Collection[Release]) -> Iterator[Fac
         return
     names = {_SEPARATORS.sub("::", name): name for name in plugin_classes()}
     possible = _releases_of_plugins([value.node.text or "" for value in values], releases)
+    if not releases:
+        yield from _plugins_of_two_releases(values)
     for value in values:
         text = value.node.text or ""
         meant = names.get(_SEPARATORS.sub("::", text))
         if meant is None or meant == text:
             continue
-        if not set(possible).isdisjoint(releases_with("plugin", text)):
+        having = releases_with("plugin", text)
+        if not set(possible).isdisjoint(having) or (having and not releases):
             yield Compared("parameters")  # of another release, at most
             continue
         message = f"{value.said}: there is no plugin {text!r}; did you mean {meant!r}?"
         at = value.node.location
         yield Mismatch(PLUGIN_NAME, message, at, corrections=corrections(text, at, meant))
+
+
+def _plugins_of_two_releases(values: Sequence[YamlValue]) -> Iterator[Mismatch]:
+    """Yield the plugin of the newest release in a file, beside one that this has no more."""
+    named = []
+    for value in values:
+        having = releases_with("plugin", value.node.text or "")
+        if having:
+            named.append((value, [RELEASES.index(release) for release in having]))
+    if not named:
+        return
+    newest, of_newest = max(named, key=lambda each: each[1][0])
+    oldest, of_oldest = min(named, key=lambda each: each[1][-1])
+    if of_oldest[-1] >= of_newest[0]:
+        return
+    there = oldest.node.location
+    message = (
+        f"{newest.node.text!r} is a plugin from {RELEASES[of_newest[0]].title()} on, and "
+        f"{oldest.node.text!r} ({there.file_and_line}) until {RELEASES[of_oldest[-1]].title()}: "
+        "no release has both"
+    )
+    yield Mismatch(PLUGIN_NAME, message, newest.node.location, there)
 
 
 def _releases_of_plugins(names: Sequence[str], releases: Collection[Release]) -> Sequence[Release]:
