@@ -2,6 +2,7 @@
 
 import pytest
 
+from grader.ros.workspace.rules.names import Counted
 from tests.workspace.carts import Edit, agreement_of, edited
 
 pytestmark = pytest.mark.slow
@@ -40,3 +41,8 @@ def test_topics_without_another_end_are_not_compared() -> None:
     found = agreement_of(edited(subscribed, _NOT_PUBLISHED, _NO_IMAGE))
     assert "topics" not in found.undecided
     assert found.counts["topics"].compared == 0
+
+
+def test_no_name_at_all_is_said_without_a_count() -> None:
+    """What is not read may have names."""
+    assert Counted("topics", 0, 0, "nothing is read").words == "no name compared: nothing is read"

@@ -136,6 +136,8 @@ class Counted(NamedTuple):
         """Return the count, where some names are not known; else an empty text."""
         if not self.reason:
             return ""
+        if not self.total:
+            return f"no name compared: {self.reason}"
         return f"{self.compared} of {counted(self.total, 'name')} compared: {self.reason}"
 
 
