@@ -23,6 +23,7 @@ from grader.report.writing import write_stdout
 COMMANDS = {
     "grade": "grade",
     "inspect": "inspect",
+    "graph": "graph",
     "view": "view",
     "lsp": "lsp",
     "batch": "batch",
@@ -37,7 +38,7 @@ COMMANDS = {
     "rubric": "rubric",
 }
 # The commands that read one submission or workspace, with their limit of processor time in seconds.
-_LIMITED = {"grade": 20, "inspect": 60}
+_LIMITED = {"grade": 20, "inspect": 60, "graph": 60}
 _COMPLETION = ("--show-completion", "--install-completion")
 
 

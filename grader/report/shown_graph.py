@@ -1,0 +1,124 @@
+"""The graph of a launch file as reports show it, with the findings at what they concern."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from grader.base.problems import Problem
+from grader.base.source import Location
+from grader.report.inspection import Inspection
+from grader.ros.api import (
+    Connection,
+    GraphEnd,
+    GraphNode,
+    LaunchGraph,
+    connections_in,
+    manual_ends,
+    unconnected_ends,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class ShownGraph:
+    """The graph of one launch file of a workspace, for the writers of its formats.
+
+    `launches` are the paths of all launch files, of which the first is the one shown by default.
+    """
+
+    graph: LaunchGraph
+    inspection: Inspection
+    launches: tuple[str, ...] = ()
+    node: str = ""  # the name of the only node that is asked for, with its neighbours
+
+    @cached_property
+    def connections(self) -> tuple[Connection, ...]:
+        """The connections; with `node`, those of it."""
+        connections = connections_in(self.graph)
+        if not self.node:
+            return connections
+        labels = [node.label for node in self.graph.nodes]
+        return tuple(
+            each
+            for each in connections
+            if self.node in (labels[each.from_node], labels[each.to_node])
+        )
+
+    @cached_property
+    def nodes(self) -> Sequence[tuple[int, GraphNode]]:
+        """The nodes that are shown, with their numbers: with `node`, it and its neighbours."""
+        numbered = [*enumerate(self.graph.nodes)]
+        if not self.node:
+            return numbered
+        shown = {number for each in self.connections for number in (each.from_node, each.to_node)}
+        return [pair for pair in numbered if pair[0] in shown or pair[1].label == self.node]
+
+    @cached_property
+    def unconnected(self) -> Sequence[tuple[int, GraphEnd]]:
+        """The ends that nothing of the launch is known to connect to, with their nodes."""
+        return unconnected_ends(self.graph, connections_in(self.graph))
+
+    @cached_property
+    def manual(self) -> Sequence[tuple[GraphEnd, list[str]]]:
+        """The ends that programs of another terminal are made for, each once, with these."""
+        first: dict[tuple[str, str], GraphEnd] = {}
+        for _, end in self.unconnected:
+            first.setdefault((end.kind, end.name), end)
+        return manual_ends([*first.values()])
+
+    @cached_property
+    def unknown_nodes(self) -> Sequence[GraphNode]:
+        """The nodes that may open more than their ends."""
+        return [node for node in self.graph.nodes if node.opens_more]
+
+    @cached_property
+    def _problems_by_line(self) -> dict[tuple[str, int], list[Problem]]:
+        """The problems by the lines that they name."""
+        by_line: dict[tuple[str, int], list[Problem]] = {}
+        for problem in self.inspection.problems:
+            places = [problem.location]
+            if problem.related is not None:
+                places.append(problem.related)
+            for place in places:
+                by_line.setdefault((place.path, place.line), []).append(problem)
+        return by_line
+
+    def findings_at(self, location: Location) -> Sequence[Problem]:
+        """Return the problems that name the line of an end."""
+        return self._problems_by_line.get((location.path, location.line), ())
+
+    def findings_of(self, node: GraphNode) -> Sequence[Problem]:
+        """Return the problems at a node that are at none of its ends."""
+        of_ends: set[Problem] = set()
+        for end in node.ends:
+            of_ends.update(self.findings_at(end.location))
+        listed = [
+            problem
+            for problem in self.inspection.problems
+            if problem.around is not None and problem.around == node.location
+        ]
+        listed += self.findings_at(node.location)
+        return [problem for problem in dict.fromkeys(listed) if problem not in of_ends]
+
+    def partners(self, number: int, end: GraphEnd) -> Sequence[tuple[GraphNode, Connection]]:
+        """Return the nodes at the other ends, each with the connection."""
+        return self._partners.get((number, end), ())
+
+    @cached_property
+    def _partners(self) -> Mapping[tuple[int, GraphEnd], list[tuple[GraphNode, Connection]]]:
+        """The nodes at the other ends of each end of a node."""
+        partners: dict[tuple[int, GraphEnd], list[tuple[GraphNode, Connection]]] = {}
+        nodes = self.graph.nodes
+        for each in self.connections:
+            offering, asking = (each.from_node, each.from_end), (each.to_node, each.to_end)
+            partners.setdefault(offering, []).append((nodes[each.to_node], each))
+            partners.setdefault(asking, []).append((nodes[each.from_node], each))
+        return partners
+
+
+def severity_of(problems: Sequence[Problem]) -> str:
+    """Return the worst severity of problems; empty without any, and for notes."""
+    severities = {problem.severity for problem in problems}
+    for severity in ("error", "warning"):
+        if severity in severities:
+            return severity
+    return ""
