@@ -36,7 +36,7 @@ class DiagramArrow(NamedTuple):
 class Diagram(NamedTuple):
     """What is drawn of a graph: nodes, names between them, and arrows.
 
-    What a program of another package serves and nothing asks for is left out.
+    What a program of another package publishes or serves and nothing asks for is left out.
     """
 
     nodes: tuple[tuple[int, GraphNode, str], ...]  # with their numbers and severities
@@ -76,7 +76,7 @@ def _is_drawn(shown: ShownGraph, number: int, node: GraphNode, end: GraphEnd) ->
     if shown.node and node.label != shown.node and not partners:
         return False
     is_of_program = end.location == node.location
-    return bool(partners) or end.carrier == "topic" or not is_of_program or not end.is_offered
+    return bool(partners) or not is_of_program or not end.is_offered
 
 
 def graph_mermaid(shown: ShownGraph) -> str:

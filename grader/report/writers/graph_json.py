@@ -6,7 +6,6 @@ from typing import Any, NamedTuple
 
 from grader.base.problems import Problem
 from grader.report.json_data import (
-
     PLACE,
     TEXT,
     JsonObject,

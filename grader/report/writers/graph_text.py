@@ -92,7 +92,10 @@ def _is_quiet(node: GraphNode, end: GraphEnd) -> bool:
 
 
 def _end_line(
-    shown: ShownGraph, node: GraphNode, end: GraphEnd, partners: Sequence[tuple[GraphNode, Connection]]
+    shown: ShownGraph,
+    node: GraphNode,
+    end: GraphEnd,
+    partners: Sequence[tuple[GraphNode, Connection]],
 ) -> Text:
     """Return an end with its type and quality, and what is at the other end."""
     line = Text(f"{_VERBS[end.kind]} ")

@@ -51,7 +51,7 @@ class OpenedEnds(NamedTuple):
     """
 
     source: str = ""
-    like: str = ""  # what else of the package opens the same
+    like: str = ""  # what else of the package opens this; it may read and serve more
     name: str = ""  # of the node where its launch file gives none
     publishers: Mapping[str, str] = {}
     subscriptions: Mapping[str, str] = {}
@@ -80,12 +80,27 @@ class OpenedEnds(NamedTuple):
                 yield kind, name, message
 
 
+class IncludedNode(NamedTuple):
+    """A node that an installed launch file starts under its default arguments."""
+
+    node: str  # package/program
+    name: str = ""  # that it is given
+    remappings: Mapping[str, str] = {}
+    since: Release = RELEASES[0]
+    until: Release = RELEASES[-1]
+
+    def is_in(self, release: Release) -> bool:
+        """Return whether a release starts it."""
+        number = RELEASES.index(release)
+        return RELEASES.index(self.since) <= number <= RELEASES.index(self.until)
+
+
 class _EndsOfPackage(NamedTuple):
     """The file of a package."""
 
     source: str = ""  # of programs that name none
     program: Mapping[str, OpenedEnds] = {}  # also classes of components and controllers
-    launch: Mapping[str, tuple[str, ...]] = {}  # the programs that a launch file starts
+    launch: Mapping[str, tuple[IncludedNode, ...]] = {}  # the nodes that a launch file starts
 
 
 @cache
@@ -109,17 +124,20 @@ def opened_ends(package: str, program: str) -> OpenedEnds | None:
     row = rows.get(program)
     if row is None or not row.like:
         return row
-    return rows[row.like]._replace(name=row.name, is_manual=row.is_manual)
+    other = rows[row.like]
+    return other._replace(
+        name=row.name,
+        services={**other.services, **row.services},
+        subscriptions={**other.subscriptions, **row.subscriptions},
+    )
 
 
-def programs_of_launch_file(package: str, file: str) -> tuple[str, ...]:
-    """Return the programs that an installed launch file starts, as `package/program`.
-
-    They are those under its default arguments; none where that is not known.
-    """
+def nodes_of_launch_file(package: str, file: str, release: Release) -> list[IncludedNode]:
+    """Return the nodes that an installed launch file starts; none where that is not known."""
     if package not in packages_with_ends():
-        return ()
-    return _ends_of_package(package).launch.get(file, ())
+        return []
+    nodes = _ends_of_package(package).launch.get(file, ())
+    return [node for node in nodes if node.is_in(release)]
 
 
 @cache

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.base.errors import NotDecided
 from grader.base.source import Location
-from grader.ros.known.end_rows import opened_ends, programs_of_launch_file
+from grader.ros.known.end_rows import opened_ends, nodes_of_launch_file
 from grader.ros.known.package_rows import controller_row, program_row
 from grader.ros.known.package_tables import display_types
 from grader.ros.known.parameter_rows import row_for
@@ -205,7 +205,7 @@ def _known_node(
     of_program = program_row(node.package, node.executable)
     name = node.node_name
     if name == "":
-        name = of_program.name or (row.name if row is not None else "")
+        name = (row.name if row is not None else "") or of_program.name
     named = node._replace(node_name=name)
     ends: list[GraphEnd] = []
     parameters: list[GivenValue] = []
@@ -365,20 +365,24 @@ def _controller(
     return GraphNode(name, kind, "controller", at, tuple(ends), doubt, opens_more, (), inside)
 
 
-def _included_programs(
-    making: _Making, processes: list[EndedProcess]
-) -> Iterator[GraphNode]:
+def _included_programs(making: _Making, processes: list[EndedProcess]) -> Iterator[GraphNode]:
     """Yield the nodes of included launch files of other packages, and add their processes."""
     for passed in making.launch.passed:
         package, _, file = passed.path.rpartition("share/")[2].partition("/launch/")
         if passed.when is False or making.package.find(package) is not None:
             continue
-        for program in programs_of_launch_file(package, file):
-            owner, _, executable = program.partition("/")
-            doubt = None if passed.when is None else True
-            node = StartedNode(owner, executable, doubt, passed.location)
+        for included in nodes_of_launch_file(package, file, making.release):
+            owner, _, executable = included.node.partition("/")
+            node = StartedNode(
+                owner,
+                executable,
+                None if passed.when is None else True,
+                passed.location,
+                remaps=tuple(included.remappings.items()),
+                node_name=included.name,
+            )
             if _is_process(node):
-                processes.append(EndedProcess(program, node.location, _doubt_of(node)))
+                processes.append(EndedProcess(included.node, node.location, _doubt_of(node)))
             else:
                 yield _known_node(making, node, "program")
 
