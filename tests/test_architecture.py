@@ -64,7 +64,7 @@ ROOMS = {
         "criteria readings",
         "content",
         "drawing examples inspection",
-        "findings",
+        "findings shown_graph",
         "mistakes",
         "writers",
         "pages",

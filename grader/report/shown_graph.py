@@ -82,21 +82,29 @@ class ShownGraph:
                 by_line.setdefault((place.path, place.line), []).append(problem)
         return by_line
 
-    def findings_at(self, location: Location) -> Sequence[Problem]:
-        """Return the problems that name the line of an end."""
+    def _at(self, location: Location) -> Sequence[Problem]:
         return self._problems_by_line.get((location.path, location.line), ())
 
-    def findings_of(self, node: GraphNode) -> Sequence[Problem]:
-        """Return the problems at a node that are at none of its ends."""
+    def findings_at(self, node: GraphNode, end: GraphEnd) -> Sequence[Problem]:
+        """Return the problems that name the line of an end, if it has one of its own."""
+        return self._at(end.location) if end.location != node.location else ()
+
+    def findings_of(self, number: int) -> Sequence[Problem]:
+        """Return the problems at a node that are at none of its ends.
+
+        Of several nodes of one line, such as that of an include, the first one has them.
+        """
+        node = self.graph.nodes[number]
+        if any(other.location == node.location for other in self.graph.nodes[:number]):
+            return ()
         of_ends: set[Problem] = set()
         for end in node.ends:
-            of_ends.update(self.findings_at(end.location))
-        listed = [
-            problem
-            for problem in self.inspection.problems
-            if problem.around is not None and problem.around == node.location
-        ]
-        listed += self.findings_at(node.location)
+            of_ends.update(self.findings_at(node, end))
+        listed: list[Problem] = []
+        for problem in self.inspection.problems:
+            if problem.around is not None and problem.around == node.location:
+                listed.append(problem)
+        listed += self._at(node.location)
         return [problem for problem in dict.fromkeys(listed) if problem not in of_ends]
 
     def partners(self, number: int, end: GraphEnd) -> Sequence[tuple[GraphNode, Connection]]:

@@ -70,9 +70,9 @@ if TYPE_CHECKING:
     from grader.ros.workspace.all_robots import read_workspace as read_workspace
     from grader.ros.workspace.extent import Extent as Extent
     from grader.ros.workspace.graph.launch_graph import CONNECTION_KINDS as CONNECTION_KINDS
+    from grader.ros.workspace.graph.launch_graph import GRAPH_NODE_KINDS as GRAPH_NODE_KINDS
     from grader.ros.workspace.graph.launch_graph import Connection as Connection
     from grader.ros.workspace.graph.launch_graph import EndedProcess as EndedProcess
-    from grader.ros.workspace.graph.launch_graph import GRAPH_NODE_KINDS as GRAPH_NODE_KINDS
     from grader.ros.workspace.graph.launch_graph import GivenValue as GivenValue
     from grader.ros.workspace.graph.launch_graph import GraphEnd as GraphEnd
     from grader.ros.workspace.graph.launch_graph import GraphNode as GraphNode
@@ -109,7 +109,9 @@ else:
         "urdf.wheel_travel": "travel_of turning_joint",
         "workspace.all_robots": "read_workspace",
         "workspace.extent": "Extent",
-        "workspace.graph.launch_graph": "CONNECTION_KINDS Connection EndedProcess GRAPH_NODE_KINDS GivenValue GraphEnd GraphNode GraphTransform LaunchGraph Unread connections_in unconnected_ends",
+        "workspace.graph.launch_graph": "CONNECTION_KINDS Connection EndedProcess "
+        "GRAPH_NODE_KINDS GivenValue GraphEnd GraphNode GraphTransform LaunchGraph Unread "
+        "connections_in unconnected_ends",
         "workspace.graph.manual_ends": "manual_ends",
         "workspace.name_places": "NamePlaces",
         "workspace.opened": "OpenedWorkspace",

@@ -52,8 +52,8 @@ def schema(
 ) -> str:
     """Print a JSON Schema of the grader's input or output.
 
-    These are reports, rubrics, inspections, graphs, classes (batch, stats, export json), diffs and rubric
-    tests.
+    These are reports, rubrics, inspections, graphs, classes (batch, stats, export json), diffs and
+    rubric tests.
 
     Examples:
 

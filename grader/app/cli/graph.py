@@ -32,9 +32,9 @@ def graph(
     save: SaveOption = None,
     max_size: MaxSizeOption = URDF_LIMIT,
 ) -> int:
-    """Show the computation graph of a launch file, before anything runs.
+    """Show the graph of a launch file, before anything runs.
 
-    These are the nodes that it starts, their topics, services and actions with types and what is at
+    It has the nodes that are started, their topics, services and actions with types and what is at
     the other end, and the transforms: what `ros2 node list`, `ros2 topic info` and `view_frames`
     show of a running system. Nothing is run. Findings of inspect stand at the ends that they
     concern. What depends on a run, such as a condition, is dashed. /rosout, /parameter_events, /tf
@@ -44,7 +44,9 @@ def graph(
 
       grader graph
 
-      grader graph my_workspace --launch bringup.launch.py --arg use_sim_time:=true
+      grader graph my_workspace --launch bringup.launch.py
+
+      grader graph my_workspace --arg use_sim_time:=true
 
       grader graph my_workspace --node /slam_toolbox
 

@@ -1,4 +1,4 @@
-"""A graph as Mermaid and as DOT, in which nodes are joined by their topics, services and actions."""
+"""A graph as Mermaid and as DOT: nodes joined by their topics, services and actions."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -50,12 +50,12 @@ def diagram_of(shown: ShownGraph) -> Diagram:
     arrows: list[DiagramArrow] = []
     nodes: list[tuple[int, GraphNode, str]] = []
     for number, node in shown.nodes:
-        nodes.append((number, node, severity_of(shown.findings_of(node))))
+        nodes.append((number, node, severity_of(shown.findings_of(number))))
         for end in node.ends:
             if not _is_drawn(shown, number, node, end):
                 continue
             key = (end.carrier, end.name)
-            severity = severity_of(shown.findings_at(end.location))
+            severity = severity_of(shown.findings_at(node, end))
             before = names.setdefault(key, DiagramName(*key, end.type, severity))
             names[key] = before._replace(
                 type=before.type or end.type,

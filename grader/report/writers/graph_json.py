@@ -62,10 +62,10 @@ def _text_of(name: str) -> Any:
 def _nodes(shown: ShownGraph) -> Iterator[_ShownNode]:
     for number, node in shown.nodes:
         ends = [
-            _ShownEnd(end, len(shown.partners(number, end)), shown.findings_at(end.location))
+            _ShownEnd(end, len(shown.partners(number, end)), shown.findings_at(node, end))
             for end in node.ends
         ]
-        yield _ShownNode(number, node, tuple(ends), shown.findings_of(node))
+        yield _ShownNode(number, node, tuple(ends), shown.findings_of(number))
 
 
 def _json_value(value: Any) -> Any:

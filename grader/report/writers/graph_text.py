@@ -70,11 +70,11 @@ def _add_node(page: Page, shown: ShownGraph, number: int, node: GraphNode) -> No
     for word, reason in (("may not run", node.doubt), ("may open more", node.opens_more)):
         if reason:
             page.inset(f"{word}: {printable(reason)}", "dim")
-    _add_findings(page, shown.findings_of(node))
+    _add_findings(page, shown.findings_of(number))
     quiet: dict[str, list[str]] = {}
     for end in node.ends:
         partners = shown.partners(number, end)
-        findings = shown.findings_at(end.location)
+        findings = shown.findings_at(node, end)
         if _is_quiet(node, end) and not partners and not findings:
             quiet.setdefault(_VERBS[end.kind], []).append(printable(end.name))
             continue

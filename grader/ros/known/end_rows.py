@@ -25,13 +25,15 @@ class VaryingEnd(NamedTuple):
     """An end that parameters or releases decide.
 
     `parameter` is what names it, in place of `name`; with a star it stands for any number of
-    parameters, each of which names one end.
+    parameters, each of which names one end. `type_parameter` is the one beside it that has the
+    type: interface_type beside drive.topic_name is drive.interface_type.
     """
 
     kind: _EndKind
-    type: str
+    type: str = ""
     name: str = ""
     parameter: str = ""
+    type_parameter: str = ""
     only: Mapping[str, Any] = {}  # it is opened only if these parameters are given these values
     unless: Mapping[str, Any] = {}  # it is not opened if one of these is given this value
     since: Release = RELEASES[0]

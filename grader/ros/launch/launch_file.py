@@ -39,6 +39,7 @@ from grader.ros.launch.launch_model import (
     Findings,
     Launch,
     LaunchFault,
+    LoadedComponent,
     Machine,
     NamedFile,
     StartedNode,
@@ -312,6 +313,10 @@ def _forgotten_node(node: Call, findings: Findings) -> StartedNode:
 
 
 def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
+    components: dict[tuple[LoadedComponent, str], LoadedComponent] = {}
+    for component in findings.components:  # whose parameters have no hash
+        key = (component._replace(node=None), repr(component.node))
+        components.setdefault(key, component)
     return Launch(
         source=source,
         nodes=tuple(findings.nodes),
@@ -323,7 +328,7 @@ def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNod
         values=tuple(findings.values),
         passed=tuple(dict.fromkeys(findings.passed)),
         commands=tuple(dict.fromkeys(findings.commands)),
-        components=tuple(dict.fromkeys(findings.components)),
+        components=tuple(components.values()),
         containers=tuple(dict.fromkeys(findings.containers)),
         forgotten=forgotten,
         later=tuple(dict.fromkeys(findings.later)),

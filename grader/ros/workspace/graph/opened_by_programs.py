@@ -1,13 +1,13 @@
 """The ends of well-known programs, components and controllers, as they are started."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from fnmatch import fnmatchcase
 from typing import Any
 
 from grader.base.source import Location
 from grader.ros.known.end_rows import OpenedEnds, VaryingEnd
 from grader.ros.known.releases import RELEASES, Release
-from grader.ros.launch.launch_model import ParameterValue, StartedNode
+from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import NodeParameters
 from grader.ros.python.values import Unknown
 from grader.ros.workspace.graph.launch_graph import PART_UNKNOWN, GraphEnd
@@ -42,8 +42,8 @@ def ends_of_row(
         yield _end(kind, name, message, node, node.location)
     for varying in row.varying:
         if varying.is_in(release):
-            for name, location, doubt in _names_of(varying, given, node.location):
-                yield _end(varying.kind, name, varying.type, node, location, doubt)
+            for name, message, location, doubt in _names_of(varying, given, node.location):
+                yield _end(varying.kind, name, message, node, location, doubt)
 
 
 def _end(
@@ -59,25 +59,32 @@ def _end(
 
 def _names_of(
     end: VaryingEnd, given: NodeParameters, at: Location
-) -> Iterator[tuple[str, Location, str]]:
-    """Yield the names that an end has, where each is written, and why it may not be there."""
+) -> Iterator[tuple[str, str, Location, str]]:
+    """Yield name and type of an end, where its name is written, and why it may not be there."""
     doubt = _doubt_of_conditions(end, given)
     if doubt is None:
         return
-    matching = _given_like(end.parameter, given.values) if end.parameter else []
-    for value in matching:
+    is_named = False
+    for parameter, value in given.values.items():
+        if not end.parameter or not fnmatchcase(parameter, end.parameter):
+            continue
+        is_named = True
         if isinstance(value.value, str) and value.value:
-            yield value.value, value.location, doubt
+            yield value.value, _type_of(end, parameter, given), value.location, doubt
         elif isinstance(value.value, Unknown):
-            yield PART_UNKNOWN, value.location, value.value.reason
-    if not matching and end.name:
+            yield PART_UNKNOWN, end.type, value.location, value.value.reason
+    if not is_named and end.name:
         unknown = given.unknown if end.parameter else ""
-        yield end.name, at, doubt or unknown
+        yield end.name, end.type, at, doubt or unknown
 
 
-def _given_like(pattern: str, values: Mapping[str, ParameterValue]) -> list[ParameterValue]:
-    """Return the values of the parameters that a pattern matches."""
-    return [value for name, value in values.items() if fnmatchcase(name, pattern)]
+def _type_of(end: VaryingEnd, parameter: str, given: NodeParameters) -> str:
+    """Return the type of an end that a parameter names."""
+    if not end.type_parameter:
+        return end.type
+    above = parameter.rpartition(".")[0]
+    row = given.values.get(f"{above}.{end.type_parameter}")
+    return row.value if row is not None and isinstance(row.value, str) else ""
 
 
 def _doubt_of_conditions(end: VaryingEnd, given: NodeParameters) -> str | None:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.base.errors import NotDecided
 from grader.base.source import Location
-from grader.ros.known.end_rows import opened_ends, nodes_of_launch_file
+from grader.ros.known.end_rows import nodes_of_launch_file, opened_ends
 from grader.ros.known.package_rows import controller_row, program_row
 from grader.ros.known.package_tables import display_types
 from grader.ros.known.parameter_rows import row_for
@@ -96,7 +96,7 @@ def _start(launch: Launch) -> Location:
 
 def _arguments(launch: Launch) -> tuple[tuple[str, str], ...]:
     """Return the launch arguments with their values, each once."""
-    return tuple(sorted({name: value for name, value in reversed(launch.values)}.items()))
+    return tuple(sorted(dict(reversed(launch.values)).items()))
 
 
 def _doubt_of(node: StartedNode) -> str:
@@ -219,12 +219,12 @@ def _known_node(
         if row is not None:
             ends += ends_of_row(row, named, given, making.release)
         ends += _ends_for_rules(making, named)
-        rows = {
-            parameter: parameter_row.default
-            for parameter in given.values
-            if (parameter_row := row_for(node.name, parameter, making.release)) is not None
-        }
-        parameters += _different(given, {**rows})
+        defaults: dict[str | None, object] = {}
+        for parameter in given.values:
+            parameter_row = row_for(node.name, parameter, making.release)
+            if parameter_row is not None:
+                defaults[parameter] = parameter_row.default
+        parameters += _different(given, defaults)
         if node.executable == _RVIZ:
             ends += _displays(making)
     except NotDecided:

@@ -70,7 +70,10 @@ class Launches:
 
     @cached_property
     def roots(self) -> tuple[tuple[Package, Launch], ...]:
-        """The launch files that no other one includes, with their packages; or the one asked for."""
+        """The launch files that no other one includes, or the only one that is asked for.
+
+        Each is with its package.
+        """
         if self.only:
             files = [(package, file) for package, _, file in self.files]
             return tuple(pair for pair in files if pair[1].source.path == self.only)
