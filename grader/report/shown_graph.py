@@ -1,6 +1,6 @@
 """The graph of a launch file as reports show it, with the findings at what they concern."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,6 +11,7 @@ from grader.ros.api import (
     Connection,
     GraphEnd,
     GraphNode,
+    GraphTransform,
     LaunchGraph,
     connections_in,
     manual_ends,
@@ -121,6 +122,26 @@ class ShownGraph:
             partners.setdefault(offering, []).append((nodes[each.to_node], each))
             partners.setdefault(asking, []).append((nodes[each.from_node], each))
         return partners
+
+
+def transform_tree(transforms: Sequence[GraphTransform]) -> Iterator[tuple[int, GraphTransform]]:
+    """Yield transforms as a tree, each once with its depth below a root; 0 is below no other.
+
+    A frame with several parents stands below each.
+    """
+    children: dict[str, list[GraphTransform]] = {}
+    for each in transforms:
+        children.setdefault(each.parent, []).append(each)
+    below = {each.child for each in transforms}
+    roots = [each for each in transforms if each.parent not in below]
+    seen: set[GraphTransform] = set()
+    stack = [(0, each) for each in reversed((*roots, *transforms))]  # the latter are in circles
+    while stack:
+        depth, each = stack.pop()
+        if each not in seen:
+            seen.add(each)
+            yield depth, each
+            stack += [(depth + 1, other) for other in reversed(children.get(each.child, []))]
 
 
 def severity_of(problems: Sequence[Problem]) -> str:

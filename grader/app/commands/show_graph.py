@@ -57,14 +57,14 @@ def graph_and_save(request: GraphRequest, terminal: Terminal) -> bool:
     """
     saves = read_saves(request.save or (), GraphFormat)
     check_saves(saves, (), request.path)
-    shown = read_graph(request, terminal.warn)
+    shown = _read_graph(request, terminal.warn)
     texts = {file: render_graph(shown, kind) for kind, file in saves}
     terminal.print(render_graph(shown, request.output_format, terminal.screen()))
     save_texts(texts, request.path, ())
     return shown.inspection.is_passed
 
 
-def read_graph(request: GraphRequest, warn: Warn) -> ShownGraph:
+def _read_graph(request: GraphRequest, warn: Warn) -> ShownGraph:
     """Return the graph of the launch file that is asked for. Raises GraderError."""
     inspection = request.inspection
     selection = inspection.selection(Path(os.path.realpath(request.path)))

@@ -6,6 +6,7 @@ from typing import NamedTuple
 _LETTER, _LINE = 7.2, 18  # width and height of a letter, in units of the drawing
 _PADDING, _GAP, _BETWEEN = 12, 14, 70  # inside of a box, below it, and between layers
 _MIN_WIDTH, _MAX_LETTERS = 60, 44
+_MIN_ROW = 400.0  # width of the rows of boxes without an arrow
 _SWEEPS = 6  # over the layers, to order each by the places of its neighbours
 
 
@@ -28,7 +29,7 @@ class Curve(NamedTuple):
     path: str  # as SVG has it
 
 
-class Layout(NamedTuple):
+class _GraphLayout(NamedTuple):
     """A drawing with its size."""
 
     boxes: Mapping[str, DrawnBox]
@@ -37,32 +38,45 @@ class Layout(NamedTuple):
     height: float
 
 
-def lay_out(texts: Mapping[str, Sequence[str]], arrows: Sequence[tuple[str, str]]) -> Layout:
+def lay_out(texts: Mapping[str, Sequence[str]], arrows: Sequence[tuple[str, str]]) -> _GraphLayout:
     """Return the places of items with lines of text, and arrows between them.
 
     Items without an arrow stand in rows below. The result depends on nothing but the arguments.
     """
     joined = {name for pair in arrows for name in pair}
-    layers = _in_layers([name for name in texts if name in joined], arrows)
+    linked = [name for name in texts if name in joined]
+    layers = _in_layers(linked, arrows)
+    sized = {name: _sized(name, lines) for name, lines in texts.items()}
     order = _with_few_crossings(layers, arrows)
+    boxes, height = _place_layers(order, sized)
+    others = [box for name, box in sized.items() if name not in joined]
+    height = _place_others(others, boxes, height)
+    width = max((box.x + box.width for box in boxes.values()), default=0.0)
+    curves: list[Curve] = []
+    for source, target in arrows:
+        curves.append(Curve(source, target, _curve(boxes[source], boxes[target])))
+    return _GraphLayout(boxes, tuple(curves), _rounded(width), _rounded(height))
+
+
+def _place_layers(
+    order: Sequence[Sequence[str]], sized: Mapping[str, DrawnBox]
+) -> tuple[dict[str, DrawnBox], float]:
+    """Return the boxes of each layer above each other, and the height of the highest layer."""
     boxes: dict[str, DrawnBox] = {}
-    x, height = 0.0, 0.0
+    heights: list[float] = []
     for names in order:
-        sized = [_sized(name, texts[name]) for name in names]
-        total = sum(box.height + _GAP for box in sized)
-        height = max(height, total)
-        width = max((box.width for box in sized), default=0.0)
-        y = -total / 2
-        for box in sized:
-            boxes[box.id] = box._replace(x=x + (width - box.width) / 2, y=y)
+        heights.append(sum(sized[name].height + _GAP for name in names))
+    height = max(heights, default=0.0)
+    x = 0.0
+    for names, own_height in zip(order, heights, strict=True):
+        width = max(sized[name].width for name in names)
+        y = (height - own_height) / 2
+        for name in names:
+            box = sized[name]
+            boxes[name] = box._replace(x=x + (width - box.width) / 2, y=y)
             y += box.height + _GAP
         x += width + _BETWEEN
-    boxes = {name: box._replace(y=box.y + height / 2) for name, box in boxes.items()}
-    width = max(x - _BETWEEN, 0.0)
-    height = _place_others([name for name in texts if name not in joined], texts, boxes, height)
-    width = max([width, *(box.x + box.width for box in boxes.values())])
-    curves = tuple(Curve(*pair, _curve(boxes[pair[0]], boxes[pair[1]])) for pair in arrows)
-    return Layout(boxes, curves, _rounded(width), _rounded(height))
+    return boxes, height
 
 
 def _sized(name: str, lines: Sequence[str]) -> DrawnBox:
@@ -156,20 +170,14 @@ def _middle(name: str, neighbours: Sequence[str], places: Mapping[str, float]) -
     return sum(places[other] for other in neighbours) / len(neighbours)
 
 
-def _place_others(
-    names: Sequence[str],
-    texts: Mapping[str, Sequence[str]],
-    boxes: dict[str, DrawnBox],
-    height: float,
-) -> float:
+def _place_others(others: Sequence[DrawnBox], boxes: dict[str, DrawnBox], height: float) -> float:
     """Add the boxes of items without an arrow in rows below, and return the height of all."""
-    width = max([400.0, *(box.x + box.width for box in boxes.values())])
+    width = max([_MIN_ROW, *(box.x + box.width for box in boxes.values())])
     x, y = 0.0, height
-    for name in names:
-        box = _sized(name, texts[name])
+    for box in others:
         if x > 0 and x + box.width > width:
             x, y = 0.0, y + box.height + _GAP
-        boxes[name] = box._replace(x=x, y=y)
+        boxes[box.id] = box._replace(x=x, y=y)
         x += box.width + _GAP
         height = y + box.height + _GAP
     return height

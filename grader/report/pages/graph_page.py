@@ -5,16 +5,17 @@ from typing import Any, NamedTuple
 
 from grader import __version__
 from grader.base.text import counted, printable
-from grader.report.drawing.graph_layout import DrawnBox, lay_out
+from grader.report.drawing.graph_layout import Curve, DrawnBox, lay_out
 from grader.report.inspection import problem_counts
 from grader.report.pages.inspection_page import problem_card
 from grader.report.pages.shell import Assets, render_page
 from grader.report.pages.viewing import ProblemCard
-from grader.report.shown_graph import ShownGraph
+from grader.report.shown_graph import ShownGraph, transform_tree
 from grader.report.writers.graph_diagrams import Diagram, diagram_of
 from grader.ros.api import GraphEnd, GraphTransform
 
-_MAX_PROBLEMS = 100
+_MAX_DEPTH = 20  # of a frame that is indented
+_MAX_PARAMETERS = 20
 _MAX_DRAWN = 250  # boxes: a page has at most 150 KB
 _VERBS = {
     "publisher": "publishes",
@@ -27,22 +28,22 @@ _VERBS = {
 
 
 class _Item(NamedTuple):
-    """A box of the drawing, and how it looks."""
+    """What is drawn as a box, and how it looks."""
 
-    box: DrawnBox
+    lines: tuple[str, ...]
     kind: str  # node, topic, service or action
     severity: str
     is_certain: bool
     about: str  # for a screen reader, and on hover
 
 
-class _Arrow(NamedTuple):
-    """An arrow of the drawing."""
+class _Drawing(NamedTuple):
+    """The boxes and arrows of a page, the latter with a class of the style."""
 
-    source: str
-    target: str
-    path: str
-    look: str  # a class of the style
+    boxes: list[tuple[DrawnBox, _Item]]
+    arrows: list[tuple[Curve, str]]
+    width: float
+    height: float
 
 
 class _EndRow(NamedTuple):
@@ -80,56 +81,64 @@ class _FrameRow(NamedTuple):
 def graph_html(shown: ShownGraph) -> str:
     """Return a graph as an HTML page."""
     graph = shown.graph
-    diagram = diagram_of(shown)
-    names = diagram.names[: max(0, _MAX_DRAWN - len(diagram.nodes))]
-    items, arrows, size = _drawing(diagram._replace(names=names))
     counts = [counted(len(graph.nodes), "node"), counted(len(shown.connections), "connection")]
+    drawing = _draw(diagram_of(shown))
     values: dict[str, object] = {
         "version": __version__,
         "title": printable(graph.path),
         "counts": ", ".join(counts),
         "effect": problem_counts(shown.inspection),
         "verdict": "passed" if shown.inspection.is_passed else "failed",
-        "width": size[0],
-        "height": size[1],
-        "items": items,
-        "arrows": arrows,
+        "drawing": drawing,
         "nodes": [*_cards(shown)],
         "frames": [*_frames(graph.transforms)],
-        "manual": [(end.name, " or ".join(programs)) for end, programs in shown.manual],
-        "unread": [(each.reason, each.location.file_and_line) for each in graph.unread],
-        "processes": [(each.program, each.location.file_and_line) for each in graph.processes],
+        "lists": [*_lists(shown)],
     }
     assets = Assets(styles="text.css student.css graph.css", scripts="graph.js")
     return render_page("graph.html", values, {}, assets)
 
 
-def _drawing(diagram: Diagram) -> tuple[list[_Item], list[_Arrow], tuple[float, float]]:
+def _lists(shown: ShownGraph) -> Iterator[tuple[str, list[tuple[str, str]]]]:
+    """Yield lists with their titles: pairs of what is listed and where it is, or what brings it."""
+    graph = shown.graph
+    manual = [(end.name, " or ".join(programs)) for end, programs in shown.manual]
+    yield "From another terminal", manual
+    unread = [(each.reason, each.location.file_and_line) for each in graph.unread]
+    yield "What may start more", unread
+    ended = [(each.program, each.location.file_and_line) for each in graph.processes]
+    yield "Programs that end, or are no nodes", ended
+
+
+def _draw(diagram: Diagram) -> _Drawing:
     """Return the boxes and arrows of a diagram, and its size."""
-    texts: dict[str, tuple[str, ...]] = {}
-    looks: dict[str, tuple[str, str, bool, str]] = {}
-    for number, node, severity in diagram.nodes:
-        texts[f"n{number}"] = (printable(node.label),)
-        about = f"node {node.label}, {node.program}"
-        looks[f"n{number}"] = ("node", severity, not node.doubt, about)
-    for number, name in enumerate(diagram.names):
-        texts[f"t{number}"] = tuple(printable(line) for line in (name.name, name.type) if line)
-        about = f"{name.kind} {name.name}, {name.type or 'type not known'}"
-        looks[f"t{number}"] = (name.kind, name.severity, True, about)
+    items = _items_of(diagram)
     pairs: dict[tuple[str, str], str] = {}
     for arrow in diagram.arrows:
-        if f"t{arrow.name}" not in texts:
-            continue
         ends = (f"n{arrow.node}", f"t{arrow.name}")
-        look = "broken" if arrow.fault else "" if arrow.is_certain else "dashed"
+        if ends[1] not in items:
+            continue
+        look = "" if arrow.is_certain else "dashed"
+        if arrow.fault:
+            look = "broken"
         pairs.setdefault(ends if arrow.is_from_node else ends[::-1], look)
-    layout = lay_out(texts, [*pairs])
-    items = [_Item(layout.boxes[name], *look) for name, look in looks.items()]
-    arrows = [
-        _Arrow(each.source, each.target, each.path, pairs[each.source, each.target])
-        for each in layout.curves
-    ]
-    return items, arrows, (layout.width, layout.height)
+    layout = lay_out({name: item.lines for name, item in items.items()}, [*pairs])
+    arrows = [(each, pairs[each.source, each.target]) for each in layout.curves]
+    boxes = [(layout.boxes[name], item) for name, item in items.items()]
+    return _Drawing(boxes, arrows, layout.width, layout.height)
+
+
+def _items_of(diagram: Diagram) -> dict[str, _Item]:
+    """Return what is drawn as boxes: the nodes, and as many names as a page holds."""
+    items: dict[str, _Item] = {}
+    for number, node, severity in diagram.nodes:
+        about = f"node {node.label}, {node.program}"
+        label = (printable(node.label),)
+        items[f"n{number}"] = _Item(label, "node", severity, not node.doubt, about)
+    for number, name in enumerate(diagram.names[: max(0, _MAX_DRAWN - len(items))]):
+        about = f"{name.kind} {name.name}, {name.type or 'type not known'}"
+        lines = tuple(printable(line) for line in (name.name, name.type) if line)
+        items[f"t{number}"] = _Item(lines, name.kind, name.severity, True, about)
+    return items
 
 
 def _cards(shown: ShownGraph) -> Iterator[_NodeCard]:
@@ -159,7 +168,9 @@ def _cards(shown: ShownGraph) -> Iterator[_NodeCard]:
         if unused:
             remarks.append(f"nothing here asks for: {', '.join(unused)}")
         if node.parameters:
-            values = ", ".join(f"{each.name} = {each.value}" for each in node.parameters[:20])
+            values = ", ".join(
+                f"{each.name} = {each.value}" for each in node.parameters[:_MAX_PARAMETERS]
+            )
             remarks.append(f"parameters: {values}")
         cards = [problem_card(each, shown.inspection.source) for each in problems]
         place = node.location.file_and_line
@@ -183,22 +194,12 @@ def _end_row(end: GraphEnd, partners: str, severity: str) -> _EndRow:
 
 def _frames(transforms: tuple[GraphTransform, ...]) -> Iterator[_FrameRow]:
     """Yield the frames as a tree, each transform once."""
-    children: dict[str, list[GraphTransform]] = {}
-    for each in transforms:
-        children.setdefault(each.parent, []).append(each)
-    below = {each.child for each in transforms}
-    roots = [parent for parent in children if parent not in below] or [*children][:1]
-    seen: set[GraphTransform] = set()
-    for root in roots:
-        yield _FrameRow("", root, "")
-        stack = [("  ", each) for each in reversed(children[root])]
-        while stack:
-            indent, each = stack.pop()
-            if each in seen:
-                continue
-            seen.add(each)
-            static = "static, " if each.is_static else ""
-            doubt = "" if each.is_certain else " (not certain)"
-            yield _FrameRow(indent, each.child, f"  {static}{each.by}{doubt}")
-            deeper = f"{indent}  "[:40]
-            stack += [(deeper, other) for other in reversed(children.get(each.child, []))]
+    root = ""
+    for depth, each in transform_tree(transforms):
+        if depth == 0 and each.parent != root:
+            root = each.parent
+            yield _FrameRow("", root, "")
+        words = f"  static, {each.by}" if each.is_static else f"  {each.by}"
+        if not each.is_certain:
+            words += " (not certain)"
+        yield _FrameRow("  " * min(depth + 1, _MAX_DEPTH), each.child, words)

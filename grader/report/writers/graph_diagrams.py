@@ -14,7 +14,7 @@ _DOT_SHAPES = {"topic": "ellipse", "service": "hexagon", "action": "octagon"}
 _COLOURS = {"error": "#b3261e", "warning": "#7d4e00"}
 
 
-class DiagramName(NamedTuple):
+class _DiagramName(NamedTuple):
     """A topic, service or action between nodes."""
 
     kind: str
@@ -23,7 +23,7 @@ class DiagramName(NamedTuple):
     severity: str  # of what is found at its ends; empty without
 
 
-class DiagramArrow(NamedTuple):
+class _DiagramArrow(NamedTuple):
     """An arrow between a node and a name, by their numbers."""
 
     node: int
@@ -40,14 +40,14 @@ class Diagram(NamedTuple):
     """
 
     nodes: tuple[tuple[int, GraphNode, str], ...]  # with their numbers and severities
-    names: tuple[DiagramName, ...]
-    arrows: tuple[DiagramArrow, ...]
+    names: tuple[_DiagramName, ...]
+    arrows: tuple[_DiagramArrow, ...]
 
 
 def diagram_of(shown: ShownGraph) -> Diagram:
     """Return what is drawn of a graph."""
-    names: dict[tuple[str, str], DiagramName] = {}
-    arrows: list[DiagramArrow] = []
+    names: dict[tuple[str, str], _DiagramName] = {}
+    arrows: list[_DiagramArrow] = []
     nodes: list[tuple[int, GraphNode, str]] = []
     for number, node in shown.nodes:
         nodes.append((number, node, severity_of(shown.findings_of(number))))
@@ -56,7 +56,7 @@ def diagram_of(shown: ShownGraph) -> Diagram:
                 continue
             key = (end.carrier, end.name)
             severity = severity_of(shown.findings_at(node, end))
-            before = names.setdefault(key, DiagramName(*key, end.type, severity))
+            before = names.setdefault(key, _DiagramName(*key, end.type, severity))
             names[key] = before._replace(
                 type=before.type or end.type,
                 severity=min(filter(None, (before.severity, severity)), default=""),
@@ -66,7 +66,7 @@ def diagram_of(shown: ShownGraph) -> Diagram:
             is_from = end.kind in ("publisher", "client", "action client")
             is_certain = not (end.doubt or node.doubt)
             fault = faults[0] if faults else ""
-            arrows.append(DiagramArrow(number, [*names].index(key), is_from, is_certain, fault))
+            arrows.append(_DiagramArrow(number, [*names].index(key), is_from, is_certain, fault))
     return Diagram(tuple(nodes), tuple(names.values()), tuple(arrows))
 
 

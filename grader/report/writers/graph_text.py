@@ -8,7 +8,7 @@ from rich.text import Text
 from grader.base.problems import Problem
 from grader.base.text import counted, enumerated, printable
 from grader.report.inspection import problem_counts
-from grader.report.shown_graph import ShownGraph
+from grader.report.shown_graph import ShownGraph, transform_tree
 from grader.report.writers.terminal_page import INDENT, SEVERITY_LOOKS, Page
 from grader.ros.api import Connection, EndedProcess, GraphEnd, GraphNode, GraphTransform, Qos
 
@@ -75,7 +75,9 @@ def _add_node(page: Page, shown: ShownGraph, number: int, node: GraphNode) -> No
     for end in node.ends:
         partners = shown.partners(number, end)
         findings = shown.findings_at(node, end)
-        if _is_quiet(node, end) and not partners and not findings:
+        # A known program offers it whether it is used or not.
+        is_quiet = end.is_offered and end.location == node.location and not end.doubt
+        if is_quiet and not partners and not findings:
             quiet.setdefault(_VERBS[end.kind], []).append(printable(end.name))
             continue
         page.inset(_end_line(shown, node, end, partners), indent=_NESTED, head=Text(" " * INDENT))
@@ -84,11 +86,6 @@ def _add_node(page: Page, shown: ShownGraph, number: int, node: GraphNode) -> No
         listed = enumerated(names, _MAX_LISTED)
         page.inset(f"{verb}, and nothing here asks for: {listed}", "dim", _NESTED, Text("  "))
     _add_parameters(page, node, most=None if shown.node else _MAX_PARAMETERS)
-
-
-def _is_quiet(node: GraphNode, end: GraphEnd) -> bool:
-    """Return whether an end is of a known program, which offers it whether it is used or not."""
-    return end.is_offered and end.location == node.location and not end.doubt
 
 
 def _end_line(
@@ -114,19 +111,13 @@ def _end_line(
         elif connection.doubt:
             line.append(" (perhaps)", "dim")
     if not partners:
-        line.append(f"{arrow}{_nobody(shown)}", "dim")
+        is_known = not (shown.unknown_nodes or shown.graph.unread)
+        line.append(f"{arrow}nothing {'here' if is_known else 'that is known'}", "dim")
     if end.doubt:
         line.append(f" (not certain: {printable(end.doubt)})", "dim")
     if end.location != node.location:
         line.append(f"  {printable(end.location.file_and_line)}", "dim")
     return line
-
-
-def _nobody(shown: ShownGraph) -> str:
-    """Return that nothing is at the other end, as far as it is known."""
-    if shown.unknown_nodes or shown.graph.unread:
-        return "nothing that is known"
-    return "nothing here"
 
 
 def _quality(qos: Qos) -> Iterator[str]:
@@ -165,30 +156,19 @@ def _add_manual(page: Page, shown: ShownGraph) -> None:
 
 
 def _add_transforms(page: Page, transforms: Sequence[GraphTransform]) -> None:
-    """Add the transforms as a tree; a frame with several parents stands below each."""
-    if not transforms:
-        return
-    page.title("Transforms")
-    children: dict[str, list[GraphTransform]] = {}
-    for each in transforms:
-        children.setdefault(each.parent, []).append(each)
-    below = {each.child for each in transforms}
-    roots = [parent for parent in children if parent not in below] or [*children][:1]
-    seen: set[GraphTransform] = set()
-    for root in roots:
-        page.inset(printable(root))
-        stack = [(1, each) for each in reversed(children[root])]
-        while stack:
-            depth, each = stack.pop()
-            if each in seen:
-                continue
-            seen.add(each)
-            line = Text(printable(each.child))
-            words = f"  {'static, ' if each.is_static else ''}{printable(each.by)}"
-            line.append(words if each.is_certain else f"{words} (not certain)", "dim")
-            indent = INDENT + min(INDENT * depth, _MAX_INDENT)
-            page.inset(line, indent=indent)
-            stack += [(depth + 1, other) for other in reversed(children.get(each.child, []))]
+    """Add the transforms as a tree."""
+    if transforms:
+        page.title("Transforms")
+    root = ""
+    for depth, each in transform_tree(transforms):
+        if depth == 0 and each.parent != root:
+            root = each.parent
+            page.inset(printable(root))
+        words = f"  {'static, ' if each.is_static else ''}{printable(each.by)}"
+        if not each.is_certain:
+            words += " (not certain)"
+        indent = INDENT + min(INDENT * (depth + 1), _MAX_INDENT)
+        page.inset(Text.assemble(printable(each.child), (words, "dim")), indent=indent)
 
 
 def _add_processes(page: Page, title: str, processes: Sequence[EndedProcess]) -> None:

@@ -82,7 +82,7 @@ class OpenedEnds(NamedTuple):
                 yield kind, name, message
 
 
-class IncludedNode(NamedTuple):
+class _IncludedNode(NamedTuple):
     """A node that an installed launch file starts under its default arguments."""
 
     node: str  # package/program
@@ -102,7 +102,7 @@ class _EndsOfPackage(NamedTuple):
 
     source: str = ""  # of programs that name none
     program: Mapping[str, OpenedEnds] = {}  # also classes of components and controllers
-    launch: Mapping[str, tuple[IncludedNode, ...]] = {}  # the nodes that a launch file starts
+    launch: Mapping[str, tuple[_IncludedNode, ...]] = {}  # the nodes that a launch file starts
 
 
 @cache
@@ -134,7 +134,7 @@ def opened_ends(package: str, program: str) -> OpenedEnds | None:
     )
 
 
-def nodes_of_launch_file(package: str, file: str, release: Release) -> list[IncludedNode]:
+def nodes_of_launch_file(package: str, file: str, release: Release) -> list[_IncludedNode]:
     """Return the nodes that an installed launch file starts; none where that is not known."""
     if package not in packages_with_ends():
         return []

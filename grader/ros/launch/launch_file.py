@@ -312,11 +312,16 @@ def _forgotten_node(node: Call, findings: Findings) -> StartedNode:
     return StartedNode(package, executable, False, findings.locate(node.at))
 
 
-def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
+def _distinct_components(findings: Findings) -> tuple[LoadedComponent, ...]:
+    """Return the components, each once; the values of their parameters have no hash."""
     components: dict[tuple[LoadedComponent, str], LoadedComponent] = {}
-    for component in findings.components:  # whose parameters have no hash
+    for component in findings.components:
         key = (component._replace(node=None), repr(component.node))
         components.setdefault(key, component)
+    return tuple(components.values())
+
+
+def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
     return Launch(
         source=source,
         nodes=tuple(findings.nodes),
@@ -328,7 +333,7 @@ def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNod
         values=tuple(findings.values),
         passed=tuple(dict.fromkeys(findings.passed)),
         commands=tuple(dict.fromkeys(findings.commands)),
-        components=tuple(components.values()),
+        components=_distinct_components(findings),
         containers=tuple(dict.fromkeys(findings.containers)),
         forgotten=forgotten,
         later=tuple(dict.fromkeys(findings.later)),

@@ -12,8 +12,8 @@ from grader.ros.nodes.node_facts import EndpointKind, Qos
 
 GraphNodeKind = Literal["program", "component", "container", "controller"]
 GRAPH_NODE_KINDS: tuple[GraphNodeKind, ...] = get_args(GraphNodeKind)
-ConnectionKind = Literal["topic", "service", "action"]
-CONNECTION_KINDS: tuple[ConnectionKind, ...] = get_args(ConnectionKind)
+_ConnectionKind = Literal["topic", "service", "action"]
+CONNECTION_KINDS: tuple[_ConnectionKind, ...] = get_args(_ConnectionKind)
 _OFFERS: Mapping[EndpointKind, EndpointKind] = {
     "publisher": "subscription",
     "service": "client",
@@ -23,7 +23,7 @@ OPPOSITES: Mapping[EndpointKind, EndpointKind] = {
     **_OFFERS,
     **{asking: offering for offering, asking in _OFFERS.items()},
 }
-CARRIES: Mapping[EndpointKind, ConnectionKind] = {
+_CARRIES: Mapping[EndpointKind, _ConnectionKind] = {
     "publisher": "topic",
     "subscription": "topic",
     "service": "service",
@@ -49,9 +49,9 @@ class GraphEnd(NamedTuple):
     note: str = ""  # what is on the other side of a bridge, or shows it
 
     @property
-    def carrier(self) -> ConnectionKind:
+    def carrier(self) -> _ConnectionKind:
         """What it is an end of."""
-        return CARRIES[self.kind]
+        return _CARRIES[self.kind]
 
     @property
     def is_offered(self) -> bool:
@@ -135,7 +135,7 @@ class Connection(NamedTuple):
     Messages go from the first one to the second; of a service and an action, the first one serves.
     """
 
-    kind: ConnectionKind
+    kind: _ConnectionKind
     name: str
     from_node: int
     from_end: GraphEnd

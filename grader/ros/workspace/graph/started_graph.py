@@ -1,6 +1,6 @@
 """Make the graph of one launch file of a workspace."""
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from grader.base.errors import NotDecided
@@ -81,7 +81,7 @@ def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
         tuple(not_started),
         tuple(_transforms(making)),
         tuple(_unread(making)),
-        _arguments(launch),
+        tuple(sorted(dict(reversed(launch.values)).items())),  # of an argument the first counts
     )
 
 
@@ -92,11 +92,6 @@ def included_files(launch: Launch) -> int:
 
 def _start(launch: Launch) -> Location:
     return Location(launch.source.path, 1, 1)
-
-
-def _arguments(launch: Launch) -> tuple[tuple[str, str], ...]:
-    """Return the launch arguments with their values, each once."""
-    return tuple(sorted(dict(reversed(launch.values)).items()))
 
 
 def _doubt_of(node: StartedNode) -> str:
@@ -414,10 +409,8 @@ def _unread(making: _Making) -> Iterator[Unread]:
         yield Unread(launch.syntax.message, launch.syntax.location)
     elif launch.unread:
         yield Unread(launch.unread, _start(launch))
-    places: Collection[Location] = {
-        *(container.location for container in launch.containers),
-        *(component.loaded_at for component in launch.components),
-    }
+    places = {container.location for container in launch.containers}
+    places.update(component.loaded_at for component in launch.components)
     for unknown in dict.fromkeys(launch.unknown):
         if unknown.location not in places:
             yield Unread(unknown.message, unknown.location)
