@@ -3,6 +3,8 @@
 Components are classes that a launch file loads into a container.
 """
 
+from contextlib import suppress
+
 from grader.base.source import Location
 from grader.ros.launch.call_arguments import items_in
 from grader.ros.launch.launch_classes import COMPONENT, LIFECYCLE_COMPONENT
@@ -102,19 +104,21 @@ def _as_node(
         plugin.removeprefix("::"),
         when,
         at,
+        namespace=None,  # until they are known
+        remaps=None,
         node_name=_text_if_known(item.kwargs.get("name") or "", context, item),
         parameters=(*context.to_all.get(TO_ALL, ()), *given),
         included_by=context.included_by,
     )
-    remaps: list[tuple[str, ...] | None] = [*context.to_all.get(REMAPS, ())]
-    try:
+    with suppress(EvaluationSignal):
         namespace = namespace_below(item.kwargs.get("namespace") or "", context, item.at)
-        remaps += evaluate_remaps(item, context)
-    except EvaluationSignal:
-        return node._replace(namespace=None, remaps=None)
-    known = tuple(rule for rule in remaps if rule is not None)
-    is_known = len(known) == len(remaps)
-    return node._replace(namespace=namespace, remaps=known if is_known else None)
+        node = node._replace(namespace=namespace)
+    with suppress(EvaluationSignal):
+        remaps = (*context.to_all.get(REMAPS, ()), *evaluate_remaps(item, context))
+        known = tuple(rule for rule in remaps if rule is not None)
+        if len(known) == len(remaps):
+            node = node._replace(remaps=known)
+    return node
 
 
 def _is_loaded(item: Call, context: Context, when: bool | None) -> bool | None:
