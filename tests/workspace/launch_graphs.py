@@ -106,6 +106,18 @@ public:
 }
 RCLCPP_COMPONENTS_REGISTER_NODE(eyes::Eye)
 """
+FILES = {
+    "demo/package.xml": MANIFEST.format(name="demo", build="ament_python"),
+    "demo/setup.py": SETUP,
+    "demo/setup.cfg": "[develop]\nscript_dir=$base/lib/demo\n[install]\ninstall_scripts=$base/lib/demo\n",
+    "demo/resource/demo": "",
+    "demo/demo/__init__.py": "",
+    "demo/demo/talker.py": TALKER,
+    "demo/demo/pair.py": PAIR,
+    "eyes/package.xml": MANIFEST.format(name="eyes", build="ament_cmake"),
+    "eyes/CMakeLists.txt": CMAKE,
+    "eyes/src/eye.cpp": EYE,
+}
 HEAD = """\
 import os
 from ament_index_python.packages import get_package_share_directory
@@ -133,15 +145,7 @@ def launch_file(*actions: str) -> str:
 def open_files(files: Mapping[str, str]) -> OpenedWorkspace:
     """Return a workspace of the package demo with further files, and the package eyes."""
     whole = {
-        "demo/package.xml": MANIFEST.format(name="demo", build="ament_python"),
-        "demo/setup.py": SETUP,
-        "demo/resource/demo": "",
-        "demo/demo/__init__.py": "",
-        "demo/demo/talker.py": TALKER,
-        "demo/demo/pair.py": PAIR,
-        "eyes/package.xml": MANIFEST.format(name="eyes", build="ament_cmake"),
-        "eyes/CMakeLists.txt": CMAKE,
-        "eyes/src/eye.cpp": EYE,
+        **FILES,
         **files,
     }
     tree = overlaid(make_tree("ws", (), ()), {path: text.encode() for path, text in whole.items()})

@@ -1,10 +1,10 @@
 """The page of a graph: the drawing, its nodes with their ends, and the transforms."""
 
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from grader import __version__
-from grader.base.text import counted, printable
+from grader.base.text import counted, cut, printable
 from grader.report.drawing.graph_layout import Curve, DrawnBox, lay_out
 from grader.report.inspection import problem_counts
 from grader.report.pages.inspection_page import problem_card
@@ -12,11 +12,13 @@ from grader.report.pages.shell import Assets, render_page
 from grader.report.pages.viewing import ProblemCard
 from grader.report.shown_graph import ShownGraph, transform_tree
 from grader.report.writers.graph_diagrams import Diagram, diagram_of
-from grader.ros.api import GraphEnd, GraphTransform
+from grader.ros.api import GraphEnd, GraphNode, GraphTransform
 
 _MAX_DEPTH = 20  # of a frame that is indented
 _MAX_PARAMETERS = 20
-_MAX_DRAWN = 250  # boxes: a page has at most 150 KB
+# A page has at most 150 KB: so many boxes, rows of ends, findings and nodes are on it.
+_MAX_DRAWN, _MAX_ROWS, _MAX_FINDINGS, _MAX_NODES = 130, 150, 30, 200
+_MAX_LETTERS = 120  # of a text about a box, and of a list of names
 _VERBS = {
     "publisher": "publishes",
     "subscription": "subscribes",
@@ -115,7 +117,7 @@ def _draw(diagram: Diagram) -> _Drawing:
     pairs: dict[tuple[str, str], str] = {}
     for arrow in diagram.arrows:
         ends = (f"n{arrow.node}", f"t{arrow.name}")
-        if ends[1] not in items:
+        if not items.keys() >= {*ends}:
             continue
         look = "" if arrow.is_certain else "dashed"
         if arrow.fault:
@@ -130,51 +132,78 @@ def _draw(diagram: Diagram) -> _Drawing:
 def _items_of(diagram: Diagram) -> dict[str, _Item]:
     """Return what is drawn as boxes: the nodes, and as many names as a page holds."""
     items: dict[str, _Item] = {}
-    for number, node, severity in diagram.nodes:
+    for number, node, severity in diagram.nodes[:_MAX_DRAWN]:
         about = f"node {node.label}, {node.program}"
         label = (printable(node.label),)
-        items[f"n{number}"] = _Item(label, "node", severity, not node.doubt, about)
+        items[f"n{number}"] = _Item(
+            label, "node", severity, not node.doubt, cut(about, _MAX_LETTERS)
+        )
     for number, name in enumerate(diagram.names[: max(0, _MAX_DRAWN - len(items))]):
         about = f"{name.kind} {name.name}, {name.type or 'type not known'}"
         lines = tuple(printable(line) for line in (name.name, name.type) if line)
-        items[f"t{number}"] = _Item(lines, name.kind, name.severity, True, about)
+        items[f"t{number}"] = _Item(lines, name.kind, name.severity, True, cut(about, _MAX_LETTERS))
     return items
 
 
 def _cards(shown: ShownGraph) -> Iterator[_NodeCard]:
-    """Yield the nodes with their ends; what a program serves that nothing asks for is a remark."""
-    for number, node in shown.nodes:
-        rows: list[_EndRow] = []
-        unused: list[str] = []
-        problems: dict[Any, None] = dict.fromkeys(shown.findings_of(number))
+    """Yield the nodes with their ends and findings, as many as a page holds."""
+    rows_left, findings_left = _MAX_ROWS, _MAX_FINDINGS
+    for number, node in shown.nodes[:_MAX_NODES]:
+        rows = [*_rows_of(shown, number, node)]
+        problems = dict.fromkeys(shown.findings_of(number))
         for end in node.ends:
-            partners = shown.partners(number, end)
-            findings = shown.findings_at(node, end)
-            problems |= dict.fromkeys(findings)
-            if end.is_offered and end.location == node.location and not partners:
-                unused.append(end.name)
-                continue
-            others = [
-                f"{other.label}{' (does not connect)' if each.fault else ''}"
-                for other, each in partners
-            ]
-            severity = findings[0].severity if findings else ""
-            rows.append(_end_row(end, ", ".join(others), severity))
-        remarks = [f"in the process of {node.inside}"] if node.inside else []
-        if node.doubt:
-            remarks.append(f"may not run: {node.doubt}")
-        if node.opens_more:
-            remarks.append(f"may open more: {node.opens_more}")
-        if unused:
-            remarks.append(f"nothing here asks for: {', '.join(unused)}")
-        if node.parameters:
-            values = ", ".join(
-                f"{each.name} = {each.value}" for each in node.parameters[:_MAX_PARAMETERS]
-            )
-            remarks.append(f"parameters: {values}")
-        cards = [problem_card(each, shown.inspection.source) for each in problems]
-        place = node.location.file_and_line
-        yield _NodeCard(f"n{number}", node.label, node.program, place, remarks, rows, cards)
+            problems |= dict.fromkeys(shown.findings_at(node, end))
+        findings = [*problems][:findings_left]
+        remarks = [*_remarks_on(shown, number, node)]
+        hidden = len(rows) - rows_left
+        if hidden > 0:
+            remarks.append(f"{counted(hidden, 'further end')} (--format json lists all)")
+        yield _NodeCard(
+            id=f"n{number}",
+            title=node.label,
+            program=node.program,
+            place=node.location.file_and_line,
+            remarks=remarks,
+            rows=rows[:rows_left],
+            problems=[problem_card(each, shown.inspection.source) for each in findings],
+        )
+        rows_left = max(0, rows_left - len(rows))
+        findings_left -= len(findings)
+
+
+def _is_unused(shown: ShownGraph, number: int, node: GraphNode, end: GraphEnd) -> bool:
+    """Return whether a program of another package offers an end that nothing asks for."""
+    is_of_program = end.is_offered and end.location == node.location
+    return is_of_program and not shown.partners(number, end)
+
+
+def _rows_of(shown: ShownGraph, number: int, node: GraphNode) -> Iterator[_EndRow]:
+    """Yield the ends of a node, without what it offers and nothing asks for."""
+    for end in node.ends:
+        if _is_unused(shown, number, node, end):
+            continue
+        others: list[str] = []
+        for other, connection in shown.partners(number, end):
+            others.append(f"{other.label} (does not connect)" if connection.fault else other.label)
+        findings = shown.findings_at(node, end)
+        severity = findings[0].severity if findings else ""
+        yield _end_row(end, cut(", ".join(others), _MAX_LETTERS), severity)
+
+
+def _remarks_on(shown: ShownGraph, number: int, node: GraphNode) -> Iterator[str]:
+    """Yield what is said of a node besides its ends."""
+    if node.inside:
+        yield f"in the process of {node.inside}"
+    if node.doubt:
+        yield f"may not run: {node.doubt}"
+    if node.opens_more:
+        yield f"may open more: {node.opens_more}"
+    unused = [end.name for end in node.ends if _is_unused(shown, number, node, end)]
+    if unused:
+        yield f"nothing here asks for: {', '.join(unused)}"
+    if node.parameters:
+        values = [f"{each.name} = {each.value}" for each in node.parameters[:_MAX_PARAMETERS]]
+        yield f"parameters: {', '.join(values)}"
 
 
 def _end_row(end: GraphEnd, partners: str, severity: str) -> _EndRow:

@@ -47,6 +47,7 @@ class Diagram(NamedTuple):
 def diagram_of(shown: ShownGraph) -> Diagram:
     """Return what is drawn of a graph."""
     names: dict[tuple[str, str], _DiagramName] = {}
+    places: dict[tuple[str, str], int] = {}
     arrows: list[_DiagramArrow] = []
     nodes: list[tuple[int, GraphNode, str]] = []
     for number, node in shown.nodes:
@@ -55,6 +56,7 @@ def diagram_of(shown: ShownGraph) -> Diagram:
             if not _is_drawn(shown, number, node, end):
                 continue
             key = (end.carrier, end.name)
+            place = places.setdefault(key, len(places))
             severity = severity_of(shown.findings_at(node, end))
             before = names.setdefault(key, _DiagramName(*key, end.type, severity))
             names[key] = before._replace(
@@ -66,7 +68,7 @@ def diagram_of(shown: ShownGraph) -> Diagram:
             is_from = end.kind in ("publisher", "client", "action client")
             is_certain = not (end.doubt or node.doubt)
             fault = faults[0] if faults else ""
-            arrows.append(_DiagramArrow(number, [*names].index(key), is_from, is_certain, fault))
+            arrows.append(_DiagramArrow(number, place, is_from, is_certain, fault))
     return Diagram(tuple(nodes), tuple(names.values()), tuple(arrows))
 
 

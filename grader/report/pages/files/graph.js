@@ -6,6 +6,8 @@
     /** @type {HTMLElement} */ (document.getElementById(id));
   const items = /** @type {SVGGElement[]} */ ([...document.querySelectorAll(".item")]);
   const arrows = /** @type {SVGPathElement[]} */ ([...document.querySelectorAll(".arrow")]);
+  /** Return what an item is, as its title says. @param {SVGGElement} item */
+  const nameOf = (item) => item.querySelector("title")?.textContent || "";
   const filter = /** @type {HTMLInputElement} */ (find("filter"));
 
   /** Mark the arrows of an item, and say what it is. @param {SVGGElement | null} item */
@@ -14,7 +16,7 @@
       const ends = [arrow.dataset.from, arrow.dataset.to];
       arrow.classList.toggle("near", item !== null && ends.includes(item.id));
     }
-    find("about").textContent = item ? item.dataset.name || "" : "";
+    find("about").textContent = item ? nameOf(item) : "";
   };
 
   /** Return the nodes of an item: itself, or those that its arrows lead to. @param {SVGGElement} item */
@@ -41,7 +43,7 @@
   for (const item of items) {
     item.setAttribute("tabindex", "0");
     item.setAttribute("role", "button");
-    item.setAttribute("aria-label", item.dataset.name || "");
+    item.setAttribute("aria-label", nameOf(item));
     item.addEventListener("mouseenter", () => mark(item));
     item.addEventListener("mouseleave", () => mark(null));
     item.addEventListener("focus", () => mark(item));
@@ -59,7 +61,7 @@
   filter.addEventListener("input", () => {
     const wanted = filter.value.toLowerCase();
     const isNamed = (/** @type {SVGGElement} */ item) =>
-      (item.dataset.name || "").toLowerCase().includes(wanted);
+      (nameOf(item)).toLowerCase().includes(wanted);
     const named = new Set(items.filter(isNamed).map((item) => item.id));
     const shown = new Set(named);
     for (const arrow of arrows) {
