@@ -460,3 +460,62 @@ def test_the_launch_file_that_includes_most_is_the_first() -> None:
     ]
     off = opened.under({"on": "false"}).launch_graph(paths[2])
     assert (labels(off), [each.program for each in off.not_started]) == ([], ["demo/talker"])
+
+
+_BRANCHES = """\
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import String
+
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__('talker')
+        if self.declare_parameter('loud', False).value:
+            self.create_publisher(String, 'loud', 10)
+        self.create_publisher(String, 'quiet', 10)
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Talker())
+
+
+if __name__ == '__main__':
+    main()
+"""
+_EYE_WITH_BRANCH = """\
+#include <rclcpp/rclcpp.hpp>
+#include <rclcpp_components/register_node_macro.hpp>
+#include <std_msgs/msg/string.hpp>
+namespace eyes {
+class Eye : public rclcpp::Node {
+public:
+  explicit Eye(const rclcpp::NodeOptions & options) : Node("eye", options) {
+    if (declare_parameter("loud", false)) {
+      a_ = create_publisher<std_msgs::msg::String>("loud", 10);
+    }
+    b_ = create_publisher<std_msgs::msg::String>("quiet", 10);
+  }
+  rclcpp::Publisher<std_msgs::msg::String>::SharedPtr a_, b_;
+};
+}
+RCLCPP_COMPONENTS_REGISTER_NODE(eyes::Eye)
+"""
+
+
+def test_what_a_condition_in_code_decides_is_not_certain() -> None:
+    """In Python and in C++."""
+    path = "demo/launch/demo.launch.py"
+    text = launch_file(
+        "Node(package='demo', executable='talker')",
+        "LoadComposableNodes(target_container='/x', composable_node_descriptions=["
+        "ComposableNode(package='eyes', plugin='eyes::Eye')])",
+    )
+    files = {path: text, "demo/demo/talker.py": _BRANCHES, "eyes/src/eye.cpp": _EYE_WITH_BRANCH}
+    for node in open_files(files).launch_graph(path).nodes:
+        doubts = {end.name: end.doubt for end in node.ends}
+        assert doubts == {
+            "/loud": "a condition in the code decides whether it is opened",
+            "/quiet": "",
+        }

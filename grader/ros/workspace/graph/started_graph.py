@@ -41,7 +41,12 @@ from grader.ros.workspace.model.workspace import Workspace
 _RVIZ = "rviz2"
 _AT_RUN_TIME = "whether it is started is known only at run time"
 _HIDDEN = frozenset({"/rosout", "/parameter_events", "/tf", "/tf_static"})
-_TOPICS_OF_DISPLAYS = ("Topic", "Description Topic", "Depth Map Topic")
+# The settings of displays that name topics, with their types; empty for that of the display.
+_TOPICS_OF_DISPLAYS = {
+    "Topic": "",
+    "Description Topic": "std_msgs.msg.String",
+    "Update Topic": "map_msgs.msg.OccupancyGridUpdate",
+}
 _TOO_MUCH = "reading it takes more work than one workspace may use"
 
 
@@ -141,6 +146,8 @@ def _own_node(
     try:
         for end in opened_by_code(workspace, node, facts, making.number):
             doubt = "" if end.is_known else "a part of its name is computed"
+            if end.endpoint.is_conditional:
+                doubt = doubt or "a condition in the code decides whether it is opened"
             ends.append(
                 GraphEnd(
                     end.kind,
@@ -152,6 +159,10 @@ def _own_node(
                 )
             )
         given = workspace.parameters.read(making.package, node, name or "")
+        row = opened_ends(node.package, node.executable)
+        if opens_more and row is not None:  # a well-known program whose sources are here
+            named = node._replace(node_name=name)
+            ends += ends_of_row(row, named, given, making.release)
         defaults = {each.name: each.default for each in facts.parameters if each.is_declared}
         parameters += _different(given, defaults)
     except NotDecided:
@@ -262,10 +273,10 @@ def _displays(making: _Making) -> Iterator[GraphEnd]:
                 continue
             for display in package.rviz(path).displays:
                 kind = display_types().get(display.kind, "")
-                for key in _TOPICS_OF_DISPLAYS if display.enabled else ():
+                for key, other in _TOPICS_OF_DISPLAYS.items() if display.enabled else ():
                     topic = display.node.get(key, "Value") or display.node.get(key)
                     if topic is not None and topic.text and topic.text.startswith("/"):
-                        message = kind if key == "Topic" else "std_msgs.msg.String"
+                        message = other or kind
                         yield GraphEnd(
                             "subscription",
                             topic.text,
