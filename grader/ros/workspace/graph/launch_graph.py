@@ -146,7 +146,11 @@ class Connection(NamedTuple):
 
 
 def connections_in(graph: LaunchGraph) -> tuple[Connection, ...]:
-    """Return each pair of ends that have one name, in the order of the nodes that offer them."""
+    """Return each pair of ends that have one name, in the order of the nodes that offer them.
+
+    Where it is not certain that a node has an end, one of another type connects nothing: another
+    parameter may give it the type of the other end.
+    """
     asking: dict[tuple[str, str], list[tuple[int, GraphEnd]]] = {}
     for number, node in enumerate(graph.nodes):
         for end in node.ends:
@@ -155,25 +159,16 @@ def connections_in(graph: LaunchGraph) -> tuple[Connection, ...]:
     connections: list[Connection] = []
     for number, node in enumerate(graph.nodes):
         for end in node.ends:
-            if not end.is_offered:
-                continue
-            for other_number, other in asking.get((OPPOSITES[end.kind], end.name), ()):
-                doubts = (
-                    graph.nodes[number].doubt,
-                    end.doubt,
-                    graph.nodes[other_number].doubt,
-                    other.doubt,
-                )
+            others = asking.get((OPPOSITES[end.kind], end.name), ()) if end.is_offered else ()
+            for other_number, other in others:
+                fault = _fault_between(end, other)
+                doubt = end.doubt or other.doubt
+                if fault and doubt:
+                    continue
+                doubt = doubt or node.doubt or graph.nodes[other_number].doubt
                 connections.append(
                     Connection(
-                        end.carrier,
-                        end.name,
-                        number,
-                        end,
-                        other_number,
-                        other,
-                        _fault_between(end, other),
-                        next(filter(None, doubts), ""),
+                        end.carrier, end.name, number, end, other_number, other, fault, doubt
                     )
                 )
     return tuple(connections)
