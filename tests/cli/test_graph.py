@@ -207,6 +207,60 @@ def test_a_finding_of_an_include_is_at_its_first_node(workspace: Path) -> None:
     assert [len(node["findings"]) > 0 for node in nodes] == [True, False, False]
 
 
+_LATCHED = """\
+import rclpy
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from std_msgs.msg import String
+
+
+class Talker(Node):
+    def __init__(self):
+        super().__init__('talker')
+        self.declare_parameter('topic', 'chatter')
+        plain = QoSProfile(depth=1, durability=DurabilityPolicy.VOLATILE)
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.create_publisher(String, self.get_parameter('topic').value, plain)
+        self.create_subscription(String, 'answer', print, latched)
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Talker())
+"""
+
+
+def test_the_text_says_what_is_not_certain(workspace: Path) -> None:
+    """Qualities that do not fit, computed names, long values, and what may start more."""
+    (workspace / "demo/demo/talker.py").write_text(_LATCHED)
+    add_launch(
+        workspace,
+        "Node(package='demo', executable='talker', name='a', parameters=[{'topic': 'answer'}])",
+        f"Node(package='turtlesim', executable='turtlesim_node', parameters=[{{'a': {'x' * 99!r}}}])",
+        "Node(package='demo', executable='pair', condition=IfCondition(os.environ.get('X', '')))",
+        "Node(package='demo', executable='talker', parameters=[{'topic': os.environ.get('X')}])",
+        "Node(package=os.environ.get('P'), executable='x')",
+        "Node(package='tf2_ros', executable='static_transform_publisher', namespace='n',"
+        " arguments=['0', '0', '1', '0', '0', '0', 'map', 'odom'])",
+    )
+    _, text, _ = graph(workspace)
+    for words in (
+        "(does not connect: volatile is offered, transient local is asked for)",
+        "depth 1, transient local]",
+        "-> /second (perhaps)",
+        "publishes * [std_msgs/msg/String, depth 1] -> nothing that is known (not certain: a part",
+        f"a = {'x' * 40}...",
+        "What may start more\n  the program of a node is not evaluated",
+        "Transforms\n  map\n    odom  static, static_transform_publisher (not certain)",
+    ):
+        assert words in text, words
+    drawn = graph(workspace, "--format", "mermaid")[1]
+    assert drawn.count('(["*<br/>') == 1
+    page = graph(workspace, "--format", "html")[1]
+    assert "(does not connect)" in page
+    assert "static, static_transform_publisher (not certain)" in page
+
+
 def test_groups_and_dashes(workspace: Path) -> None:
     """Nodes of a namespace are a group; what depends on a run is dashed."""
     add_launch(

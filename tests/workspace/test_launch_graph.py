@@ -13,7 +13,17 @@ from grader.ros.workspace.graph.launch_graph import (
     unconnected_ends,
 )
 from grader.ros.workspace.graph.manual_ends import manual_ends
-from tests.workspace.launch_graphs import ends_of, graph_of_actions, launch_file, open_files
+from grader.ros.workspace.model.given_files import GivenFiles
+from tests.workspace.launch_graphs import (
+    CMAKE,
+    EYE,
+    MANIFEST,
+    TALKER,
+    ends_of,
+    graph_of_actions,
+    launch_file,
+    open_files,
+)
 
 _STRING = "std_msgs/msg/String"
 
@@ -384,16 +394,14 @@ def test_an_unknown_action_is_said() -> None:
     assert graph.unread[0].reason.startswith("the program of a node is not evaluated")
 
 
-@pytest.mark.parametrize(
-    "name", ["opened_by_code", "ends_of_row", "spawned_controllers", "edges_in"]
-)
+@pytest.mark.parametrize("name", ["opened_by_code", "read", "spawned_controllers", "edges_in"])
 def test_what_takes_too_much_work_is_left_open(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     """The rest of the graph is there."""
 
     def fail(*_: Any, **__: Any) -> Any:
         raise NotDecided("too much", "too much")
 
-    monkeypatch.setattr(started_graph, name, fail)
+    monkeypatch.setattr(GivenFiles if name == "read" else started_graph, name, fail)
     graph = graph_of_actions(
         "Node(package='demo', executable='talker')",
         "Node(package='turtlesim', executable='turtlesim_node')",
@@ -403,8 +411,8 @@ def test_what_takes_too_much_work_is_left_open(monkeypatch: pytest.MonkeyPatch, 
         c_yaml=_CONTROLLERS,
     )
     talker, turtle = graph.nodes[:2]
-    assert (talker.opens_more != "") is (name == "opened_by_code")
-    assert ("more work" in turtle.opens_more) is (name == "ends_of_row")
+    assert (talker.opens_more != "") is (name in ("opened_by_code", "read"))
+    assert ("more work" in turtle.opens_more) is (name == "read")
     assert ("/drive" in labels(graph)) is (name != "spawned_controllers")
     assert (graph.transforms == ()) is (name == "edges_in")
 
@@ -519,3 +527,41 @@ def test_what_a_condition_in_code_decides_is_not_certain() -> None:
             "/loud": "a condition in the code decides whether it is opened",
             "/quiet": "",
         }
+
+
+def test_a_well_known_program_in_the_workspace_has_its_row() -> None:
+    """Where its code is not read whole."""
+    path = "joy/launch/demo.launch.py"
+    eye = (
+        EYE.replace("eyes", "joy")
+        .replace("Eye", "Joy")
+        .replace('declare_parameter("gain", 1.0);', "open_other(*this);")
+    )
+    files = {
+        "joy/package.xml": MANIFEST.format(name="joy", build="ament_cmake"),
+        "joy/CMakeLists.txt": CMAKE.replace("eyes", "joy").replace("::Eye", "::Joy"),
+        "joy/src/eye.cpp": eye,
+        path: launch_file(
+            "LoadComposableNodes(target_container='/x', composable_node_descriptions=["
+            "ComposableNode(package='joy', plugin='joy::Joy')])"
+        ),
+    }
+    [node] = open_files(files).launch_graph(path).nodes
+    assert node.opens_more
+    assert ("publisher", "/joy", "sensor_msgs/msg/Joy") in ends_of(node)
+
+
+def test_tf_has_no_end() -> None:
+    """A node that publishes it by hand has its other topics only."""
+    code = TALKER.replace("'answer'", "'/tf'")
+    path = "demo/launch/demo.launch.py"
+    text = launch_file(
+        "Node(package='demo', executable='talker')",
+        "Node(package='rviz2', executable='rviz2')",
+    )
+    other = "other/rviz/a.rviz"
+    files = {path: text, "demo/demo/talker.py": code, other: _RVIZ}
+    files["other/package.xml"] = MANIFEST.format(name="other", build="ament_cmake")
+    graph = open_files(files).launch_graph(path)
+    assert [end.name for end in graph.nodes[0].ends] == ["/chatter"]
+    assert [end.kind for end in graph.nodes[1].ends] == ["publisher"] * 3

@@ -149,7 +149,10 @@ def _with_few_crossings(
     for sweep in range(_SWEEPS):
         places = _places_in(order)
         for names in order if sweep % 2 == 0 else reversed(order):
-            middles = {name: _middle(name, neighbours[name], places) for name in names}
+            middles: dict[str, float] = {}
+            for name in names:
+                others = neighbours[name]
+                middles[name] = sum(places[other] for other in others) / len(others)
             names.sort(key=middles.__getitem__)
             places.update(_places_in([names]))
     return order
@@ -162,12 +165,6 @@ def _places_in(order: Sequence[Sequence[str]]) -> dict[str, float]:
         for index, name in enumerate(names):
             places[name] = (index + 0.5) / len(names) - 0.5
     return places
-
-
-def _middle(name: str, neighbours: Sequence[str], places: Mapping[str, float]) -> float:
-    if not neighbours:
-        return places[name]
-    return sum(places[other] for other in neighbours) / len(neighbours)
 
 
 def _place_others(others: Sequence[DrawnBox], boxes: dict[str, DrawnBox], height: float) -> float:

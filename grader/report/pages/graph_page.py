@@ -138,10 +138,15 @@ def _items_of(diagram: Diagram) -> dict[str, _Item]:
         items[f"n{number}"] = _Item(
             label, "node", severity, not node.doubt, cut(about, _MAX_LETTERS)
         )
-    for number, name in enumerate(diagram.names[: max(0, _MAX_DRAWN - len(items))]):
-        about = f"{name.kind} {name.name}, {name.type or 'type not known'}"
-        lines = tuple(printable(line) for line in (name.name, name.type) if line)
-        items[f"t{number}"] = _Item(lines, name.kind, name.severity, True, cut(about, _MAX_LETTERS))
+    most_names = max(0, _MAX_DRAWN - len(items))
+    for number, name in enumerate(diagram.names[:most_names]):
+        lines = [printable(name.name)]
+        about = f"{name.kind} {name.name}, type not known"
+        if name.type:
+            lines.append(printable(name.type))
+            about = f"{name.kind} {name.name}, {name.type}"
+        about = cut(about, _MAX_LETTERS)
+        items[f"t{number}"] = _Item(tuple(lines), name.kind, name.severity, True, about)
     return items
 
 

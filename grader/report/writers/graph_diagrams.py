@@ -46,8 +46,8 @@ class Diagram(NamedTuple):
 
 def diagram_of(shown: ShownGraph) -> Diagram:
     """Return what is drawn of a graph."""
-    names: dict[tuple[str, str], _DiagramName] = {}
-    places: dict[tuple[str, str], int] = {}
+    names: dict[tuple[str, str, int], _DiagramName] = {}
+    places: dict[tuple[str, str, int], int] = {}
     arrows: list[_DiagramArrow] = []
     nodes: list[tuple[int, GraphNode, str]] = []
     for number, node in shown.nodes:
@@ -55,10 +55,12 @@ def diagram_of(shown: ShownGraph) -> Diagram:
         for end in node.ends:
             if not _is_drawn(shown, number, node, end):
                 continue
-            key = (end.carrier, end.name)
+            # A name of which a part is not known may be another one for each node.
+            own_number = number if "*" in end.name else -1
+            key = (end.carrier, end.name, own_number)
             place = places.setdefault(key, len(places))
             severity = severity_of(shown.findings_at(node, end))
-            before = names.setdefault(key, _DiagramName(*key, end.type, severity))
+            before = names.setdefault(key, _DiagramName(end.carrier, end.name, end.type, severity))
             names[key] = before._replace(
                 type=before.type or end.type,
                 severity=min(filter(None, (before.severity, severity)), default=""),

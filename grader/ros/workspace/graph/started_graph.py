@@ -218,8 +218,6 @@ def _known_node(
     opens_more = f"what {node.name} opens is not known"
     if row is not None:
         opens_more = row.opens_more
-    elif node.package == BRIDGE:
-        opens_more = ""
     try:
         given = making.workspace.parameters.read(making.package, node, name or "")
         if row is not None:
@@ -290,9 +288,7 @@ def _components(making: _Making) -> Iterator[GraphNode]:
     """Yield the containers of a launch file, and the components that it loads."""
     launch = making.launch
     places = {node.location for node in launch.nodes}
-    first = ""
     for container in launch.containers:
-        first = first or container.name or ""
         if container.when is not False and container.location not in places:
             doubt = "" if container.when else _AT_RUN_TIME
             name, at = container.name or "", container.location
@@ -324,6 +320,7 @@ def _controllers(making: _Making) -> Iterator[GraphNode]:
     try:
         spawned = spawned_controllers(workspace, making.number)
         defined = {each.name: each for each in reversed(defined_controllers(workspace))}
+        owners = workspace.parameters.owners
     except NotDecided:
         return
     managers = [node for node in launch.nodes if node.executable == CONTROL_NODE and node.when]
@@ -340,17 +337,21 @@ def _controllers(making: _Making) -> Iterator[GraphNode]:
         remaps = (*spawned.get(started.node_name, ()), *(manager.remaps or ()))
         node = started._replace(remaps=remaps if manager.remaps is not None else None)
         inside = _full_name(started, MANAGER)
-        yield _controller(making, node, controller, spawner, inside)
+        gifts = owners.get(started.node_name or "", [])
+        values = gifts[0].values if gifts else {}
+        given = NodeParameters(values, node, gifts[0].unknown if gifts else "")
+        yield _controller(making, given, controller, spawner, inside)
 
 
 def _controller(
     making: _Making,
-    node: StartedNode,
+    given: NodeParameters,
     controller: Controller | None,
     spawner: StartedNode,
     inside: str,
 ) -> GraphNode:
     """Return a controller as a node."""
+    node = given.node
     name, doubt = _full_name(node, node.node_name), _doubt_of(spawner)
     if controller is None:
         reason = "no file defines it"
@@ -361,8 +362,6 @@ def _controller(
     row = opened_ends(controller_row(kind).package or package, cls)
     ends: Sequence[GraphEnd] = ()
     opens_more = f"what {kind} opens is not known"
-    gifts = making.workspace.parameters.owners.get(controller.name, [])
-    given = gifts[0] if gifts else NodeParameters({}, node)
     if row is not None:
         located = node._replace(location=controller.location)
         ends = _shown([*ends_of_row(row, located, given, making.release)])
