@@ -25,7 +25,9 @@
       return [item.id];
     }
     const ends = arrows.map((arrow) => [arrow.dataset.from || "", arrow.dataset.to || ""]);
-    return ends.filter((pair) => pair.includes(item.id)).map((pair) => pair.find((id) => id !== item.id) || "");
+    return ends
+      .filter((pair) => pair.includes(item.id))
+      .map((pair) => pair.find((id) => id !== item.id) || "");
   };
 
   /** Open the cards of an item's nodes, and show the first. @param {SVGGElement} item */
@@ -61,7 +63,7 @@
   filter.addEventListener("input", () => {
     const wanted = filter.value.toLowerCase();
     const isNamed = (/** @type {SVGGElement} */ item) =>
-      (nameOf(item)).toLowerCase().includes(wanted);
+      nameOf(item).toLowerCase().includes(wanted);
     const named = new Set(items.filter(isNamed).map((item) => item.id));
     const shown = new Set(named);
     for (const arrow of arrows) {
