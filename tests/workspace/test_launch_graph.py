@@ -565,3 +565,70 @@ def test_tf_has_no_end() -> None:
     graph = open_files(files).launch_graph(path)
     assert [end.name for end in graph.nodes[0].ends] == ["/chatter"]
     assert [end.kind for end in graph.nodes[1].ends] == ["publisher"] * 3
+
+
+_ROBOT = """<?xml version="1.0"?>
+<robot name="cart"><link name="base"/>
+  <gazebo>
+    <plugin name="drive" filename="libgazebo_ros_diff_drive.so">
+      <ros><namespace>/demo</namespace><remapping>cmd_vel:=go</remapping><remapping>bad</remapping></ros>
+      <publish_odom>true</publish_odom>
+    </plugin>
+    <plugin name="other" filename="libother.so"/>
+  </gazebo>
+  <gazebo reference="base">
+    <sensor name="lidar" type="ray">
+      <plugin name="laser" filename="libgazebo_ros_ray_sensor.so">
+        <ros><remapping>~/out:=scan</remapping></ros>
+        <output_type>sensor_msgs/LaserScan</output_type>
+      </plugin>
+    </sensor>
+    <sensor name="eye" type="camera">
+      <plugin name="eye_plugin" filename="libgazebo_ros_camera.so"><camera_name>eye</camera_name></plugin>
+      <plugin filename="libgazebo_ros_camera.so"/>
+    </sensor>
+  </gazebo>
+</robot>
+"""
+_GAZEBO = (
+    "IncludeLaunchDescription(PythonLaunchDescriptionSource(os.path.join("
+    "get_package_share_directory('gazebo_ros'), 'launch', 'gazebo.launch.py')))"
+)
+_SPAWN = "Node(package='gazebo_ros', executable='spawn_entity.py', arguments=['-topic', 'a'])"
+
+
+@pytest.mark.parametrize(
+    ("start", "is_certain"),
+    [
+        ((_GAZEBO, _SPAWN), True),
+        ((_GAZEBO,), False),
+        (("ExecuteProcess(cmd=['gzserver', 'a.world'])", _SPAWN), True),
+    ],
+)
+def test_plugins_of_gazebo_classic_are_nodes(start: tuple[str, ...], is_certain: bool) -> None:
+    """With their namespaces and remappings, and by what their elements switch on."""
+    path = "demo/launch/demo.launch.py"
+    files = {path: launch_file(*start), "demo/urdf/cart.urdf": _ROBOT}
+    graph = open_files(files).launch_graph(path)
+    plugins = [node for node in graph.nodes if node.program.startswith("gazebo_plugins/")]
+    assert [node.name for node in plugins] == ["/demo/drive", "/laser", "/eye_plugin", ""]
+    drive, laser, camera, unnamed = plugins
+    assert ends_of(drive) == [
+        ("subscription", "/demo/go", "geometry_msgs/msg/Twist"),
+        ("publisher", "/demo/odom", "nav_msgs/msg/Odometry"),
+    ]
+    assert ends_of(laser) == [("publisher", "/scan", "sensor_msgs/msg/LaserScan")]
+    assert [end.name for end in camera.ends] == ["/eye/image_raw", "/eye/camera_info"]
+    assert unnamed.ends == ()
+    assert all((node.doubt == "") is is_certain for node in plugins)
+    other = open_files({path: launch_file(_SPAWN), "demo/urdf/cart.urdf": _ROBOT})
+    assert [node.name for node in other.launch_graph(path).nodes] == []
+
+
+def test_a_bridge_of_images_publishes_what_its_arguments_name() -> None:
+    """Options are none of them."""
+    graph = graph_of_actions(
+        "Node(package='ros_gz_image', executable='image_bridge', arguments=['camera/image', '--x'])"
+    )
+    image = ("publisher", "/camera/image", "sensor_msgs/msg/Image")
+    assert ends_of(graph.nodes[0]) == [image]

@@ -29,6 +29,7 @@ from grader.ros.workspace.graph.launch_graph import (
 )
 from grader.ros.workspace.graph.node_ends import ends_of
 from grader.ros.workspace.graph.opened_by_programs import ends_of_row, release_of, shown_type
+from grader.ros.workspace.graph.plugin_nodes import plugin_nodes
 from grader.ros.workspace.graph.started_controllers import (
     Controller,
     defined_controllers,
@@ -38,7 +39,7 @@ from grader.ros.workspace.graph.transform_edges import edges_in
 from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
 from grader.ros.workspace.model.workspace import Workspace
 
-_RVIZ = "rviz2"
+_RVIZ, _IMAGE_BRIDGE = "rviz2", "image_bridge"
 _AT_RUN_TIME = "whether it is started is known only at run time"
 _HIDDEN = frozenset({"/rosout", "/parameter_events", "/tf", "/tf_static"})
 # The settings of displays that name topics, with their types; empty for that of the display.
@@ -47,6 +48,7 @@ _TOPICS_OF_DISPLAYS = {
     "Description Topic": "std_msgs.msg.String",
     "Update Topic": "map_msgs.msg.OccupancyGridUpdate",
 }
+_GAZEBO_CLASSIC, _SPAWN = ("gazebo", "gzserver"), "gazebo_ros/spawn_entity.py"
 _TOO_MUCH = "reading it takes more work than one workspace may use"
 
 
@@ -78,6 +80,7 @@ def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
     nodes += _components(making)
     nodes += _controllers(making)
     nodes += _included_programs(making, processes)
+    nodes += _plugins(making, [*nodes], processes)
     processes += [EndedProcess(command, _start(launch)) for command in launch.commands]
     return LaunchGraph(
         launch.source.path,
@@ -231,6 +234,8 @@ def _known_node(
         parameters += _different(given, defaults)
         if node.executable == _RVIZ:
             ends += _displays(making)
+        if node.executable == _IMAGE_BRIDGE:
+            ends += _bridged_images(named)
     except NotDecided:
         opens_more = _TOO_MUCH
     return GraphNode(
@@ -259,6 +264,15 @@ def _ends_for_rules(making: _Making, node: StartedNode) -> Iterator[GraphEnd]:
             yield GraphEnd(
                 end.kind, end.name, shown_type(end.type), end.location, end.endpoint.qos, note=note
             )
+
+
+def _bridged_images(node: StartedNode) -> Iterator[GraphEnd]:
+    """Yield the images that the arguments of a bridge of images name."""
+    for word in node.arguments or ():
+        topic = node.topic(f"/{word.strip('/')}") if word and not word.startswith("-") else None
+        if topic is not None:
+            note = f"{(word or '').strip('/')} of Gazebo"
+            yield GraphEnd("publisher", topic, "sensor_msgs/msg/Image", node.location, note=note)
 
 
 def _displays(making: _Making) -> Iterator[GraphEnd]:
@@ -390,6 +404,17 @@ def _included_programs(making: _Making, processes: list[EndedProcess]) -> Iterat
                 processes.append(EndedProcess(included.node, node.location, _doubt_of(node)))
             else:
                 yield _known_node(making, node, "program")
+
+
+def _plugins(
+    making: _Making, nodes: Sequence[GraphNode], processes: Sequence[EndedProcess]
+) -> Iterator[GraphNode]:
+    """Yield the nodes of plug-ins where Gazebo Classic is started."""
+    programs = {node.program for node in nodes}
+    commands = {command.split()[0] for command in making.launch.commands if command.strip()}
+    if "gazebo_ros/gazebo" in programs or not commands.isdisjoint(_GAZEBO_CLASSIC):
+        is_spawned = any(process.program == _SPAWN for process in processes)
+        yield from plugin_nodes(making.workspace, making.release, is_spawned=is_spawned)
 
 
 def _transforms(making: _Making) -> Iterator[GraphTransform]:
