@@ -243,6 +243,11 @@ Visualization Manager:
       Enabled: false
       Topic: {Value: /map}
   Global Options: {Fixed Frame: odom}
+  Tools:
+    - Class: rviz_default_plugins/Interact
+    - Class: rviz_default_plugins/SetGoal
+      Topic: /goal
+    - Hide Inactive Objects: true
 """
 _BRIDGE_ROWS = """\
 - {ros_topic_name: scan, gz_topic_name: lidar, ros_type_name: sensor_msgs/msg/LaserScan,
@@ -265,7 +270,7 @@ def test_displays_read_what_a_bridge_publishes() -> None:
     assert bridge.ends[0].note == "lidar of Gazebo (gz.msgs.LaserScan)"
     read = [end.name for end in rviz.ends if end.kind == "subscription"]
     assert read == ["/scan", "/robot_description"]
-    assert rviz.ends[0].kind == "publisher"
+    assert [end.name for end in rviz.ends if end.kind == "publisher"] == ["/goal"]
 
 
 def test_included_files_of_other_packages_start_their_nodes() -> None:
@@ -632,3 +637,19 @@ def test_a_bridge_of_images_publishes_what_its_arguments_name() -> None:
     )
     image = ("publisher", "/camera/image", "sensor_msgs/msg/Image")
     assert ends_of(graph.nodes[0]) == [image]
+
+
+def test_rviz_in_a_namespace_that_is_not_known() -> None:
+    """Its displays may read another topic; a file that is broken is none."""
+    rviz = (
+        "Node(package='rviz2', executable='rviz2', namespace=os.environ.get('N'),"
+        " arguments=['-d', os.path.join(share, 'config', 'v.rviz')])"
+    )
+    [node] = graph_of_actions(rviz, v_rviz=_RVIZ).nodes
+    assert [(end.name, bool(end.doubt)) for end in node.ends] == [
+        ("/scan", True),
+        ("/robot_description", True),
+        ("/goal", True),
+    ]
+    [node] = graph_of_actions(rviz, v_rviz="{").nodes
+    assert {end.kind for end in node.ends} == {"publisher"}

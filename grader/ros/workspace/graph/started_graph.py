@@ -7,7 +7,6 @@ from grader.base.errors import NotDecided
 from grader.base.source import Location
 from grader.ros.known.end_rows import nodes_of_launch_file, opened_ends
 from grader.ros.known.package_rows import controller_row, program_row
-from grader.ros.known.package_tables import display_types
 from grader.ros.known.parameter_rows import row_for
 from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import Launch, StartedNode
@@ -30,6 +29,7 @@ from grader.ros.workspace.graph.launch_graph import (
 from grader.ros.workspace.graph.node_ends import ends_of
 from grader.ros.workspace.graph.opened_by_programs import ends_of_row, release_of, shown_type
 from grader.ros.workspace.graph.plugin_nodes import plugin_nodes
+from grader.ros.workspace.graph.rviz_ends import ends_of_displays, ends_of_tools, rviz_files
 from grader.ros.workspace.graph.started_controllers import (
     Controller,
     defined_controllers,
@@ -42,12 +42,6 @@ from grader.ros.workspace.model.workspace import Workspace
 _RVIZ, _IMAGE_BRIDGE = "rviz2", "image_bridge"
 _AT_RUN_TIME = "whether it is started is known only at run time"
 _HIDDEN = frozenset({"/rosout", "/parameter_events", "/tf", "/tf_static"})
-# The settings of displays that name topics, with their types; empty for that of the display.
-_TOPICS_OF_DISPLAYS = {
-    "Topic": "",
-    "Description Topic": "std_msgs.msg.String",
-    "Update Topic": "map_msgs.msg.OccupancyGridUpdate",
-}
 _GAZEBO_CLASSIC, _SPAWN = ("gazebo", "gzserver"), "gazebo_ros/spawn_entity.py"
 _TOO_MUCH = "reading it takes more work than one workspace may use"
 
@@ -225,6 +219,8 @@ def _known_node(
         given = making.workspace.parameters.read(making.package, node, name or "")
         if row is not None:
             ends += ends_of_row(row, named, given, making.release)
+        if node.executable == _RVIZ:
+            ends = _ends_of_rviz(making, named) or ends
         ends += _ends_for_rules(making, named)
         defaults: dict[str | None, object] = {}
         for parameter in given.values:
@@ -232,8 +228,6 @@ def _known_node(
             if parameter_row is not None:
                 defaults[parameter] = parameter_row.default
         parameters += _different(given, defaults)
-        if node.executable == _RVIZ:
-            ends += _displays(making)
         if node.executable == _IMAGE_BRIDGE:
             ends += _bridged_images(named)
     except NotDecided:
@@ -266,6 +260,15 @@ def _ends_for_rules(making: _Making, node: StartedNode) -> Iterator[GraphEnd]:
             )
 
 
+def _ends_of_rviz(making: _Making, node: StartedNode) -> list[GraphEnd]:
+    """Return what displays read and tools publish; nothing if no file of RViz is known."""
+    ends: list[GraphEnd] = []
+    for file in rviz_files(making.workspace, making.launch):
+        ends += ends_of_displays(file, node)
+        ends += ends_of_tools(file, node)
+    return ends
+
+
 def _bridged_images(node: StartedNode) -> Iterator[GraphEnd]:
     """Yield the images that the arguments of a bridge of images name."""
     for word in node.arguments or ():
@@ -273,29 +276,6 @@ def _bridged_images(node: StartedNode) -> Iterator[GraphEnd]:
         if topic is not None:
             note = f"{(word or '').strip('/')} of Gazebo"
             yield GraphEnd("publisher", topic, "sensor_msgs/msg/Image", node.location, note=note)
-
-
-def _displays(making: _Making) -> Iterator[GraphEnd]:
-    """Yield what the displays of the files read that launch files give RViz."""
-    workspace = making.workspace
-    paths = {workspace.installed.source_of(each.path or "") for each in making.launch.named("rviz")}
-    for package in workspace.packages:
-        for path in package.rviz_files:
-            if package.path(path) not in paths:
-                continue
-            for display in package.rviz(path).displays:
-                kind = display_types().get(display.kind, "")
-                for key, other in _TOPICS_OF_DISPLAYS.items() if display.enabled else ():
-                    topic = display.node.get(key, "Value") or display.node.get(key)
-                    if topic is not None and topic.text and topic.text.startswith("/"):
-                        message = other or kind
-                        yield GraphEnd(
-                            "subscription",
-                            topic.text,
-                            shown_type(message),
-                            topic.location,
-                            note=f"the display {display.kind}",
-                        )
 
 
 def _components(making: _Making) -> Iterator[GraphNode]:
