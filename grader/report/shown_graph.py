@@ -54,17 +54,9 @@ class ShownGraph:
         return [pair for pair in numbered if pair[0] in shown or pair[1].label == self.node]
 
     @cached_property
-    def unconnected(self) -> Sequence[tuple[int, GraphEnd]]:
-        """The ends that nothing of the launch is known to connect to, with their nodes."""
-        return unconnected_ends(self.graph, connections_in(self.graph))
-
-    @cached_property
     def manual(self) -> Sequence[tuple[GraphEnd, list[str]]]:
-        """The ends that programs of another terminal are made for, each once, with these."""
-        first: dict[tuple[str, str], GraphEnd] = {}
-        for _, end in self.unconnected:
-            first.setdefault((end.kind, end.name), end)
-        return manual_ends([*first.values()])
+        """The unconnected ends that programs of another terminal are made for, with these."""
+        return manual_ends(unconnected_ends(self.graph))
 
     @cached_property
     def unknown_nodes(self) -> Sequence[GraphNode]:

@@ -321,6 +321,15 @@ def test_names_of_students_are_escaped(workspace: Path, kind: str) -> None:
             assert len(re.findall(r'(?<!\\)(?:\\\\)*"', line)) % 2 == 0, line
 
 
+def test_an_end_lists_its_first_partners(workspace: Path) -> None:
+    """The others are counted."""
+    (workspace / "demo/demo/talker.py").write_text(TALKER.replace("answer", "chatter"))
+    nodes = "*[Node(package='demo', executable='talker', name=f'n{i}') for i in range(20)]"
+    add_launch(workspace, nodes)
+    assert "-> /n0, /n1," in shown(workspace)
+    assert "/n11 and 8 more" in shown(workspace)
+
+
 def test_a_large_graph_fits_a_page(workspace: Path) -> None:
     """Of many topics, the first ones are drawn."""
     rows = "\n".join(

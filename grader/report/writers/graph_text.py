@@ -102,7 +102,7 @@ def _end_line(
     if end.note:
         line.append(f" {printable(end.note)}", "dim")
     arrow = " -> " if end.is_offered else " <- "
-    for index, (other, connection) in enumerate(partners):
+    for index, (other, connection) in enumerate(partners[:_MAX_LISTED]):
         line.append(arrow if index == 0 else ", ")
         is_broken = bool(connection.fault)
         line.append(printable(other.label), "bold red" if is_broken else "cyan")
@@ -110,6 +110,8 @@ def _end_line(
             line.append(f" (does not connect: {printable(connection.fault)})", "red")
         elif connection.doubt:
             line.append(" (perhaps)", "dim")
+    if len(partners) > _MAX_LISTED:
+        line.append(f" and {len(partners) - _MAX_LISTED} more")
     if not partners:
         is_known = not (shown.unknown_nodes or shown.graph.unread)
         line.append(f"{arrow}nothing {'here' if is_known else 'that is known'}", "dim")

@@ -4,7 +4,8 @@ It is what `ros2 node list`, `ros2 topic info --verbose` and `view_frames` would
 with where each part is written, and why a part is not certain.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
+from itertools import islice
 from typing import Any, Literal, NamedTuple, get_args
 
 from grader.base.source import Location
@@ -32,6 +33,7 @@ _CARRIES: Mapping[EndpointKind, _ConnectionKind] = {
     "action client": "action",
 }
 PART_UNKNOWN = "*"  # in a name
+_MAX_CONNECTIONS = 10_000
 
 
 class GraphEnd(NamedTuple):
@@ -149,14 +151,23 @@ def connections_in(graph: LaunchGraph) -> tuple[Connection, ...]:
     """Return each pair of ends that have one name, in the order of the nodes that offer them.
 
     Where it is not certain that a node has an end, one of another type connects nothing: another
-    parameter may give it the type of the other end.
+    parameter may give it the type of the other end. Many nodes on one topic have many pairs, of
+    which the first ones are returned.
     """
+    return tuple(islice(_connections(graph), _MAX_CONNECTIONS))
+
+
+def has_more_connections(graph: LaunchGraph) -> bool:
+    """Return whether a graph has more connections than are returned."""
+    return next(islice(_connections(graph), _MAX_CONNECTIONS, None), None) is not None
+
+
+def _connections(graph: LaunchGraph) -> Iterator[Connection]:
     asking: dict[tuple[str, str], list[tuple[int, GraphEnd]]] = {}
     for number, node in enumerate(graph.nodes):
         for end in node.ends:
             if not end.is_offered and PART_UNKNOWN not in end.name:
                 asking.setdefault((end.kind, end.name), []).append((number, end))
-    connections: list[Connection] = []
     for number, node in enumerate(graph.nodes):
         for end in node.ends:
             others = asking.get((OPPOSITES[end.kind], end.name), ()) if end.is_offered else ()
@@ -166,12 +177,9 @@ def connections_in(graph: LaunchGraph) -> tuple[Connection, ...]:
                 if fault and doubt:
                     continue
                 doubt = doubt or node.doubt or graph.nodes[other_number].doubt
-                connections.append(
-                    Connection(
-                        end.carrier, end.name, number, end, other_number, other, fault, doubt
-                    )
+                yield Connection(
+                    end.carrier, end.name, number, end, other_number, other, fault, doubt
                 )
-    return tuple(connections)
 
 
 def _fault_between(offered: GraphEnd, asked: GraphEnd) -> str:
@@ -186,15 +194,10 @@ def _fault_between(offered: GraphEnd, asked: GraphEnd) -> str:
     return ""
 
 
-def unconnected_ends(
-    graph: LaunchGraph, connections: Sequence[Connection]
-) -> list[tuple[int, GraphEnd]]:
-    """Return the ends that nothing of the launch is known to connect to, with their nodes."""
-    connected = set()
-    for each in connections:
-        connected.add((each.from_node, each.from_end))
-        connected.add((each.to_node, each.to_end))
-    ends = []
-    for number, node in enumerate(graph.nodes):
-        ends += [(number, end) for end in node.ends if (number, end) not in connected]
-    return ends
+def unconnected_ends(graph: LaunchGraph) -> list[GraphEnd]:
+    """Return the ends that nothing of the launch is known to connect to, each name once."""
+    first: dict[tuple[EndpointKind, str], GraphEnd] = {}
+    for node in graph.nodes:
+        for end in node.ends:
+            first.setdefault((end.kind, end.name), end)
+    return [end for (kind, name), end in first.items() if (OPPOSITES[kind], name) not in first]

@@ -25,6 +25,7 @@ from grader.ros.workspace.graph.launch_graph import (
     GraphTransform,
     LaunchGraph,
     Unread,
+    has_more_connections,
 )
 from grader.ros.workspace.graph.node_ends import ends_of
 from grader.ros.workspace.graph.opened_by_programs import ends_of_row, release_of, shown_type
@@ -76,7 +77,7 @@ def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
     nodes += _included_programs(making, processes)
     nodes += _plugins(making, [*nodes], processes)
     processes += [EndedProcess(command, _start(launch)) for command in launch.commands]
-    return LaunchGraph(
+    graph = LaunchGraph(
         launch.source.path,
         tuple(nodes),
         tuple(processes),
@@ -85,6 +86,10 @@ def started_graph(workspace: Workspace, number: int) -> LaunchGraph:
         tuple(_unread(making)),
         tuple(sorted(dict(reversed(launch.values)).items())),  # of an argument the first counts
     )
+    if has_more_connections(graph):
+        more = Unread("it has more connections, of which the first are listed", _start(launch))
+        graph = graph._replace(unread=(*graph.unread, more))
+    return graph
 
 
 def included_files(launch: Launch) -> int:
