@@ -53,7 +53,10 @@ def test_each_type_is_of_its_kind_and_exists_where_its_package_is_known() -> Non
     """A topic has a message, a service a service, an action an action."""
     checked = 0
     for package, program, row in programs():
-        ends = [*row.fixed, *((end.kind, end.name, end.type) for end in row.varying if end.type)]
+        ends = [
+            *row.fixed,
+            *((end.kind, end.name, end.type) for end in row.varying if not end.type_parameter),
+        ]
         for kind, name, message in ends:
             owner, section, last = message.split(".")
             assert section == _KINDS[kind], (package, program, name)

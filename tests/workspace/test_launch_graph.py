@@ -324,8 +324,13 @@ def test_parameters_decide_what_a_program_opens() -> None:
         "'other': {'topic_name': 'x'}}])",
         "Node(package='nav2_amcl', executable='amcl', parameters=['/no/such/file.yaml'])",
         "Node(package='diff', executable='x', name='y')",
+        "Node(package='moveit_ros_move_group', executable='move_group', parameters=[{"
+        "'moveit_simple_controller_manager': {'arm': {'action_ns': 'follow',"
+        " 'type': 'FollowJointTrajectory'}}}])",
     )
-    mux, ekf, joy, amcl, _ = graph.nodes
+    mux, ekf, joy, amcl, _, moveit = graph.nodes
+    arm = ("action client", "/arm/follow", "control_msgs/action/FollowJointTrajectory")
+    assert arm in ends_of(moveit)
     assert ("subscription", "/joy_vel", "geometry_msgs/msg/TwistStamped") in ends_of(mux)
     assert ("publisher", "/cmd_vel_out", "geometry_msgs/msg/Twist") not in ends_of(mux)
     assert [end.name for end in mux.ends if end.doubt] == ["/*"]

@@ -26,7 +26,8 @@ class VaryingEnd(NamedTuple):
 
     `parameter` is what names it, in place of `name`; with a star it stands for any number of
     parameters, each of which names one end. `type_parameter` is the one beside it that has the
-    type: interface_type beside drive.topic_name is drive.interface_type.
+    type, or its end: interface_type beside drive.topic_name is drive.interface_type. With
+    `is_below`, the name is below that of its table: arm/follow beside arm.action_ns.
     """
 
     kind: _EndKind
@@ -34,6 +35,7 @@ class VaryingEnd(NamedTuple):
     name: str = ""
     parameter: str = ""
     type_parameter: str = ""
+    is_below: bool = False
     only: Mapping[str, Any] = {}  # it is opened only if these parameters are given these values
     unless: Mapping[str, Any] = {}  # it is not opened if one of these is given this value
     since: Release = RELEASES[0]

@@ -70,7 +70,10 @@ def _names_of(
             continue
         is_named = True
         if isinstance(value.value, str) and value.value:
-            yield value.value, _type_of(end, parameter, given), value.location, doubt
+            name = value.value
+            if end.is_below:
+                name = f"{parameter.split('.')[-2]}/{name}"
+            yield name, _type_of(end, parameter, given), value.location, doubt
         elif isinstance(value.value, Unknown):
             yield PART_UNKNOWN, end.type, value.location, value.value.reason
     if not is_named and end.name:
@@ -84,7 +87,9 @@ def _type_of(end: VaryingEnd, parameter: str, given: NodeParameters) -> str:
         return end.type
     above = parameter.rpartition(".")[0]
     row = given.values.get(f"{above}.{end.type_parameter}")
-    return row.value if row is not None and isinstance(row.value, str) else ""
+    if row is None or not isinstance(row.value, str):
+        return ""
+    return f"{end.type}{row.value}"
 
 
 def _doubt_of_conditions(end: VaryingEnd, given: NodeParameters) -> str | None:
