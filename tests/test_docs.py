@@ -137,7 +137,7 @@ def test_every_command_and_option_is_in_the_reference() -> None:
         assert set(re.findall(r"--[a-z-]+", synopsis)) == options, name
 
 
-@pytest.mark.parametrize("name", ["report", "inspect", "class", "diff", "rubric-test"])
+@pytest.mark.parametrize("name", ["report", "inspect", "graph", "class", "diff", "rubric-test"])
 def test_every_key_of_json_is_in_the_reference(name: str) -> None:
     """Each key of each schema is on the page beside the schemas."""
     page = (ROOT / "docs" / "schemas" / "README.md").read_text(encoding="utf-8")

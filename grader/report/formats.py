@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from grader.base.source import Base
     from grader.lab.grading.report import Report
     from grader.report.inspection import Inspection
+    from grader.report.shown_graph import ShownGraph
 
 _Need = Literal["", "console", "base", "identity"]
 
@@ -92,6 +93,16 @@ class InspectFormat(FormatRow):
     )
 
 
+class GraphFormat(FormatRow):
+    """The formats of a graph."""
+
+    TEXT = "text", "writers.graph_text:graph_text", "console", "txt"
+    JSON = "json", "writers.graph_json:graph_json"
+    DOT = "dot", "writers.graph_diagrams:graph_dot"
+    MERMAID = "mermaid", "writers.graph_diagrams:graph_mermaid", "", "mmd"
+    HTML = "html", "pages.graph_page:graph_html"
+
+
 class OutputFormat(StrEnum):
     """The formats of a class, and of the changes between two runs."""
 
@@ -103,12 +114,13 @@ class OutputFormat(StrEnum):
 _SCHEMAS = {
     "report": ("report", "writers.as_json:REPORT"),
     "inspect": ("inspection", "writers.inspection_json:INSPECTION"),
+    "graph": ("graph", "writers.graph_json:GRAPH"),
     "rubric-test": ("rubric test", "writers.rubric_test_result:RUBRIC_TEST"),
 }
 
 
 def json_schema(name: str) -> dict[str, Any]:
-    """Return the schema of a report, an inspection or a rubric test."""
+    """Return the schema of a report, an inspection, a graph or a rubric test."""
     from grader.report.json_data import schema_of  # late: most commands need no JSON
 
     title, place = _SCHEMAS[name]
@@ -153,6 +165,15 @@ def render_inspection(
     return (
         text if kind is InspectFormat.GITHUB else without_commands(text)
     )  # whose lines are commands
+
+
+def render_graph(shown: "ShownGraph", kind: GraphFormat, screen: Screen | None = None) -> str:
+    """Return a graph in a format, for a screen or a file."""
+    function = _load(kind.function)
+    if kind.needs == "console":
+        return draw(partial(function, shown), screen)
+    text: str = function(shown)
+    return without_commands(text)
 
 
 def _load(place: str) -> Any:

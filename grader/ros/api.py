@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from grader.ros.log.explaining import LogAnswer as LogAnswer
     from grader.ros.log.explaining import explain_log as explain_log
     from grader.ros.log.log_messages import MAX_LOG as MAX_LOG
+    from grader.ros.nodes.node_facts import Qos as Qos
     from grader.ros.package.mesh_loading import MeshLoader as MeshLoader
     from grader.ros.package.package import MANIFEST as MANIFEST
     from grader.ros.package.package import SETUP as SETUP
@@ -71,6 +72,19 @@ if TYPE_CHECKING:
     from grader.ros.urdf.wheel_travel import turning_joint as turning_joint
     from grader.ros.workspace.all_robots import read_workspace as read_workspace
     from grader.ros.workspace.extent import Extent as Extent
+    from grader.ros.workspace.graph.launch_graph import CONNECTION_KINDS as CONNECTION_KINDS
+    from grader.ros.workspace.graph.launch_graph import GRAPH_NODE_KINDS as GRAPH_NODE_KINDS
+    from grader.ros.workspace.graph.launch_graph import Connection as Connection
+    from grader.ros.workspace.graph.launch_graph import EndedProcess as EndedProcess
+    from grader.ros.workspace.graph.launch_graph import GivenValue as GivenValue
+    from grader.ros.workspace.graph.launch_graph import GraphEnd as GraphEnd
+    from grader.ros.workspace.graph.launch_graph import GraphNode as GraphNode
+    from grader.ros.workspace.graph.launch_graph import GraphTransform as GraphTransform
+    from grader.ros.workspace.graph.launch_graph import LaunchGraph as LaunchGraph
+    from grader.ros.workspace.graph.launch_graph import Unread as Unread
+    from grader.ros.workspace.graph.launch_graph import connections_in as connections_in
+    from grader.ros.workspace.graph.launch_graph import unconnected_ends as unconnected_ends
+    from grader.ros.workspace.graph.manual_ends import manual_ends as manual_ends
     from grader.ros.workspace.name_places import NamePlaces as NamePlaces
     from grader.ros.workspace.opened import OpenedWorkspace as OpenedWorkspace
     from grader.ros.workspace.opening import STANDARD_INPUT as STANDARD_INPUT
@@ -86,6 +100,7 @@ else:
         "known.releases": "Release StatedReleases",
         "log.explaining": "LogAnswer explain_log",
         "log.log_messages": "MAX_LOG",
+        "nodes.node_facts": "Qos",
         "package.mesh_loading": "MeshLoader",
         "package.package": "MANIFEST SETUP Package",
         "package.robot_file": "Absent Read Unreadable",
@@ -99,6 +114,10 @@ else:
         "urdf.wheel_travel": "travel_of turning_joint",
         "workspace.all_robots": "read_workspace",
         "workspace.extent": "Extent",
+        "workspace.graph.launch_graph": "CONNECTION_KINDS Connection EndedProcess "
+        "GRAPH_NODE_KINDS GivenValue GraphEnd GraphNode GraphTransform LaunchGraph Unread "
+        "connections_in unconnected_ends",
+        "workspace.graph.manual_ends": "manual_ends",
         "workspace.name_places": "NamePlaces",
         "workspace.opened": "OpenedWorkspace",
         "workspace.opening": "STANDARD_INPUT open_workspace",

@@ -100,3 +100,17 @@ def test_pages_of_a_review(open_page: Open, classroom: Path, axe: str) -> None:
         assert robots
         page.locator("#help-button").click()
         assert_accessible(page, axe)
+
+
+def test_page_of_a_graph(open_page: Open, tmp_path: Path, axe: str) -> None:
+    """With its drawing, open nodes and findings, and its transforms."""
+    folders = ("rubrics/diffdrive", "submissions/diffdrive/velocities-unstamped")
+    for number, name in enumerate(folders):
+        file = tmp_path / f"{number}.html"
+        file.write_bytes(run(("graph", ROOT / name, "--format", "html")).stdout)
+        page = open_page(file).page
+        assert_accessible(page, axe)
+        page.locator(".item.node").first.click()
+        assert_accessible(page, axe)
+        page.locator("#tab-frames").click()
+        assert_accessible(page, axe)

@@ -24,6 +24,7 @@ from grader.report.writing import write_stdout
 COMMANDS = {
     "grade": "grade",
     "inspect": "inspect",
+    "graph": "graph",
     "view": "view",
     "lsp": "lsp",
     "batch": "batch",
@@ -38,7 +39,7 @@ COMMANDS = {
     "rubric": "rubric",
 }
 # The commands that read one submission or workspace, with their limit of processor time in seconds.
-_LIMITED = {"grade": GRADE_SECONDS, "inspect": INSPECT_SECONDS}
+_LIMITED = {"grade": GRADE_SECONDS, "inspect": INSPECT_SECONDS, "graph": INSPECT_SECONDS}
 _COMPLETION = ("--show-completion", "--install-completion")
 
 

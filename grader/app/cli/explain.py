@@ -41,7 +41,7 @@ def explain(
     return explanation(name, load_rubric(rubric))
 
 
-SchemaName = Literal["report", "rubric", "inspect", "class", "diff", "rubric-test"]
+SchemaName = Literal["report", "rubric", "inspect", "graph", "class", "diff", "rubric-test"]
 
 
 def schema(
@@ -52,8 +52,8 @@ def schema(
 ) -> str:
     """Print a JSON Schema of the grader's input or output.
 
-    These are reports, rubrics, inspections, classes (batch, stats, export json), diffs and rubric
-    tests.
+    These are reports, rubrics, inspections, graphs, classes (batch, stats, export json), diffs and
+    rubric tests.
 
     Examples:
 

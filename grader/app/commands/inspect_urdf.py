@@ -148,12 +148,20 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
 
     Raises GraderError.
     """
-    path, joints, relative_to = request.path, request.joint or (), request.relative_to
-    selection = request.selection(Path(os.path.realpath(path)))
+    selection = request.selection(Path(os.path.realpath(request.path)))
     stated = request.stated(selection.settings)
-    opened = open_workspace(path, request.max_size, read_arguments(request.arg or ()), stated)
+    arguments = read_arguments(request.arg or ())
+    opened = open_workspace(request.path, request.max_size, arguments, stated)
     if opened.is_single:
         return _inspect_file(opened, request, selection, warn)
+    return inspect_opened(opened, request, selection, warn)
+
+
+def inspect_opened(
+    opened: OpenedWorkspace, request: InspectRequest, selection: Selection, warn: Warn
+) -> Inspection:
+    """Return the inspection of a folder or archive that is opened. Raises GraderError."""
+    path, joints, relative_to = request.path, request.joint or (), request.relative_to
     read = [robot for robot in opened.robots if isinstance(robot, Read)]
     unread = [robot for robot in opened.robots if isinstance(robot, Unreadable)]
     if not opened.robots and not (opened.packages or opened.ros1_packages):

@@ -4,7 +4,7 @@ from typing import Any
 
 
 def json_schema(name: str) -> dict[str, Any]:
-    """Return the schema of a report, rubric, inspection, class, diff or rubric test."""
+    """Return the schema of a report, rubric, inspection, graph, class, diff or rubric test."""
     if name == "rubric":
         from grader.lab.rubric.keys import rubric_schema
 

@@ -1,14 +1,22 @@
 """Components, and the containers that a launch file starts for them, as launch_ros does.
 
 Components are classes that a launch file loads into a container.
-
-What components publish, and which parameters they get, is not evaluated.
 """
 
+from contextlib import suppress
+
+from grader.base.source import Location
 from grader.ros.launch.call_arguments import items_in
 from grader.ros.launch.launch_classes import COMPONENT, LIFECYCLE_COMPONENT
-from grader.ros.launch.launch_model import Container, Context, Findings, LoadedComponent
-from grader.ros.launch.started_nodes import namespace_below
+from grader.ros.launch.launch_model import (
+    Container,
+    Context,
+    Findings,
+    LoadedComponent,
+    StartedNode,
+)
+from grader.ros.launch.node_parameters import TO_ALL, evaluate_parameters
+from grader.ros.launch.started_nodes import REMAPS, evaluate_remaps, namespace_below
 from grader.ros.launch.substitutions import CONDITIONS, condition_holds, known_text
 from grader.ros.python.values import Call, EvaluationSignal, Value
 
@@ -69,8 +77,48 @@ def _add_components(
                 loaded_at,
                 container,
                 has_parameters=bool(item.kwargs.get("parameters")),
+                node=_as_node(item, package, plugin, is_loaded, context, at),
             )
         )
+
+
+def _as_node(
+    item: Call,
+    package: str | None,
+    plugin: str | None,
+    when: bool | None,
+    context: Context,
+    at: Location,
+) -> StartedNode | None:
+    """Return the node that a component becomes in its container; None where its class is not known.
+
+    The process of the container gives it neither its namespace nor its remappings.
+    """
+    if package is None or plugin is None:
+        return None
+    context = context.copy()
+    context.faults, context.reads = [], []  # those of the action are noted by who visits it
+    given, _ = evaluate_parameters(item, context, at)
+    node = StartedNode(
+        package,
+        plugin.removeprefix("::"),
+        when,
+        at,
+        namespace=None,  # until they are known
+        remaps=None,
+        node_name=_text_if_known(item.kwargs.get("name") or "", context, item),
+        parameters=(*context.to_all.get(TO_ALL, ()), *given),
+        included_by=context.included_by,
+    )
+    with suppress(EvaluationSignal):
+        namespace = namespace_below(item.kwargs.get("namespace") or "", context, item.at)
+        node = node._replace(namespace=namespace)
+    with suppress(EvaluationSignal):
+        remaps = (*context.to_all.get(REMAPS, ()), *evaluate_remaps(item, context))
+        known = tuple(rule for rule in remaps if rule is not None)
+        if len(known) == len(remaps):
+            node = node._replace(remaps=known)
+    return node
 
 
 def _is_loaded(item: Call, context: Context, when: bool | None) -> bool | None:

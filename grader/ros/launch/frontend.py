@@ -8,6 +8,7 @@ Their values are texts with substitutions, by launch's grammar, and texts that a
 import re
 import shlex
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any, Literal, NamedTuple, NoReturn
 
@@ -572,10 +573,7 @@ def _add_elements(entity: _Entity, kwargs: dict[str, Value]) -> None:
 
 
 def _read_component(entity: _Entity) -> Call:
-    """Return a component, whose parameters are not evaluated, without its remappings.
-
-    Raises EvaluationSignal.
-    """
+    """Return a component. Raises EvaluationSignal."""
     given = _read_attributes(entity, _NESTED[entity.kind])
     condition = _take_condition(given, entity)
     kwargs: dict[str, Value] = {}
@@ -588,6 +586,12 @@ def _read_component(entity: _Entity) -> Call:
     if "param" in entity.nested:
         unknown = Unknown("parameters of components are not evaluated", entity.at)
         component.kwargs["parameters"] = unknown  # the check would leave out the whole component
+        with suppress(EvaluationSignal):
+            component.kwargs["parameters"] = [*map(_read_parameter, entity.nested["param"])]
+    if "remap" in entity.nested:
+        component.kwargs["remappings"] = Unknown("a remapping is not evaluated", entity.at)
+        with suppress(EvaluationSignal):
+            component.kwargs["remappings"] = _read_pairs(entity.nested["remap"], "from", "to")
     return component
 
 

@@ -39,6 +39,7 @@ from grader.ros.launch.launch_model import (
     Findings,
     Launch,
     LaunchFault,
+    LoadedComponent,
     Machine,
     NamedFile,
     StartedNode,
@@ -311,6 +312,15 @@ def _forgotten_node(node: Call, findings: Findings) -> StartedNode:
     return StartedNode(package, executable, False, findings.locate(node.at))
 
 
+def _distinct_components(findings: Findings) -> tuple[LoadedComponent, ...]:
+    """Return the components, each once; the values of their parameters have no hash."""
+    components: dict[tuple[LoadedComponent, str], LoadedComponent] = {}
+    for component in findings.components:
+        key = (component._replace(node=None), repr(component.node))
+        components.setdefault(key, component)
+    return tuple(components.values())
+
+
 def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNode, ...]) -> Launch:
     return Launch(
         source=source,
@@ -323,7 +333,7 @@ def _make_launch(source: Source, findings: Findings, forgotten: tuple[StartedNod
         values=tuple(findings.values),
         passed=tuple(dict.fromkeys(findings.passed)),
         commands=tuple(dict.fromkeys(findings.commands)),
-        components=tuple(dict.fromkeys(findings.components)),
+        components=_distinct_components(findings),
         containers=tuple(dict.fromkeys(findings.containers)),
         forgotten=forgotten,
         later=tuple(dict.fromkeys(findings.later)),

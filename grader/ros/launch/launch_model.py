@@ -271,6 +271,8 @@ class LoadedComponent(NamedTuple):
     loaded_at: Location  # by which action
     container: str | None = ""
     has_parameters: bool = False  # perhaps from files, which are not evaluated
+    # As a program would be started, whose name is the plug-in; None where that is not known.
+    node: StartedNode | None = None
 
 
 class Container(NamedTuple):

@@ -194,7 +194,7 @@ def _add_remaps(
     try:
         below = call.kwargs.get("namespace") or ""
         namespace: str | None = namespace_below(below, context, call.at)
-        remaps += _evaluate_remaps(call, context)
+        remaps += evaluate_remaps(call, context)
     except EvaluationSignal:
         return node._replace(namespace=None, remaps=None)
     for name, _, value in reversed(rules):
@@ -206,7 +206,7 @@ def _add_remaps(
     return node._replace(namespace=namespace, remaps=known)
 
 
-def _evaluate_remaps(call: Call, context: Context) -> list[tuple[str, ...]]:
+def evaluate_remaps(call: Call, context: Context) -> list[tuple[str, ...]]:
     """Return the remappings that a Node action has. Raises EvaluationSignal."""
     remaps = []
     for rule in items_in(call.kwargs.get("remappings") or ()) or ():

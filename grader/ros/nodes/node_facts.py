@@ -55,6 +55,7 @@ class Endpoint(NamedTuple):
     parts: tuple[NamePart, ...] = ()  # of a name that is no plain text; none if it is not known
     # Of the images that it sends, or to which its callback converts them; none if one is unknown.
     encodings: tuple[ImageEncoding, ...] = ()
+    is_conditional: bool = False  # whether a condition in the code decides if it is opened
 
     @property
     def is_computed(self) -> bool:

@@ -1,7 +1,7 @@
 """Opened files: their packages, and their robots."""
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from grader.ros.package.mesh_loading import Around, MeshLoader
     from grader.ros.urdf.driving import DescribedDriving
     from grader.ros.workspace.extent import Extent
+    from grader.ros.workspace.graph.launch_graph import LaunchGraph
     from grader.ros.workspace.index.all_names import WorkspaceNames
     from grader.ros.workspace.model.workspace import Workspace
 
@@ -184,6 +185,26 @@ class OpenedWorkspace:
         from grader.ros.workspace.rules.reading import facts_once
 
         return read_names(self.workspace, facts_once(self.workspace).facts)
+
+    def launch_files(self) -> list[str]:
+        """Return the paths of its launch files.
+
+        Those that no other one includes come first, and of these the one that includes most.
+        """
+        from grader.ros.workspace.launch_graphs import launch_files  # late: few commands ask
+
+        return launch_files(self.workspace)
+
+    def launch_graph(self, path: str) -> "LaunchGraph":
+        """Return what runs after one of its launch files is launched on its own."""
+        from grader.ros.workspace.launch_graphs import launch_graph  # late: as above
+
+        return launch_graph(self.workspace, path)
+
+    def under(self, arguments: "Mapping[str, str]") -> "OpenedWorkspace":
+        """Return it with its launch files under these launch arguments."""
+        packages = tuple(package.under(arguments) for package in self.packages)
+        return replace(self, packages=packages)
 
     def extent(self) -> "Extent":
         """Return how much of it was read."""

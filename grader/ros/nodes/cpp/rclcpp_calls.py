@@ -7,6 +7,7 @@ from grader.base.source import Location
 from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue, not_known
 from grader.ros.cpp.declarations import plain
 from grader.ros.cpp.literals import SECONDS
+from grader.ros.cpp.syntax import CppNode
 from grader.ros.cpp.unit import CppUnit
 from grader.ros.known.package_tables import cpp_table
 from grader.ros.nodes.node_facts import (
@@ -67,6 +68,7 @@ _WITHOUT_EFFECT = (
     *("avoid_ros_namespace_conventions", "deadline", "lifespan", "liveliness"),
     "get_rmw_qos_profile",
 )
+_BRANCHES = ("if_statement", "switch_statement", "conditional_expression", "catch_clause")
 _EMPTY: Mapping[str, Value] = {"string": "", "string_view": "", "double": 0.0, "float": 0.0}
 _INTEGERS = ("int", "uint", "size_t", "long", "unsigned", "short")  # how their names begin
 _VALUE_METHODS = frozenset(
@@ -87,7 +89,25 @@ def endpoint_of(
     if kind in ("publisher", "subscription"):
         qos = _qos(call.argument(1))
     kind_of_message = message_type(call.types[0], unit, scopes) if call.types else None
-    return Endpoint(kind, kind_of_message, name, call.node.location, qos, parts)
+    return Endpoint(
+        kind,
+        kind_of_message,
+        name,
+        call.node.location,
+        qos,
+        parts,
+        is_conditional=_is_in_branch(call.node),
+    )
+
+
+def _is_in_branch(node: CppNode) -> bool:
+    """Return whether a condition in its function decides whether a call is executed."""
+    for around in node.ancestors():
+        if around.kind in _BRANCHES:
+            return True
+        if around.kind == "function_definition":
+            return False
+    return False
 
 
 def filter_subscription(

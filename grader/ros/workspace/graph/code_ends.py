@@ -63,13 +63,21 @@ class End(NamedTuple):
 def opened_by(workspace: Workspace, node: StartedNode, launch: int = -1) -> Iterator[End]:
     """Yield what the code of a node opens as it is started. Raises NotDecided."""
     own_node = workspace.code.own_node(node)
-    if own_node is None:
-        return
+    if own_node is not None:
+        yield from opened_by_code(workspace, node, own_node, launch)
+
+
+def opened_by_code(
+    workspace: Workspace, node: StartedNode, own_node: NodeFacts, launch: int
+) -> Iterator[End]:
+    """Yield what one node of a program opens as it is started. Raises NotDecided."""
     workspace.charge(len(own_node.endpoints) * (1 + len(node.remaps or ())))
     values: Mapping[str, Value] = {}
     if any(map(_has_parameter, own_node.endpoints)):
         values = _values_given(workspace, node, own_node)
-    named = node._replace(node_name=workspace.code.name_of(node))
+    named = node
+    if node.node_name == "":  # it keeps that of its program
+        named = node._replace(node_name=own_node.name)
     for endpoint in own_node.endpoints:
         for name in _names(endpoint, named, values):
             full = _full_name(named, name)

@@ -12,9 +12,8 @@ from grader.ros.nodes.node_facts import EndpointKind
 from grader.ros.package.package import Package
 from grader.ros.workspace.graph.bridge_rows import BRIDGE
 from grader.ros.workspace.graph.code_ends import opened_by
+from grader.ros.workspace.model.own_code import CPP_ENDINGS
 from grader.ros.workspace.model.workspace import Workspace
-
-_SOURCES = (".cpp", ".cc", ".cxx", ".c", ".hpp", ".hh", ".h")
 
 
 class Sought(NamedTuple):
@@ -103,7 +102,7 @@ def _may_publish_unread(
 
     Its texts say so.
     """
-    texts = [source.text for source in workspace.texts.sources_of(package, _SOURCES)]
+    texts = [source.text for source in workspace.texts.sources_of(package, CPP_ENDINGS)]
     last = sought.name.rpartition("/")[2]
     return not texts or any(last in text for text in texts) or _is_remapped_to(node, sought.name)
 

@@ -20,6 +20,7 @@ class Launches:
     """The launch files of a workspace, and the nodes that they start."""
 
     folder: WorkspaceFolder
+    only: str = ""  # the path of the only one that is launched; empty for all roots
 
     @cached_property
     def files(self) -> tuple[tuple[Package, str, Launch], ...]:
@@ -69,7 +70,13 @@ class Launches:
 
     @cached_property
     def roots(self) -> tuple[tuple[Package, Launch], ...]:
-        """The launch files that no other one includes, with their packages."""
+        """The launch files that no other one includes, or the only one that is asked for.
+
+        Each is with its package.
+        """
+        if self.only:
+            files = [(package, file) for package, _, file in self.files]
+            return tuple(pair for pair in files if pair[1].source.path == self.only)
         included: set[str] = set()
         for _, _, launch in self.files:
             included |= {passed.path for passed in launch.passed}

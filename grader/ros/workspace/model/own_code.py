@@ -16,6 +16,7 @@ from grader.ros.workspace.model.launches import MANAGER
 from grader.ros.workspace.model.text_files import MAX_YAML
 from grader.ros.workspace.model.workspace_folder import WorkspaceFolder
 
+CPP_ENDINGS = (".cpp", ".cc", ".cxx", ".c", ".hpp", ".hh", ".h")
 # Of files without code: parameters, models, pictures and texts.
 _NO_CODE = frozenset(
     {
@@ -83,7 +84,10 @@ class OwnCode:
 
     @cached_property
     def _nodes_by_program(self) -> Mapping[tuple[str, str], NodeFacts]:
-        """The Python nodes by their packages and programs, of programs with one node."""
+        """The nodes by their packages and programs, of programs with one node.
+
+        A component has its class in place of a program.
+        """
         programs: dict[tuple[str, str], list[Sequence[NodeFacts]]] = {}
         for package, code in self.by_package.items():
             for program in code.programs:
@@ -92,7 +96,25 @@ class OwnCode:
         for key, of_programs in programs.items():
             if len(of_programs) == 1 and len(of_programs[0]) == 1:
                 nodes[key] = of_programs[0][0]
+        for package, code in self.by_package.items():
+            for facts in code.nodes:
+                if facts.location.path.endswith(CPP_ENDINGS):
+                    nodes.setdefault((package, facts.class_name), facts)
         return nodes
+
+    def nodes_of(self, node: StartedNode) -> Sequence[NodeFacts]:
+        """Return the nodes that a program or a component is known to have, as far as one is read.
+
+        The result is empty for what is not read.
+        """
+        facts = self.own_node(node)
+        if facts is not None:
+            return [facts]
+        owner = self.folder.package_of(node)
+        code = self.by_package.get(owner.name) if owner is not None else None
+        programs = code.programs if code is not None else ()
+        named = [program.nodes for program in programs if program.name == node.executable]
+        return named[0] if len(named) == 1 else ()
 
     def has_other_nodes(self, node: StartedNode) -> bool:
         """Return whether the program of a node may have others, which are not known.

@@ -35,6 +35,8 @@ class Workspace:
     releases: tuple[Release, ...] = ()  # in one of which names should be; () for any
     memory: Memory | None = None  # what was read of an earlier state of the files
     reads_meant: bool = False  # whether a misspelt name that is reported counts as the one meant
+    # The path of the only launch file that is launched; empty for each that no other one includes.
+    launched: str = ""
 
     def charge(self, parts: int) -> None:
         """Charge the work of comparing names to the budget of the workspace. Raises NotDecided."""
@@ -62,7 +64,7 @@ class Workspace:
     @cached_property
     def launches(self) -> Launches:
         """The launch files, and the nodes that they start."""
-        return Launches(self.folder)
+        return Launches(self.folder, self.launched)
 
     @cached_property
     def installed(self) -> InstalledFiles:

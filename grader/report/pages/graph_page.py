@@ -1,0 +1,239 @@
+"""The page of a graph: the drawing, its nodes with their ends, and the transforms."""
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from grader import __version__
+from grader.base.text import counted, cut, printable
+from grader.report.drawing.graph_layout import Curve, DrawnBox, lay_out
+from grader.report.inspection import problem_counts
+from grader.report.pages.inspection_page import problem_card
+from grader.report.pages.shell import Assets, render_page
+from grader.report.pages.viewing import ProblemCard
+from grader.report.shown_graph import ShownGraph, transform_tree
+from grader.report.writers.graph_diagrams import Diagram, diagram_of
+from grader.ros.api import GraphEnd, GraphNode, GraphTransform
+
+_MAX_DEPTH = 20  # of a frame that is indented
+_MAX_PARAMETERS = 20
+# A page has at most 150 KB: so many boxes, rows of ends, findings and nodes are on it.
+_MAX_DRAWN, _MAX_ROWS, _MAX_FINDINGS, _MAX_NODES = 130, 150, 30, 200
+_MAX_LETTERS = 120  # of a text about a box, and of a list of names
+_VERBS = {
+    "publisher": "publishes",
+    "subscription": "subscribes",
+    "service": "serves",
+    "client": "calls",
+    "action server": "serves",
+    "action client": "calls",
+}
+
+
+class _Item(NamedTuple):
+    """What is drawn as a box, and how it looks."""
+
+    lines: tuple[str, ...]
+    kind: str  # node, topic, service or action
+    severity: str
+    is_certain: bool
+    about: str  # for a screen reader, and on hover
+
+
+class _Drawing(NamedTuple):
+    """The boxes and arrows of a page, the latter with a class of the style."""
+
+    boxes: list[tuple[DrawnBox, _Item]]
+    arrows: list[tuple[Curve, str]]
+    width: float
+    height: float
+
+
+class _EndRow(NamedTuple):
+    """An end in the table of its node."""
+
+    verb: str
+    name: str
+    type: str
+    partners: str
+    place: str
+    remark: str
+    severity: str
+
+
+class _NodeCard(NamedTuple):
+    """A node with its ends and findings."""
+
+    id: str
+    title: str
+    program: str
+    place: str
+    remarks: list[str]
+    rows: list[_EndRow]
+    problems: list[ProblemCard]
+
+
+class _FrameRow(NamedTuple):
+    """A transform in the tree."""
+
+    indent: str
+    child: str
+    words: str
+
+
+def graph_html(shown: ShownGraph) -> str:
+    """Return a graph as an HTML page."""
+    graph = shown.graph
+    counts = [counted(len(graph.nodes), "node"), counted(len(shown.connections), "connection")]
+    drawing = _draw(diagram_of(shown))
+    values: dict[str, object] = {
+        "version": __version__,
+        "title": printable(graph.path),
+        "counts": ", ".join(counts),
+        "effect": problem_counts(shown.inspection),
+        "verdict": "passed" if shown.inspection.is_passed else "failed",
+        "drawing": drawing,
+        "nodes": [*_cards(shown)],
+        "frames": [*_frames(graph.transforms)],
+        "lists": [*_lists(shown)],
+    }
+    assets = Assets(styles="text.css student.css graph.css", scripts="graph.js")
+    return render_page("graph.html", values, {}, assets)
+
+
+def _lists(shown: ShownGraph) -> Iterator[tuple[str, list[tuple[str, str]]]]:
+    """Yield lists with their titles: pairs of what is listed and where it is, or what brings it."""
+    graph = shown.graph
+    manual = [(end.name, " or ".join(programs)) for end, programs in shown.manual]
+    yield "From another terminal", manual
+    unread = [(each.reason, each.location.file_and_line) for each in graph.unread]
+    yield "What may start more", unread
+    ended = [(each.program, each.location.file_and_line) for each in graph.processes]
+    yield "Programs that end, or are no nodes", ended
+
+
+def _draw(diagram: Diagram) -> _Drawing:
+    """Return the boxes and arrows of a diagram, and its size."""
+    items = _items_of(diagram)
+    pairs: dict[tuple[str, str], str] = {}
+    for arrow in diagram.arrows:
+        ends = (f"n{arrow.node}", f"t{arrow.name}")
+        if not items.keys() >= {*ends}:
+            continue
+        look = "" if arrow.is_certain else "dashed"
+        if arrow.fault:
+            look = "broken"
+        pairs.setdefault(ends if arrow.is_from_node else ends[::-1], look)
+    layout = lay_out({name: item.lines for name, item in items.items()}, [*pairs])
+    arrows = [(each, pairs[each.source, each.target]) for each in layout.curves]
+    boxes = [(layout.boxes[name], item) for name, item in items.items()]
+    return _Drawing(boxes, arrows, layout.width, layout.height)
+
+
+def _items_of(diagram: Diagram) -> dict[str, _Item]:
+    """Return what is drawn as boxes: the nodes, and as many names as a page holds."""
+    items: dict[str, _Item] = {}
+    for number, node, severity in diagram.nodes[:_MAX_DRAWN]:
+        about = f"node {node.label}, {node.program}"
+        label = (printable(node.label),)
+        items[f"n{number}"] = _Item(
+            label, "node", severity, not node.doubt, cut(about, _MAX_LETTERS)
+        )
+    most_names = max(0, _MAX_DRAWN - len(items))
+    for number, name in enumerate(diagram.names[:most_names]):
+        lines = [printable(name.name)]
+        about = f"{name.kind} {name.name}, type not known"
+        if name.type:
+            lines.append(printable(name.type))
+            about = f"{name.kind} {name.name}, {name.type}"
+        about = cut(about, _MAX_LETTERS)
+        items[f"t{number}"] = _Item(tuple(lines), name.kind, name.severity, True, about)
+    return items
+
+
+def _cards(shown: ShownGraph) -> Iterator[_NodeCard]:
+    """Yield the nodes with their ends and findings, as many as a page holds."""
+    rows_left, findings_left = _MAX_ROWS, _MAX_FINDINGS
+    for number, node in shown.nodes[:_MAX_NODES]:
+        rows = [*_rows_of(shown, number, node)]
+        problems = dict.fromkeys(shown.findings_of(number))
+        for end in node.ends:
+            problems |= dict.fromkeys(shown.findings_at(node, end))
+        findings = [*problems][:findings_left]
+        remarks = [*_remarks_on(shown, number, node)]
+        hidden = len(rows) - rows_left
+        if hidden > 0:
+            remarks.append(f"{counted(hidden, 'further end')} (--format json lists all)")
+        yield _NodeCard(
+            id=f"n{number}",
+            title=node.label,
+            program=node.program,
+            place=node.location.file_and_line,
+            remarks=remarks,
+            rows=rows[:rows_left],
+            problems=[problem_card(each, shown.inspection.source) for each in findings],
+        )
+        rows_left = max(0, rows_left - len(rows))
+        findings_left -= len(findings)
+
+
+def _is_unused(shown: ShownGraph, number: int, node: GraphNode, end: GraphEnd) -> bool:
+    """Return whether a program of another package offers an end that nothing asks for."""
+    is_of_program = end.is_offered and end.location == node.location
+    return is_of_program and not shown.partners(number, end)
+
+
+def _rows_of(shown: ShownGraph, number: int, node: GraphNode) -> Iterator[_EndRow]:
+    """Yield the ends of a node, without what it offers and nothing asks for."""
+    for end in node.ends:
+        if _is_unused(shown, number, node, end):
+            continue
+        others: list[str] = []
+        for other, connection in shown.partners(number, end):
+            others.append(f"{other.label} (does not connect)" if connection.fault else other.label)
+        findings = shown.findings_at(node, end)
+        severity = findings[0].severity if findings else ""
+        yield _end_row(end, cut(", ".join(others), _MAX_LETTERS), severity)
+
+
+def _remarks_on(shown: ShownGraph, number: int, node: GraphNode) -> Iterator[str]:
+    """Yield what is said of a node besides its ends."""
+    if node.inside:
+        yield f"in the process of {node.inside}"
+    if node.doubt:
+        yield f"may not run: {node.doubt}"
+    if node.opens_more:
+        yield f"may open more: {node.opens_more}"
+    unused = [end.name for end in node.ends if _is_unused(shown, number, node, end)]
+    if unused:
+        yield f"nothing here asks for: {', '.join(unused)}"
+    if node.parameters:
+        values = [f"{each.name} = {each.value}" for each in node.parameters[:_MAX_PARAMETERS]]
+        yield f"parameters: {', '.join(values)}"
+
+
+def _end_row(end: GraphEnd, partners: str, severity: str) -> _EndRow:
+    quality: Mapping[str, object] = {
+        "depth": end.qos.depth,
+        "reliability": end.qos.reliability,
+        "durability": end.qos.durability,
+    }
+    words = [f"{name} {value}" for name, value in quality.items() if value is not None]
+    words += [text for text in (end.note, end.doubt and f"not certain: {end.doubt}") if text]
+    place = end.location.file_and_line
+    remark = ", ".join(words).replace("_", " ")
+    return _EndRow(
+        _VERBS[end.kind], end.name, end.type, partners or "nothing known", place, remark, severity
+    )
+
+
+def _frames(transforms: tuple[GraphTransform, ...]) -> Iterator[_FrameRow]:
+    """Yield the frames as a tree, each transform once."""
+    root = ""
+    for depth, each in transform_tree(transforms):
+        if depth == 0 and each.parent != root:
+            root = each.parent
+            yield _FrameRow("", root, "")
+        words = f"  static, {each.by}" if each.is_static else f"  {each.by}"
+        if not each.is_certain:
+            words += " (not certain)"
+        yield _FrameRow("  " * min(depth + 1, _MAX_DEPTH), each.child, words)

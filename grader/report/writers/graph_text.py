@@ -1,0 +1,199 @@
+"""A graph on a terminal: the nodes in the order of the launch file, and what they connect to."""
+
+from collections.abc import Iterator, Sequence
+
+from rich.console import Console
+from rich.text import Text
+
+from grader.base.problems import Problem
+from grader.base.text import counted, enumerated, printable
+from grader.report.inspection import problem_counts
+from grader.report.shown_graph import ShownGraph, transform_tree
+from grader.report.writers.terminal_page import INDENT, SEVERITY_LOOKS, Page
+from grader.ros.api import Connection, EndedProcess, GraphEnd, GraphNode, GraphTransform, Qos
+
+_VERBS = {
+    "publisher": "publishes",
+    "subscription": "subscribes",
+    "service": "serves",
+    "client": "calls",
+    "action server": "serves action",
+    "action client": "calls action",
+}
+_MAX_PARAMETERS = 6  # of a node that is not the only one
+_MAX_LISTED = 12
+_MAX_INDENT = 40
+_NESTED = 2 * INDENT
+
+
+def graph_text(shown: ShownGraph, console: Console) -> None:
+    """Print a graph."""
+    page = Page(console, [])
+    page.inset(_head(shown), indent=0)
+    for number, node in shown.nodes:
+        if not shown.node or node.label == shown.node:
+            _add_node(page, shown, number, node)
+    if not shown.node:
+        _add_manual(page, shown)
+        _add_transforms(page, shown.graph.transforms)
+        _add_processes(page, "Programs that end, or are no nodes", shown.graph.processes)
+        _add_processes(page, "Not started under these arguments", shown.graph.not_started)
+        _add_unread(page, shown)
+        _add_launches(page, shown)
+    page.print()
+
+
+def _head(shown: ShownGraph) -> Text:
+    """Return how many nodes and connections there are, and what an inspection finds."""
+    graph = shown.graph
+    counts = [
+        counted(len(graph.nodes), "node"),
+        counted(len(shown.connections), "connection"),
+        counted(len(graph.transforms), "transform"),
+    ]
+    style = "green" if shown.inspection.is_passed else "bold red"
+    return Text.assemble(
+        (printable(graph.path), "bold"),
+        f": {', '.join(counts)}; ",
+        (problem_counts(shown.inspection), style),
+    )
+
+
+def _add_node(page: Page, shown: ShownGraph, number: int, node: GraphNode) -> None:
+    title = Text(printable(node.label), "bold")
+    if node.name:
+        title.append(f"  {printable(node.program)}", "")
+    if node.inside:
+        title.append(f" in {printable(node.inside)}")
+    title.append(f"  {printable(node.location.file_and_line)}", "dim")
+    page.title(title, style="")
+    for word, reason in (("may not run", node.doubt), ("may open more", node.opens_more)):
+        if reason:
+            page.inset(f"{word}: {printable(reason)}", "dim")
+    _add_findings(page, shown.findings_of(number))
+    quiet: dict[str, list[str]] = {}
+    for end in node.ends:
+        partners = shown.partners(number, end)
+        findings = shown.findings_at(node, end)
+        # A known program offers it whether it is used or not.
+        is_quiet = end.is_offered and end.location == node.location and not end.doubt
+        if is_quiet and not partners and not findings:
+            quiet.setdefault(_VERBS[end.kind], []).append(printable(end.name))
+            continue
+        page.inset(_end_line(shown, node, end, partners), indent=_NESTED, head=Text(" " * INDENT))
+        _add_findings(page, findings)
+    for verb, names in quiet.items():
+        listed = enumerated(names, _MAX_LISTED)
+        page.inset(f"{verb}, and nothing here asks for: {listed}", "dim", _NESTED, Text("  "))
+    _add_parameters(page, node, most=None if shown.node else _MAX_PARAMETERS)
+
+
+def _end_line(
+    shown: ShownGraph,
+    node: GraphNode,
+    end: GraphEnd,
+    partners: Sequence[tuple[GraphNode, Connection]],
+) -> Text:
+    """Return an end with its type and quality, and what is at the other end."""
+    line = Text(f"{_VERBS[end.kind]} ")
+    line.append(printable(end.name), "bold" if not end.doubt else "")
+    details = [printable(end.type) or "type not known", *_quality(end.qos)]
+    line.append(f" [{', '.join(details)}]", "dim")
+    if end.note:
+        line.append(f" {printable(end.note)}", "dim")
+    arrow = " -> " if end.is_offered else " <- "
+    for index, (other, connection) in enumerate(partners[:_MAX_LISTED]):
+        line.append(arrow if index == 0 else ", ")
+        is_broken = bool(connection.fault)
+        line.append(printable(other.label), "bold red" if is_broken else "cyan")
+        if is_broken:
+            line.append(f" (does not connect: {printable(connection.fault)})", "red")
+        elif connection.doubt:
+            line.append(" (perhaps)", "dim")
+    if len(partners) > _MAX_LISTED:
+        line.append(f" and {len(partners) - _MAX_LISTED} more")
+    if not partners:
+        is_known = not (shown.unknown_nodes or shown.graph.unread)
+        line.append(f"{arrow}nothing {'here' if is_known else 'that is known'}", "dim")
+    if end.doubt:
+        line.append(f" (not certain: {printable(end.doubt)})", "dim")
+    if end.location != node.location:
+        line.append(f"  {printable(end.location.file_and_line)}", "dim")
+    return line
+
+
+def _quality(qos: Qos) -> Iterator[str]:
+    if qos.depth is not None:
+        yield f"depth {qos.depth}"
+    if qos.reliability is not None and qos.reliability != "reliable":
+        yield printable(qos.reliability.replace("_", " "))
+    if qos.durability is not None and qos.durability != "volatile":
+        yield printable(qos.durability.replace("_", " "))
+
+
+def _add_findings(page: Page, problems: Sequence[Problem]) -> None:
+    for problem in problems:
+        head = Text(f"{' ' * INDENT}{problem.severity} ", SEVERITY_LOOKS[problem.severity])
+        place = printable(problem.location.file_and_line)
+        page.inset(f"{problem.code} {printable(problem.message)} ({place})", "", _NESTED, head)
+
+
+def _add_parameters(page: Page, node: GraphNode, most: int | None) -> None:
+    values = [f"{printable(each.name)} = {_value(each.value)}" for each in node.parameters]
+    if values:
+        page.inset(f"parameters: {enumerated(values, most)}", "dim", _NESTED, Text("  "))
+
+
+def _value(value: object) -> str:
+    text = printable(str(value).lower() if isinstance(value, bool) else str(value))
+    return text if len(text) <= _MAX_INDENT else f"{text[:_MAX_INDENT]}..."
+
+
+def _add_manual(page: Page, shown: ShownGraph) -> None:
+    if shown.manual:
+        page.title("From another terminal")
+    for end, programs in shown.manual:
+        verb = "is read" if end.kind == "subscription" else "is open"
+        page.inset(f"{printable(end.name)} {verb}: {enumerated(programs, _MAX_LISTED, 'or')}")
+
+
+def _add_transforms(page: Page, transforms: Sequence[GraphTransform]) -> None:
+    """Add the transforms as a tree."""
+    if transforms:
+        page.title("Transforms")
+    root = ""
+    for depth, each in transform_tree(transforms):
+        if depth == 0 and each.parent != root:
+            root = each.parent
+            page.inset(printable(root))
+        words = f"  {'static, ' if each.is_static else ''}{printable(each.by)}"
+        if not each.is_certain:
+            words += " (not certain)"
+        indent = INDENT + min(INDENT * (depth + 1), _MAX_INDENT)
+        page.inset(Text.assemble(printable(each.child), (words, "dim")), indent=indent)
+
+
+def _add_processes(page: Page, title: str, processes: Sequence[EndedProcess]) -> None:
+    if processes:
+        page.title(title)
+    for each in processes:
+        place = printable(each.location.file_and_line)
+        page.inset(Text.assemble(printable(each.program), (f"  {place}", "dim")))
+
+
+def _add_unread(page: Page, shown: ShownGraph) -> None:
+    if shown.graph.unread:
+        page.title("What may start more")
+    for each in shown.graph.unread:
+        place = printable(each.location.file_and_line)
+        page.inset(Text.assemble(printable(each.reason), (f"  {place}", "dim")))
+
+
+def _add_launches(page: Page, shown: ShownGraph) -> None:
+    others = [path for path in shown.launches if path != shown.graph.path]
+    if others:
+        page.title("Other launch files, for --launch")
+    for path in others[:_MAX_LISTED]:
+        page.inset(printable(path))
+    if len(others) > _MAX_LISTED:
+        page.inset(f"... and {len(others) - _MAX_LISTED} more (--format json lists all)", "dim")

@@ -1,0 +1,156 @@
+"""What programs of packages that are not submitted open: rows of files in `ends`.
+
+They are for drawing a graph, and no rule reads them: what a rule compares is in `packages`. The
+file of one package is read when it is needed.
+"""
+
+import os
+import tomllib
+from collections.abc import Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any, Literal, NamedTuple
+
+from grader.ros.known.releases import RELEASES, Release
+from grader.ros.known.typed_rows import read_row
+
+FOLDER = Path(__file__).with_name("ends")
+_ENDING = ".toml"
+_EndKind = Literal[
+    "publisher", "subscription", "service", "client", "action server", "action client"
+]
+
+
+class VaryingEnd(NamedTuple):
+    """An end that parameters or releases decide.
+
+    `parameter` is what names it, in place of `name`; with a star it stands for any number of
+    parameters, each of which names one end. `type_parameter` is the one beside it that has the
+    type, or its end: interface_type beside drive.topic_name is drive.interface_type. With
+    `is_below`, the name is below that of its table: arm/follow beside arm.action_ns.
+    """
+
+    kind: _EndKind
+    type: str = ""
+    name: str = ""
+    parameter: str = ""
+    type_parameter: str = ""
+    is_below: bool = False
+    only: Mapping[str, Any] = {}  # it is opened only if these parameters are given these values
+    unless: Mapping[str, Any] = {}  # it is not opened if one of these is given this value
+    since: Release = RELEASES[0]
+    until: Release = RELEASES[-1]
+
+    def is_in(self, release: Release) -> bool:
+        """Return whether a release has it."""
+        number = RELEASES.index(release)
+        return RELEASES.index(self.since) <= number <= RELEASES.index(self.until)
+
+
+class OpenedEnds(NamedTuple):
+    """What a program, a component or a controller opens: names with types.
+
+    A type is written `geometry_msgs.msg.Twist`. `/tf`, `/rosout` and the services of parameters are
+    not among them.
+    """
+
+    source: str = ""
+    like: str = ""  # what else of the package opens this; it may read and serve more
+    name: str = ""  # of the node where its launch file gives none
+    publishers: Mapping[str, str] = {}
+    subscriptions: Mapping[str, str] = {}
+    services: Mapping[str, str] = {}
+    clients: Mapping[str, str] = {}
+    action_servers: Mapping[str, str] = {}
+    action_clients: Mapping[str, str] = {}
+    varying: tuple[VaryingEnd, ...] = ()
+    opens_more: str = ""  # why it may open more
+    is_manual: bool = False  # whether a person starts it in a terminal of its own
+    is_process: bool = False  # whether it is no node, or ends by itself
+
+    @property
+    def fixed(self) -> Iterator[tuple[_EndKind, str, str]]:
+        """The kind, name and type of each end that nothing decides."""
+        tables: dict[_EndKind, Mapping[str, str]] = {
+            "publisher": self.publishers,
+            "subscription": self.subscriptions,
+            "service": self.services,
+            "client": self.clients,
+            "action server": self.action_servers,
+            "action client": self.action_clients,
+        }
+        for kind, table in tables.items():
+            for name, message in table.items():
+                yield kind, name, message
+
+
+class _IncludedNode(NamedTuple):
+    """A node that an installed launch file starts under its default arguments."""
+
+    node: str  # package/program
+    name: str = ""  # that it is given
+    remappings: Mapping[str, str] = {}
+    since: Release = RELEASES[0]
+    until: Release = RELEASES[-1]
+
+    def is_in(self, release: Release) -> bool:
+        """Return whether a release starts it."""
+        number = RELEASES.index(release)
+        return RELEASES.index(self.since) <= number <= RELEASES.index(self.until)
+
+
+class _EndsOfPackage(NamedTuple):
+    """The file of a package."""
+
+    source: str = ""  # of programs that name none
+    program: Mapping[str, OpenedEnds] = {}  # also classes of components and controllers
+    launch: Mapping[str, tuple[_IncludedNode, ...]] = {}  # the nodes that a launch file starts
+
+
+@cache
+def packages_with_ends() -> tuple[str, ...]:
+    """Return the packages with a file."""
+    names = os.listdir(FOLDER)  # noqa: PTH208  # Path.iterdir takes four times as long
+    return tuple(sorted(name.removesuffix(_ENDING) for name in names if name.endswith(_ENDING)))
+
+
+@cache
+def _ends_of_package(package: str) -> _EndsOfPackage:
+    text = (FOLDER / f"{package}{_ENDING}").read_text("utf-8")
+    return read_row(_EndsOfPackage, tomllib.loads(text))
+
+
+def opened_ends(package: str, program: str) -> OpenedEnds | None:
+    """Return what a program, a component or a controller opens; None if that is not known."""
+    if package not in packages_with_ends():
+        return None
+    rows = _ends_of_package(package).program
+    row = rows.get(program)
+    if row is None or not row.like:
+        return row
+    other = rows[row.like]
+    return other._replace(
+        name=row.name,
+        services={**other.services, **row.services},
+        subscriptions={**other.subscriptions, **row.subscriptions},
+    )
+
+
+def nodes_of_launch_file(package: str, file: str, release: Release) -> list[_IncludedNode]:
+    """Return the nodes that an installed launch file starts; none where that is not known."""
+    if package not in packages_with_ends():
+        return []
+    nodes = _ends_of_package(package).launch.get(file, ())
+    return [node for node in nodes if node.is_in(release)]
+
+
+@cache
+def manual_programs() -> tuple[tuple[str, OpenedEnds], ...]:
+    """Return the programs that a person starts in a terminal, as `package/program`."""
+    programs: list[tuple[str, OpenedEnds]] = []
+    for package in packages_with_ends():
+        for name in _ends_of_package(package).program:
+            row = opened_ends(package, name)
+            if row is not None and row.is_manual:
+                programs.append((f"{package}/{name}", row))
+    return tuple(programs)

@@ -1,0 +1,203 @@
+"""The computation graph of one launch file, as it can be shown: nodes, their ends, and transforms.
+
+It is what `ros2 node list`, `ros2 topic info --verbose` and `view_frames` would show of a launch,
+with where each part is written, and why a part is not certain.
+"""
+
+from collections.abc import Iterator, Mapping
+from itertools import islice
+from typing import Any, Literal, NamedTuple, get_args
+
+from grader.base.source import Location
+from grader.ros.nodes.node_facts import EndpointKind, Qos
+
+GraphNodeKind = Literal["program", "component", "container", "controller"]
+GRAPH_NODE_KINDS: tuple[GraphNodeKind, ...] = get_args(GraphNodeKind)
+_ConnectionKind = Literal["topic", "service", "action"]
+CONNECTION_KINDS: tuple[_ConnectionKind, ...] = get_args(_ConnectionKind)
+_OFFERS: Mapping[EndpointKind, EndpointKind] = {
+    "publisher": "subscription",
+    "service": "client",
+    "action server": "action client",
+}
+OPPOSITES: Mapping[EndpointKind, EndpointKind] = {
+    **_OFFERS,
+    **{asking: offering for offering, asking in _OFFERS.items()},
+}
+_CARRIES: Mapping[EndpointKind, _ConnectionKind] = {
+    "publisher": "topic",
+    "subscription": "topic",
+    "service": "service",
+    "client": "service",
+    "action server": "action",
+    "action client": "action",
+}
+PART_UNKNOWN = "*"  # in a name
+_MAX_CONNECTIONS = 10_000
+
+
+class GraphEnd(NamedTuple):
+    """An end of a topic, service or action of a node.
+
+    `doubt` says why it is not certain that the node has it, with this name; it is empty if it is.
+    """
+
+    kind: EndpointKind
+    name: str  # in full; PART_UNKNOWN stands for what is not known of it
+    type: str  # sensor_msgs/msg/LaserScan; empty if it is not known
+    location: Location
+    qos: Qos = Qos()
+    doubt: str = ""
+    note: str = ""  # what is on the other side of a bridge, or shows it
+
+    @property
+    def carrier(self) -> _ConnectionKind:
+        """What it is an end of."""
+        return _CARRIES[self.kind]
+
+    @property
+    def is_offered(self) -> bool:
+        """Whether it sends or serves, so that arrows lead away from it."""
+        return self.kind in _OFFERS
+
+
+class GivenValue(NamedTuple):
+    """A parameter that a node is given, and that differs from its default, or has none."""
+
+    name: str
+    value: Any
+    location: Location
+
+
+class GraphNode(NamedTuple):
+    """A node that runs, or may run, after a launch file is launched."""
+
+    name: str  # in full: /left/driver; empty where it is not known
+    program: str  # demo_nodes_cpp/talker, a class of components, or the type of a controller
+    kind: GraphNodeKind
+    location: Location
+    ends: tuple[GraphEnd, ...] = ()
+    doubt: str = ""  # why it may not run
+    opens_more: str = ""  # why it may open more than its ends
+    parameters: tuple[GivenValue, ...] = ()
+    inside: str = ""  # the full name of the container or manager whose process it is in
+
+    @property
+    def label(self) -> str:
+        """Its name, or its program where the name is not known."""
+        return self.name or f"({self.program})"
+
+    @property
+    def namespace(self) -> str:
+        """The namespace of its name."""
+        return self.name.rpartition("/")[0] or "/"
+
+
+class EndedProcess(NamedTuple):
+    """A program of a launch that is no node, or ends when it has done its work."""
+
+    program: str
+    location: Location
+    doubt: str = ""  # why it may not be started
+
+
+class GraphTransform(NamedTuple):
+    """A transform that something publishes, or may publish."""
+
+    parent: str
+    child: str
+    by: str
+    location: Location
+    is_static: bool = False
+    is_certain: bool = True
+
+
+class Unread(NamedTuple):
+    """What may start more, or is not read, and where."""
+
+    reason: str
+    location: Location
+
+
+class LaunchGraph(NamedTuple):
+    """What runs after one launch file is launched on its own, in the order of the file."""
+
+    path: str  # of the launch file
+    nodes: tuple[GraphNode, ...] = ()
+    processes: tuple[EndedProcess, ...] = ()
+    not_started: tuple[EndedProcess, ...] = ()  # under these arguments
+    transforms: tuple[GraphTransform, ...] = ()
+    unread: tuple[Unread, ...] = ()
+    arguments: tuple[tuple[str, str], ...] = ()  # that it declares, with their values
+
+
+class Connection(NamedTuple):
+    """Two ends of one name: the numbers of the nodes, and their ends.
+
+    Messages go from the first one to the second; of a service and an action, the first one serves.
+    """
+
+    kind: _ConnectionKind
+    name: str
+    from_node: int
+    from_end: GraphEnd
+    to_node: int
+    to_end: GraphEnd
+    fault: str = ""  # why they do not connect: the type, or the quality of service
+    doubt: str = ""  # why it is not certain that they do
+
+
+def connections_in(graph: LaunchGraph) -> tuple[Connection, ...]:
+    """Return each pair of ends that have one name, in the order of the nodes that offer them.
+
+    Where it is not certain that a node has an end, one of another type connects nothing: another
+    parameter may give it the type of the other end. Many nodes on one topic have many pairs, of
+    which the first ones are returned.
+    """
+    return tuple(islice(_connections(graph), _MAX_CONNECTIONS))
+
+
+def has_more_connections(graph: LaunchGraph) -> bool:
+    """Return whether a graph has more connections than are returned."""
+    return next(islice(_connections(graph), _MAX_CONNECTIONS, None), None) is not None
+
+
+def _connections(graph: LaunchGraph) -> Iterator[Connection]:
+    asking: dict[tuple[str, str], list[tuple[int, GraphEnd]]] = {}
+    for number, node in enumerate(graph.nodes):
+        for end in node.ends:
+            if not end.is_offered and PART_UNKNOWN not in end.name:
+                asking.setdefault((end.kind, end.name), []).append((number, end))
+    for number, node in enumerate(graph.nodes):
+        for end in node.ends:
+            others = asking.get((OPPOSITES[end.kind], end.name), ()) if end.is_offered else ()
+            for other_number, other in others:
+                fault = _fault_between(end, other)
+                doubt = end.doubt or other.doubt
+                if fault and doubt:
+                    continue
+                doubt = doubt or node.doubt or graph.nodes[other_number].doubt
+                yield Connection(
+                    end.carrier, end.name, number, end, other_number, other, fault, doubt
+                )
+
+
+def _fault_between(offered: GraphEnd, asked: GraphEnd) -> str:
+    """Return why two ends do not connect; empty if they do, as far as is known."""
+    if offered.type and asked.type and offered.type != asked.type:
+        return f"{offered.type} is not {asked.type}"
+    given, wanted = offered.qos, asked.qos
+    if given.reliability == "best_effort" and wanted.reliability == "reliable":
+        return "best effort is offered, reliable is asked for"
+    if given.durability == "volatile" and wanted.durability == "transient_local":
+        return "volatile is offered, transient local is asked for"
+    return ""
+
+
+def unconnected_ends(graph: LaunchGraph) -> list[GraphEnd]:
+    """Return the ends that nothing of the launch is known to connect to, each name once."""
+    first: dict[tuple[EndpointKind, str], GraphEnd] = {}
+    for node in graph.nodes:
+        for end in node.ends:
+            first.setdefault((end.kind, end.name), end)
+    return [end for (kind, name), end in first.items() if (OPPOSITES[kind], name) not in first]

@@ -1,0 +1,29 @@
+"""The graphs of the launch files of a workspace."""
+
+from dataclasses import replace
+
+from grader.ros.workspace.graph.launch_graph import LaunchGraph
+from grader.ros.workspace.graph.started_graph import included_files, started_graph
+from grader.ros.workspace.model.workspace import Workspace
+
+
+def launch_files(workspace: Workspace) -> list[str]:
+    """Return the paths of the launch files: first those that no other one includes.
+
+    Of these, the one that includes most files is the first, then the one that starts most nodes.
+    """
+    roots = sorted(
+        (launch for _, launch in workspace.launches.roots),
+        key=lambda launch: (-included_files(launch), -len(launch.nodes), launch.source.path),
+    )
+    paths = [launch.source.path for launch in roots]
+    others = sorted(launch.source.path for _, _, launch in workspace.launches.files)
+    return [*dict.fromkeys((*paths, *others))]
+
+
+def launch_graph(workspace: Workspace, path: str) -> LaunchGraph:
+    """Return what runs after a launch file of the workspace is launched on its own."""
+    roots = [launch.source.path for _, launch in workspace.launches.roots]
+    if path in roots:
+        return started_graph(workspace, roots.index(path))
+    return started_graph(replace(workspace, launched=path), 0)
