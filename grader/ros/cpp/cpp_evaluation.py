@@ -479,7 +479,8 @@ class CppEvaluation:
             if node.kind == "init_declarator":
                 value = node.child("value")
                 kinds = (*TEXTS, *NUMBERS, "concatenated_string")
-                if value is not None and value.kind in kinds and syntax.error is None:
+                is_read = syntax.error is None and not syntax.broken
+                if value is not None and value.kind in kinds and is_read:
                     return self.value_of(value)
         return not_known("the macro is not evaluated")
 

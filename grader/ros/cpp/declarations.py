@@ -92,7 +92,7 @@ class CppFile:
         self.aliases: list[tuple[str, str]] = []
         self.opened: list[str] = []  # what `using namespace` names
         self.macros: dict[str, list[CppMacro]] = {}
-        self.called_macros: set[str] = set()  # those with parameters
+        self.called_macros: dict[str, str] = {}  # those with parameters, and their texts
         _Reader(self).read()
 
     @cached_property
@@ -186,7 +186,7 @@ class _Reader:
 
     def read_called_macro(self, node: CppNode, _: _Around) -> None:
         """Read a macro with parameters."""
-        self.file.called_macros.add(_text(node.child("name")))
+        self.file.called_macros[_text(node.child("name"))] = _text(node.child("value"))
 
     def read_macro(self, node: CppNode, place: _Around) -> None:
         """Read a macro without parameters."""

@@ -81,9 +81,18 @@ class CppUnit:
         return by_name
 
     @cached_property
-    def called_macros(self) -> frozenset[str]:
-        """The names of the macros with parameters."""
-        return frozenset(name for file in self.files for name in file.called_macros)
+    def _called_macros(self) -> Mapping[str, Sequence[str]]:
+        """The texts of the macros with parameters by their names."""
+        by_name: dict[str, list[str]] = {}
+        for file in self.files:
+            for name, text in file.called_macros.items():
+                by_name.setdefault(name, []).append(text)
+        return by_name
+
+    def texts_of_macro(self, name: str) -> Sequence[str]:
+        """Return the texts that a macro which is called stands for, with or without parameters."""
+        plain_macros = self.macros.get(name, ())
+        return [*self._called_macros.get(name, ()), *(macro.text for macro in plain_macros)]
 
     def meanings(self, name: str, scopes: Sequence[str] = ()) -> tuple[str, ...]:
         """Return the full names that a name of a type may stand for, in these scopes.

@@ -32,7 +32,7 @@ from grader.ros.cpp.unit import (
 from grader.ros.installation.installation import Installation
 from grader.ros.known.package_tables import cpp_table
 from grader.ros.nodes.cpp.cpp_faults import cpp_faults
-from grader.ros.nodes.cpp.cpp_files import CompiledTarget, CppFiles
+from grader.ros.nodes.cpp.cpp_files import CompiledTarget, CppFiles, may_hide
 from grader.ros.nodes.cpp.cpp_frames import frames_in
 from grader.ros.nodes.cpp.cpp_message_content import CppContentReader
 from grader.ros.nodes.cpp.cpp_message_uses import cpp_field_uses
@@ -66,6 +66,7 @@ _SETTING = {"get_parameter": 1, "get_parameter_or": 1}
 _REGISTERED = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(\s*([\w:]+)\s*\)")
 _SUBSCRIBER = "message_filters::Subscriber"
 _FILTER = re.compile(r"(?P<class>(?<![\w:])[\w:]*\bSubscriber)\s*+<\s*+(?P<type>[\w:]++)\s*+[,>]")
+_CALLED_MACRO = re.compile(r"\b[A-Z][A-Z0-9_]{3,}\b(?=\s*\(|\Z)")
 _MESSAGE_PART = re.compile(r"::(msg|srv|action)::")
 _LISTS = ("argument_list", "initializer_list")
 _OF_NODE = 20  # parts of a class that may be that of a node
@@ -338,9 +339,19 @@ class _Target:
 
     def _read_macro(self, call: CppNode, name: str, owner: str) -> None:
         """Doubt what a class does with a macro that is not known to be harmless."""
-        if not name.startswith(tuple(cpp_table().macros)):
+        if not self._is_harmless_macro(name):
             reason = f"the macro {name} is not evaluated"
             self._facts[owner].append(Doubt(reason, call.location))
+
+    def _is_harmless_macro(self, name: str) -> bool:
+        """Return whether a macro is known to be harmless, or an own one that only calls such."""
+        known = tuple(cpp_table().macros)
+        texts = self._unit.texts_of_macro(name) if not name.startswith(known) else ()
+        for text in texts:
+            called = _CALLED_MACRO.findall(text)
+            if may_hide(text) or not all(other.startswith(known) for other in called):
+                return False
+        return bool(texts) or name.startswith(known)
 
     def _read_method(self, call: CppNode, function: CppFunction, scopes: Sequence[str]) -> None:
         key = self._receiver(call, function)
