@@ -16,8 +16,8 @@ from grader.ros.package.package import Package
 
 _SOURCES = (".cpp", ".cc", ".cxx", ".c++")
 _HEADERS = (".hpp", ".hh", ".hxx", ".h", ".h++", ".ipp", ".tpp")
-# What a statement that is no C++, or a macro, must not have: what makes, declares or opens something, or is given
-# a node, or sets what a name may be made of.
+# What a statement that is no C++, or a macro, must not have: what makes, declares or opens
+# something, or is given a node, or sets what a name may be made of.
 _LOST = re.compile(
     r"\b(?:create_\w+|declare_parameters?|get_parameter\w*|has_parameter|Subscriber|add_node|spin"
     r"|class|struct|namespace|template|using|main|make_(?:shared|unique)|\w+_from_this"
