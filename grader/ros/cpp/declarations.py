@@ -19,6 +19,13 @@ CONDITIONS = (
 _CLASSES = ("class_specifier", "struct_specifier")
 _CONSTANTS = ("const", "constexpr", "constinit")
 _CALLS = ("call_expression", "new_expression", "init_declarator", "declaration", "this")
+_VARIABLES = (
+    "declaration",
+    "parameter_declaration",
+    "optional_parameter_declaration",
+    "for_range_loop",
+    "init_statement",
+)
 _NAMES = ("identifier", "field_identifier", "type_identifier")
 
 
@@ -327,6 +334,22 @@ def is_argument(node: CppNode) -> bool:
         return False
     around = list(islice(node.ancestors(), 5))
     return len(around) == 5 and around[4].kind == "compound_statement" and len(parent.children) == 1
+
+
+def declaration_of(name: CppNode) -> CppNode | None:
+    """Return the declaration that declares a name as a local variable or a parameter.
+
+    Returns None for a name that is used.
+    """
+    node = name
+    for around in name.ancestors():
+        if around.kind in _VARIABLES:
+            is_declared = any(declared is name for declared, _ in declared_in(around))
+            return around if is_declared else None
+        if node.field == "value" or around.kind in ("argument_list", "compound_statement"):
+            return None
+        node = around
+    return None
 
 
 def name_in(declarator: CppNode) -> CppNode | None:

@@ -199,6 +199,8 @@ def called_name(call: CppNode) -> str:
         return ""
     if function.kind == "field_expression":
         field = function.child("field")
+        if field is not None and field.kind == "dependent_name" and field.children:
+            field = field.children[0]  # behind the word `template`
         return plain_name(field) if field is not None else ""
     return plain_name(function)
 
@@ -221,6 +223,9 @@ def template_arguments(call: CppNode) -> tuple[str, ...]:
         given = node.child("arguments")
         if given is not None and given.kind == "template_argument_list":
             return tuple(argument.text for argument in given.children if argument.kind != "comment")
+        if node.kind == "dependent_name" and node.children:
+            node = node.children[0]
+            continue
         node = node.child("field") or node.child("name")
     return ()
 

@@ -30,6 +30,7 @@ ACTIONS: Mapping[str, EndpointKind] = {
     "rclcpp_action::create_server": "action server",
     "rclcpp_action::create_client": "action client",
 }
+INTERFACES_OF_ACTION = 4  # which functions of actions take in place of a node
 DECLARES = ("declare_parameter", "declare_parameters")
 _READS_IF_DECLARED = ("get_parameter_or", "has_parameter")
 _READS = ("get_parameter", *_READS_IF_DECLARED)
@@ -78,10 +79,9 @@ _VALUE_METHODS = frozenset(
 
 
 def endpoint_of(
-    kind: EndpointKind, call: CppCall, unit: CppUnit, scopes: Sequence[str]
+    kind: EndpointKind, call: CppCall, unit: CppUnit, scopes: Sequence[str], position: int = 0
 ) -> Endpoint:
-    """Return what a call opens; of an action, whose first argument is the node, too."""
-    position = 1 if kind.startswith("action") else 0
+    """Return what a call opens; `position` is that of the name among its arguments."""
     name, parts = name_of(call.argument(position))
     qos = Qos()
     if kind in ("publisher", "subscription"):
