@@ -233,7 +233,7 @@ def template_arguments(call: CppNode) -> tuple[str, ...]:
 def resolve_include(path: str, included: str, files: Mapping[str, object]) -> str | None:
     """Return the file of a package that an `#include` in another one means.
 
-    Returns None for one of another package.
+    Returns None for one of another package. A folder of headers may be anywhere in the package.
 
     Args:
         path: The path of the file with the `#include`.
@@ -244,4 +244,5 @@ def resolve_include(path: str, included: str, files: Mapping[str, object]) -> st
     for candidate in (beside, f"include/{included}", f"src/{included}", included):
         if candidate in files:
             return candidate
-    return None
+    elsewhere = [file for file in files if file.endswith(f"/include/{included}")]
+    return elsewhere[0] if len(elsewhere) == 1 else None

@@ -4,6 +4,7 @@ A helper that is given a node declares and opens for it. So the facts of a holde
 node that reaches it.
 """
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from typing import Literal, NamedTuple
@@ -32,6 +33,7 @@ _LISTS = ("argument_list", "initializer_list", "parameter_list")
 # The endings of types of pointers to a class, as in rclcpp::Node::SharedPtr.
 _POINTERS = ("SharedPtr", "ConstSharedPtr", "WeakPtr", "UniquePtr")
 _NAMES = ("identifier", "field_identifier", "type_identifier")
+_NODE_NAMES = ("Node", "LifecycleNode")
 _GETTER = "get_node"
 _PARAMETERS = ("parameter_declaration", "optional_parameter_declaration")
 
@@ -91,6 +93,8 @@ class NodeHolders:
             return self.is_node_type(inner.rpartition(">")[0], scopes)
         words = [word for word in written.split() if word not in ("const", "typename", "class")]
         name = plain("".join(words).rstrip("&*"))
+        if self._is_of_another_package(name):
+            return True
         for meaning in self._unit.meanings(name, scopes):
             first, _, last = meaning.rpartition("::")
             if last in _POINTERS:
@@ -100,6 +104,13 @@ class NodeHolders:
                 return True
         return False
 
+    def _is_of_another_package(self, name: str) -> bool:
+        """Return whether a type is a class of nodes of another package, as its name says."""
+        first, _, last = name.rpartition("::")
+        written = first if last in _POINTERS else name
+        scope, _, short = written.rpartition("::")
+        return short in _NODE_NAMES and bool(scope) and scope != "YAML"
+
     @cached_property
     def _members(self) -> dict[str, set[str]]:
         """The classes that have a member which holds a node, by its name."""
@@ -107,9 +118,20 @@ class NodeHolders:
         for full, variables in self._unit.variables.items():
             scope, _, name = full.rpartition("::")
             scopes = scope.split("::") if scope else []
-            if any(self.is_node_type(variable.type, scopes) for variable in variables):
+            is_node = any(self.is_node_type(variable.type, scopes) for variable in variables)
+            if is_node or any(self._is_any_type(variable.type, scope) for variable in variables):
                 classes.setdefault(name, set()).add(scope)
         return classes
+
+    def _is_any_type(self, written: str, name: str) -> bool:
+        """Return whether a type is a parameter of the template that a class is."""
+        words = set(re.findall(r"\w+", written))
+        for each in self._unit.classes.get(name, ()):
+            parameters = each.node.parent.child("parameters") if each.node.parent else None
+            for parameter in parameters.children if parameters is not None else ():
+                if parameter.text.split()[-1] in words:
+                    return True
+        return False
 
     # --- Expressions
     # ----------------------------------------------------------------------
@@ -187,7 +209,17 @@ class NodeHolders:
             if each in classes:
                 return Holder("member", each, name)
         shared = [scope for scope in classes if scope not in self._unit.classes]
-        return Holder("shared", shared[0], name) if len(shared) == 1 else None
+        if len(shared) == 1:
+            return Holder("shared", shared[0], name)
+        is_known = owner in self._classes or self._is_variable(owner, name)
+        return None if is_known or not self.has_other_base(owner) else Holder("own", owner, "")
+
+    def _is_variable(self, owner: str, name: str) -> bool:
+        """Return whether a class, one of its bases or a namespace has a variable of a name."""
+        scopes = owner.split("::")
+        if self._unit.variables_named(name, scopes):
+            return True
+        return any(f"{each}::{name}" in self._unit.variables for each in self.with_bases(owner))
 
     def with_bases(self, name: str) -> Iterator[str]:
         """Yield a class and those of its bases that the files define."""
@@ -209,7 +241,7 @@ class NodeHolders:
             scopes = each.split("::")[:-1]
             for base in self._unit.classes[each][0].bases:
                 meanings = self._unit.meanings(base, scopes)
-                is_standard = any(meaning.startswith("std::") for meaning in meanings)
+                is_standard = meanings[0].startswith("std::")
                 if not is_standard and not any(name in self._unit.classes for name in meanings):
                     return True
         return False

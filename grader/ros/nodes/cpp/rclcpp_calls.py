@@ -132,7 +132,7 @@ def _part(value: CppValue) -> NamePart:
     if parameter is not None:
         return NamePart("parameter", parameter)
     is_call = isinstance(value, CppCall) and not value.args
-    is_own = is_call and (value.owner is None or _is_this(value.owner))
+    is_own = is_call and (value.owner is None or _is_this(value.owner) or _is_node(value.owner))
     if is_own and value.name == "get_name":
         return NamePart("node name")
     if is_own and value.name == "get_namespace":
@@ -142,6 +142,11 @@ def _part(value: CppValue) -> NamePart:
 
 def _is_this(value: CppValue) -> bool:
     return isinstance(value, CppName) and value.name == "this"
+
+
+def _is_node(value: CppValue) -> bool:
+    """Return whether a value is the node of a controller, whose name is asked for."""
+    return isinstance(value, CppCall) and value.name == "get_node" and not value.args
 
 
 def _parameter_read(value: CppValue) -> str | None:
