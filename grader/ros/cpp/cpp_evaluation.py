@@ -173,8 +173,11 @@ class CppEvaluation:
         if function is not None and function.kind == "field_expression":
             owner = self.value_of(function.child("argument"))
         name = called_name(node)
-        if isinstance(owner, str) and name in _SAME_TEXT:
+        if _is_textual(owner) and name in _SAME_TEXT:
             return owner
+        is_text = _is_textual(owner) or isinstance(owner, CppCall)
+        if is_text and name == "append" and len(arguments) == 1 and _is_textual(arguments[0]):
+            return _joined([owner, arguments[0]])
         return _constructed(CppCall(name, arguments, node, template_arguments(node), owner))
 
     def made(self, node: CppNode) -> CppValue:

@@ -31,6 +31,7 @@ from grader.ros.cpp.unit import (
 )
 from grader.ros.installation.installation import Installation
 from grader.ros.known.package_tables import cpp_table
+from grader.ros.nodes.cpp.call_sites import CallSites
 from grader.ros.nodes.cpp.cpp_faults import cpp_faults
 from grader.ros.nodes.cpp.cpp_files import CompiledTarget, CppFiles, may_hide
 from grader.ros.nodes.cpp.cpp_frames import frames_in
@@ -145,6 +146,7 @@ class _Target:
         self._compiled, self._unit, self._budget = compiled, compiled.unit, budget
         interface = LibraryCalls(cpp_table().reading, _SETTING)
         self._evaluation = CppEvaluation(self._unit, interface, budget)
+        self._sites = CallSites(self._unit, self._evaluation, budget)
         self.content = CppContentReader(self._unit, self._evaluation, budget)
         self.has_loose_declarations = False
         self.doubts: list[Doubt] = []
@@ -456,10 +458,21 @@ class _Target:
         facts = self._facts.setdefault(key, [])
         if isinstance(key, Holder):
             self._loose_calls.setdefault(key, []).append(call)
-        if isinstance(value, CppCall):
-            facts += facts_of_method(value, self._unit, scopes)
+        for alternative in self._alternatives(value):
+            facts += facts_of_method(alternative, self._unit, scopes)
         if function.is_template or is_conditional(call, function.node) or function.is_conditional:
             facts.append(Doubt("it depends on the preprocessor or on a template", call.location))
+
+    def _alternatives(self, value: CppValue) -> list[CppCall]:
+        """Return what a call may be, with the values of the parameters of its function.
+
+        A class of nodes whose objects get different ones is left open.
+        """
+        alternatives = self._sites.alternatives(value)
+        is_many = len(alternatives) > 1
+        if is_many and self._sites.is_of_constructor(value, self._node_classes):
+            alternatives = [value]
+        return [each for each in alternatives if isinstance(each, CppCall)]
 
     def _is_own_function(self, call: CppNode, name: str, function: CppFunction) -> bool:
         """Return whether a call certainly is one of a function of the files themselves."""
@@ -506,8 +519,9 @@ class _Target:
             self.doubts.append(Doubt(f"the node of this {name}() is not known", call.location))
             return
         scopes = self._unit.scopes_of(function)
-        endpoint = endpoint_of(ACTIONS[full], value, self._unit, scopes, position)
-        self._facts.setdefault(key, []).append(endpoint)
+        for alternative in self._alternatives(value):
+            endpoint = endpoint_of(ACTIONS[full], alternative, self._unit, scopes, position)
+            self._facts.setdefault(key, []).append(endpoint)
         if isinstance(key, Holder):
             self._loose_calls.setdefault(key, []).append(call)
 

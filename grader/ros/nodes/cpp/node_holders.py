@@ -148,12 +148,12 @@ class NodeHolders:
             return self._node_named(node, function, depth)
         if node.kind == "field_expression":
             return self._node_of_member(node, function)
-        if node.kind == "call_expression":
-            return self._node_made(node) or self._node_of_call(node, function, depth)
         if node.kind in _SAME and node.children:
             inner = node.child("argument") or node.children[0]
             return self.node_of(inner, function, depth + 1)
-        return self._node_made(node)
+        made = self._node_made(node)
+        is_call = made is None and node.kind == "call_expression"
+        return self._node_of_call(node, function, depth) if is_call else made
 
     def _node_named(self, node: CppNode, function: CppFunction, depth: int) -> NodeKey | None:
         name = node.text

@@ -82,7 +82,7 @@ def endpoint_of(
     kind: EndpointKind, call: CppCall, unit: CppUnit, scopes: Sequence[str], position: int = 0
 ) -> Endpoint:
     """Return what a call opens; `position` is that of the name among its arguments."""
-    name, parts = name_of(call.argument(position))
+    name, parts = name_of(call.argument(position), call.owner)
     qos = Qos()
     if kind in ("publisher", "subscription"):
         qos = _qos(call.argument(1))
@@ -114,25 +114,28 @@ def message_type(written: str, unit: CppUnit, scopes: Sequence[str]) -> str | No
     return types.pop() if len(types) == 1 else None
 
 
-def name_of(value: CppValue) -> tuple[str | None, tuple[NamePart, ...]]:
-    """Return a name that is plain text, or the parts of one that is not."""
+def name_of(value: CppValue, node: CppValue = None) -> tuple[str | None, tuple[NamePart, ...]]:
+    """Return a name that is plain text, or the parts of one that is not.
+
+    `node` is what has the node, if that is not the object itself.
+    """
     if isinstance(value, str):
         return value, ()
     if isinstance(value, CppSum):
-        return None, tuple(_part(part) for part in value.parts)
+        return None, tuple(_part(part, node) for part in value.parts)
     if isinstance(value, CppCall):
-        return None, (_part(value),)
+        return None, (_part(value, node),)
     return None, ()
 
 
-def _part(value: CppValue) -> NamePart:
+def _part(value: CppValue, node: CppValue) -> NamePart:
     if isinstance(value, str):
         return NamePart("text", value)
     parameter = _parameter_read(value)
     if parameter is not None:
         return NamePart("parameter", parameter)
     is_call = isinstance(value, CppCall) and not value.args
-    is_own = is_call and (value.owner is None or _is_this(value.owner) or _is_node(value.owner))
+    is_own = is_call and (_is_node(value.owner) or _is_same(value.owner, node))
     if is_own and value.name == "get_name":
         return NamePart("node name")
     if is_own and value.name == "get_namespace":
@@ -145,8 +148,17 @@ def _is_this(value: CppValue) -> bool:
 
 
 def _is_node(value: CppValue) -> bool:
-    """Return whether a value is the node of a controller, whose name is asked for."""
+    """Return whether a value is the object itself, or the node of a controller."""
+    if value is None or _is_this(value):
+        return True
     return isinstance(value, CppCall) and value.name == "get_node" and not value.args
+
+
+def _is_same(one: CppValue, other: CppValue) -> bool:
+    """Return whether two values are one variable."""
+    if not isinstance(one, CppName) or not isinstance(other, CppName):
+        return False
+    return one.name.removeprefix("this->") == other.name.removeprefix("this->")
 
 
 def _parameter_read(value: CppValue) -> str | None:
