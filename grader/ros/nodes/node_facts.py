@@ -144,6 +144,7 @@ class SynchronisedType(NamedTuple):
 CodeRule = Literal[
     "undefined name",
     "callback is called",
+    "wrong call",
     "no response",
     "nothing spins",
     "no rclpy.init",

@@ -13,8 +13,10 @@ from grader.base.names import closest, near
 from grader.base.problems import NO_FIXES, Fix, Fixes
 from grader.base.source import Location
 from grader.ros.known.package_tables import python_table
+from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
 from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.python.called_functions import CalledFunctions, imported_names
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, is_passive
 from grader.ros.python.constants import binds_unseen, dotted, last_name
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
@@ -84,12 +86,15 @@ def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
 
 
 def code_faults(
-    module: ModuleText, others: Mapping[str, ModuleText], attributes: _PackageAttributes
+    module: ModuleText,
+    others: Mapping[str, ModuleText],
+    attributes: _PackageAttributes,
+    releases: Sequence[Release],
 ) -> Iterator[CodeFault]:
     """Yield what is wrong in a module.
 
     `others` are all modules of the package, by their names, and `attributes` those of all of
-    them.
+    them. Calls are those of the given releases, or of any that are known.
     """
     search = _Search(module, others)
     yield from _undefined_names(module.code)
@@ -98,6 +103,25 @@ def code_faults(
     yield from search.without_response()
     yield from search.waiting_callbacks()
     yield from search.of_programs()
+    yield from _wrong_calls(module, releases or RELEASES)
+
+
+def _wrong_calls(module: ModuleText, releases: Sequence[Release]) -> Iterator[CodeFault]:
+    """Yield the calls of rclpy and tf2_ros whose arguments Python cannot bind."""
+    nodes = every_node(module.code.tree)
+    if binds_unseen(nodes):
+        return
+    functions = CalledFunctions(module.code, nodes, imported_names(nodes), releases)
+    count = 0
+    for part in module.parts:
+        owner = module.nodes.get(part.of) if part.of is not None else None
+        certain = {node for node in certain_nodes(part.node) if isinstance(node, ast.Call)}
+        for call in sorted(certain.intersection(part.calls), key=position_of):
+            wrong = functions.wrong_call(call, owner, {})
+            if wrong is not None and count < _MAX_FAULTS:
+                count += 1
+                at = location_in(module.code.source, position_of(call))
+                yield CodeFault("wrong call", wrong.reaction, at)
 
 
 def _undefined_names(code: Code) -> Iterator[CodeFault]:

@@ -8,6 +8,7 @@ from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, Undecided
 from grader.ros.workspace.rules.rule_table import (
     BUFFER_LISTENER,
+    CALL_ARGUMENTS,
     CALLBACK_CALL,
     CALLBACK_SLEEP,
     CALLBACK_WAIT,
@@ -25,6 +26,7 @@ from grader.ros.workspace.rules.rule_table import (
 _RULES: Mapping[CodeRule, Rule] = {
     "undefined name": NAME_BINDING,
     "callback is called": CALLBACK_CALL,
+    "wrong call": CALL_ARGUMENTS,
     "no response": SERVICE_RESPONSE,
     "nothing spins": NODE_SPINS,
     "no rclpy.init": RCLPY_INIT,

@@ -379,6 +379,9 @@ NAME_BINDING = _code(
 CALLBACK_CALL = _code(
     "callback-call", sentence="A callback is given as a function, and not called."
 )
+CALL_ARGUMENTS = _code(
+    "call-arguments", sentence="A call of rclpy or tf2_ros has the arguments that it takes."
+)
 SERVICE_RESPONSE = _code(
     "service-response",
     sentence="The callback of a service or action returns its response or result on every path.",
