@@ -145,6 +145,8 @@ CodeRule = Literal[
     "undefined name",
     "callback is called",
     "wrong call",
+    "no goal state",
+    "no result",
     "no response",
     "nothing spins",
     "no rclpy.init",

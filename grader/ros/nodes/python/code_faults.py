@@ -16,6 +16,12 @@ from grader.ros.known.package_tables import python_table
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
 from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.python.action_faults import (
+    RegisteredGoal,
+    answers_for_results,
+    buffers_without_listener,
+    goals_without_state,
+)
 from grader.ros.nodes.python.called_functions import CalledFunctions, imported_names
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, is_passive
 from grader.ros.python.constants import binds_unseen, dotted, last_name
@@ -71,14 +77,16 @@ class _PackageAttributes(NamedTuple):
 
 def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
     """Return the attributes of the modules of a package."""
-    stored, texts = set[str](), set[str]()
+    stored, texts, increased = set[str](), set[str](), set[ast.AST]()
     may_be_more = False
     for module in modules:
         nodes = every_node(module.code.tree)
         may_be_more = may_be_more or binds_unseen(nodes)
         for node in nodes:
             match node:
-                case ast.Attribute(attr=name, ctx=ast.Store()):
+                case ast.AugAssign(target=ast.Attribute() as target):
+                    increased.add(target)  # which makes no attribute
+                case ast.Attribute(attr=name, ctx=ast.Store()) if node not in increased:
                     stored.add(name)
                 case ast.Constant(value=str(text)):
                     texts.add(text)
@@ -104,6 +112,7 @@ def code_faults(
     yield from search.waiting_callbacks()
     yield from search.of_programs()
     yield from _wrong_calls(module, releases or RELEASES)
+    yield from search.of_actions()
 
 
 def _wrong_calls(module: ModuleText, releases: Sequence[Release]) -> Iterator[CodeFault]:
@@ -239,6 +248,8 @@ class _Search:
             match node:
                 case ast.Attribute(value=ast.Name(id="self"), ctx=ast.Load()):
                     read.append(node)
+                case ast.AugAssign(target=ast.Attribute(value=ast.Name(id="self")) as target):
+                    read.append(target)
         for node in sorted(read, key=position_of):  # the first use is said
             name = node.attr
             if name in own_names or name in known or name in asked or name.startswith("_"):
@@ -387,6 +398,18 @@ class _Search:
             ):
                 return True
         return False
+
+    def of_actions(self) -> Iterator[CodeFault]:
+        """Yield what is done wrong with actions and transforms."""
+        goals = []
+        for registered in self._registered:
+            function = self._function(registered.given, registered.part)
+            if registered.by == "ActionServer" and function is not None:
+                goals.append(RegisteredGoal(function, registered.call))
+        yield from goals_without_state(self._code, goals)
+        yield from answers_for_results(self._code, self._module.parts, self._functions)
+        names = imported_names(every_node(self._code.tree))
+        yield from buffers_without_listener(self._code, names)
 
     # --- Programs
 

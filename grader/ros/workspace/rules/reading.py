@@ -24,6 +24,7 @@ from grader.ros.workspace.rules.gazebo import gazebo_facts
 from grader.ros.workspace.rules.interfaces import interface_facts
 from grader.ros.workspace.rules.known_ends import known_end_facts
 from grader.ros.workspace.rules.known_parameters import known_parameter_facts
+from grader.ros.workspace.rules.launch_tables import launch_table_facts
 from grader.ros.workspace.rules.limit_values import limit_facts
 from grader.ros.workspace.rules.looked_up_transforms import lookup_facts
 from grader.ros.workspace.rules.meeting_ends import meeting_facts
@@ -61,6 +62,7 @@ _READERS = (
     spawner_facts,
     parameter_facts,
     known_parameter_facts,
+    launch_table_facts,
     argument_facts,
     program_facts,
     component_facts,

@@ -234,6 +234,9 @@ ROBOT_TEXT = _parameter("robot-text", sentence="robot_description is the text of
 CREATED_FROM = _parameter(
     "created-from", sentence="The program that creates a robot in Gazebo gets its source."
 )
+PARAMETER_TABLE = _parameter(
+    "parameter-table", sentence="The parameters of a node in a launch file are a dictionary."
+)
 PARAMETER_NAME = Rule(
     "parameter-name",
     "parameters",
@@ -276,6 +279,10 @@ PROGRAM_EXISTS = _program(
     "program-exists", sentence="The package of a started node has its program."
 )
 ENTRY_POINT = _program("entry-point", sentence="An entry point names a function that exists.")
+ENTRY_MODULE = _program(
+    "entry-module",
+    sentence="An entry point runs the module of its own name, if that has such a function.",
+)
 PROGRAM_RUNS = _program("program-runs", sentence="The first line of a script names an interpreter.")
 _NODE_STARTED = _program(
     "node-started", sentence="A launch file starts the nodes that a lifecycle manager manages."
@@ -385,6 +392,12 @@ CALL_ARGUMENTS = _code(
 SERVICE_RESPONSE = _code(
     "service-response",
     sentence="The callback of a service or action returns its response or result on every path.",
+)
+GOAL_STATE = _slow_code(
+    "goal-state", sentence="A function that executes a goal sets the state of the goal."
+)
+ACTION_RESULT = _code(
+    "action-result", sentence="The result of an action is the field result of its answer."
 )
 NODE_SPINS = _code("node-spins", sentence="A node with callbacks is spun.")
 RCLPY_INIT = _code("rclpy-init", sentence="A node is made after rclpy.init().")
