@@ -52,6 +52,7 @@ from grader.ros.workspace.rules.rule_table import DEFINED, AnyFamily
 from grader.ros.workspace.rules.spawners import spawner_facts
 from grader.ros.workspace.rules.srdf import srdf_facts
 from grader.ros.workspace.rules.topic_wiring import topic_wiring_facts
+from grader.ros.workspace.rules.unmet_topics import unmet_topic_facts
 from grader.ros.workspace.rules.unused import unused_files
 from grader.ros.workspace.rules.wheel_values import wheel_value_facts
 
@@ -87,6 +88,7 @@ _READERS = (
     renamed_node_facts,
     machine_facts,
     topic_wiring_facts,
+    unmet_topic_facts,
     received_message_facts,
     gain_facts,
     known_end_facts,

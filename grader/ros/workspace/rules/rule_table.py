@@ -483,6 +483,14 @@ SIMULATION_TIME = _companion("simulation-time", sentence="The nodes of a simulat
 CONTAINER_STARTED = _companion(
     "container-started", sentence="The container of a component is started."
 )
+UNSTARTED_TYPE = _companion(
+    "unstarted-type",
+    sentence="Two programs of a package that share a topic have one type for it.",
+)
+TOPIC_PARTNER = _companion(
+    "topic-partner",
+    sentence="A topic that a node waits for is one that another node of its launch publishes.",
+)
 SENSOR_TOPIC = _companion(
     "sensor-topic", sentence="The sensor whose messages a bridge takes has a <topic>."
 )
