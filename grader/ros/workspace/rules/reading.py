@@ -28,6 +28,7 @@ from grader.ros.workspace.rules.launch_tables import launch_table_facts
 from grader.ros.workspace.rules.limit_values import limit_facts
 from grader.ros.workspace.rules.looked_up_transforms import lookup_facts
 from grader.ros.workspace.rules.meeting_ends import meeting_facts
+from grader.ros.workspace.rules.mimic_interfaces import mimic_facts
 from grader.ros.workspace.rules.missing_ends import missing_end_facts
 from grader.ros.workspace.rules.moveit import moveit_facts
 from grader.ros.workspace.rules.names import (
@@ -42,6 +43,7 @@ from grader.ros.workspace.rules.names import (
 from grader.ros.workspace.rules.namespaces import namespace_facts
 from grader.ros.workspace.rules.one_machine import machine_facts
 from grader.ros.workspace.rules.parameters import parameter_facts
+from grader.ros.workspace.rules.plugin_classes import plugin_class_facts
 from grader.ros.workspace.rules.programs import program_facts
 from grader.ros.workspace.rules.published_transforms import transform_facts
 from grader.ros.workspace.rules.rate_values import rate_facts
@@ -60,6 +62,8 @@ _READERS = (
     file_facts,
     frame_facts,
     controller_facts,
+    plugin_class_facts,
+    mimic_facts,
     spawner_facts,
     parameter_facts,
     known_parameter_facts,

@@ -171,6 +171,19 @@ CONTROLLER_INTERFACE = _controller(
 CONTROLLER_HARDWARE = _controller(
     "controller-hardware", sentence="A robot with a controller manager has <ros2_control>."
 )
+MIMIC_COMMAND = _controller(
+    "mimic-command", sentence="A joint that mimics another one has no command interface."
+)
+PLUGIN_CLASS = _controller(
+    "plugin-class",
+    sentence="A package of the workspace describes the controller or hardware that a file names.",
+)
+PLUGIN_EXPORTED = _controller(
+    "plugin-exported", sentence="CMakeLists.txt exports the files that describe plugins."
+)
+PLUGIN_LIBRARY = _controller(
+    "plugin-library", sentence="A target makes the library of a file that describes plugins."
+)
 SPAWNER_MANAGER = _controller(
     "spawner-manager", sentence="The controller manager that a spawner asks is started."
 )
