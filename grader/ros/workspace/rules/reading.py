@@ -51,6 +51,7 @@ from grader.ros.workspace.rules.received_messages import received_message_facts
 from grader.ros.workspace.rules.remapped_names import remapping_facts
 from grader.ros.workspace.rules.renamed_nodes import renamed_node_facts
 from grader.ros.workspace.rules.rule_table import DEFINED, AnyFamily
+from grader.ros.workspace.rules.simulated_topics import simulated_topic_facts
 from grader.ros.workspace.rules.spawners import spawner_facts
 from grader.ros.workspace.rules.srdf import srdf_facts
 from grader.ros.workspace.rules.topic_wiring import topic_wiring_facts
@@ -76,6 +77,7 @@ _READERS = (
     remapping_facts,
     gazebo_facts,
     bridge_facts,
+    simulated_topic_facts,
     srdf_facts,
     moveit_facts,
     dependency_facts,

@@ -340,6 +340,13 @@ BRIDGE_TYPE = _topic(
 BRIDGE_TOPIC = _topic("bridge-topic", sentence="Gazebo has the topic of a row of a bridge.")
 BRIDGE_CLOCK = _topic("bridge-clock", sentence="A bridge takes the clock from Gazebo.")
 BRIDGE_TOPICS = _topic("bridge-topics", sentence="A bridge has topics.")
+BRIDGE_SYSTEM = _topic(
+    "bridge-system",
+    sentence="The robot has a system for the commands, joints and odometry of a bridge.",
+)
+ODOMETRY_BRIDGED = _topic(
+    "odometry-bridged", sentence="A bridge takes the transform of odometry that RViz shows to /tf."
+)
 SENSOR_SYSTEM = _topic("sensor-system", sentence="A world has the systems that its sensors need.")
 CREATED_WORLD = _topic(
     "created-world", sentence="A robot is created in the world that Gazebo runs."
