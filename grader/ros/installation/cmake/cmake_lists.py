@@ -175,10 +175,7 @@ class _Evaluation:
         self.values.is_opaque |= command.name in cmake_words().opaque
         index = cmake_words().outputs.get(command.name, len(texts))
         names = texts if index < 0 else texts[index : index + 1]
-        if command.name == "find_library":
-            self.values.libraries.update(name for name in names if isinstance(name, str))
-        if command.name in ("pkg_check_modules", "pkg_search_module"):
-            self.values.prefixes.update(f"{text}_" for text in texts[:1])
+        self.values.note_libraries(command.name, names, texts)
         self.values.forget(names, f"the result of {command.name}() is not evaluated", command.at)
 
     # --- Control flow

@@ -136,6 +136,16 @@ class Values:
         is_found = any(lower[:end] in self.packages for end in ends)
         return is_found or lower.startswith((*cmake_words().foreign,))
 
+    def note_libraries(self, command: str, names: Sequence[Text], texts: Sequence[Text]) -> None:
+        """Note the variables in which a command puts the names of libraries of others.
+
+        `names` are the variables that it sets, `texts` its arguments.
+        """
+        if command == "find_library":
+            self.libraries.update(str(name) for name in names)
+        if command in ("pkg_check_modules", "pkg_search_module"):
+            self.prefixes.update(f"{text}_" for text in texts[:1])
+
     def may_name_own_target(self, argument: Argument) -> bool:
         """Return whether an argument whose value is not known may name targets of the file.
 

@@ -28,7 +28,8 @@ _MAKERS = ("make_shared", "make_unique")
 # Methods and functions whose result is the node itself, of its owner or of its first argument.
 _SAME_METHODS = ("get", "lock", "shared_from_this", "weak_from_this")
 _SAME_FUNCTIONS = ("move", "ref", "static_pointer_cast", "dynamic_pointer_cast", "shared_ptr")
-_SAME = ("pointer_expression", "parenthesized_expression", "initializer_list")
+_AROUND = ("pointer_expression", "parenthesized_expression")  # an expression that is the same
+_SAME = (*_AROUND, "initializer_list")
 _LISTS = ("argument_list", "initializer_list", "parameter_list")
 # The endings of types of pointers to a class, as in rclcpp::Node::SharedPtr.
 _POINTERS = ("SharedPtr", "ConstSharedPtr", "WeakPtr", "UniquePtr")
@@ -324,7 +325,7 @@ class NodeHolders:
         argument = node
         if is_argument(node) and node.parent is not None:
             argument = node.parent
-        while _is_same(argument) and argument.parent is not None:
+        while argument.parent is not None and argument.parent.kind in _AROUND:
             argument = argument.parent
         given = argument.parent
         if given is None:
@@ -433,9 +434,3 @@ class NodeHolders:
 
 def _short_name(call: CppNode) -> str:
     return called_name(call).rpartition("::")[2]
-
-
-def _is_same(node: CppNode) -> bool:
-    """Return whether the expression around another one is the same object."""
-    parent = node.parent
-    return parent is not None and parent.kind in ("pointer_expression", "parenthesized_expression")

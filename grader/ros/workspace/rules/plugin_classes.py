@@ -18,6 +18,7 @@ from grader.ros.workspace.rules.rule_table import (
     PLUGIN_LIBRARY,
 )
 
+_MADE = (".xml.in", ".xml.em")  # endings of files of which a build makes descriptions
 _DESCRIBES = "base_class_type"
 _LIBRARY = re.compile(r"<library\s++path\s*+=\s*+[\"']([^\"']++)[\"']")
 _CLASS = re.compile(r"<class\s++([^<>]*+)>")
@@ -35,7 +36,7 @@ class _Described(NamedTuple):
     package: str
 
 
-class _Wanted(NamedTuple):
+class _NamedClass(NamedTuple):
     """A class that a file names for pluginlib."""
 
     name: str
@@ -78,7 +79,9 @@ def _not_described(workspace: Workspace, described: Sequence[_Described]) -> Ite
             if each.package == prefix and each.base.startswith(wanted.base)
         ]
         owners = [package for package in workspace.packages if package.name == prefix]
-        if not names or len(owners) != 1 or _makes_descriptions(owners[0]):
+        if not names or len(owners) != 1:
+            continue
+        if any(path.endswith(_MADE) for path in owners[0].tree.files):
             continue
         yield Compared("controllers")
         if any(wanted.name in (each.name, each.type) for each in described):
@@ -91,23 +94,19 @@ def _not_described(workspace: Workspace, described: Sequence[_Described]) -> Ite
         yield Mismatch(PLUGIN_CLASS, message, wanted.location, corrections=either)
 
 
-def _makes_descriptions(package: Package) -> bool:
-    return any(path.endswith((".xml.in", ".xml.em")) for path in package.tree.files)
-
-
-def _controllers(workspace: Workspace) -> Iterator[_Wanted]:
+def _controllers(workspace: Workspace) -> Iterator[_NamedClass]:
     for controller in defined_controllers(workspace):
         name = controller.type.text or ""
         user = f"{controller.name}.type"
-        yield _Wanted(name, controller.type.location, _CONTROLLERS, user)
+        yield _NamedClass(name, controller.type.location, _CONTROLLERS, user)
 
 
-def _hardware(workspace: Workspace) -> Iterator[_Wanted]:
+def _hardware(workspace: Workspace) -> Iterator[_NamedClass]:
     for robot in workspace.robots.known:
         for system in robot.systems:
             for plugin in system.iterfind("hardware/plugin"):
                 name = (plugin.text or "").strip()
-                yield _Wanted(name, robot.place(plugin), _HARDWARE, "<plugin>")
+                yield _NamedClass(name, robot.place(plugin), _HARDWARE, "<plugin>")
 
 
 def _not_exported(package: Package, source: Source) -> Iterator[Mismatch]:

@@ -10,7 +10,7 @@ from grader.base.source import Location
 from grader.ros.known.shared_names import shared_names
 from grader.ros.nodes.node_facts import Endpoint
 from grader.ros.workspace.graph.code_ends import END_SOURCES, End
-from grader.ros.workspace.graph.graph import Graph, graph_of, grouped
+from grader.ros.workspace.graph.graph import Graph, graph_of
 from grader.ros.workspace.graph.unread_ends import Sought, is_all_read, may_be_opened
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.meeting_ends import TOPICS
@@ -52,8 +52,9 @@ def _of_unstarted(workspace: Workspace) -> Iterator[Mismatch]:
             continue
         published = [each for each in opened if each.endpoint.kind == "publisher"]
         subscribed = [each for each in opened if each.endpoint.kind == "subscription"]
-        types = [{each.endpoint.type for each in side} for side in (published, subscribed)]
-        if None in types[0] | types[1] or types[0] & types[1]:
+        sent = {each.endpoint.type for each in published}
+        read = {each.endpoint.type for each in subscribed}
+        if None in sent | read or sent & read:
             continue
         for each in subscribed:
             other = _of_same_package(each, published)
@@ -114,20 +115,22 @@ def _of_one_launch(graph: Graph) -> Iterator[Mismatch]:
     published = {end.name for end in graph.of_kind("publisher", sources=END_SOURCES)}
     subscribed = {end.name for end in graph.of_kind("subscription", sources=END_SOURCES)}
     unheard = [end for end in publishers if _is_free(end, subscribed)]
-    by_key = grouped(unheard, lambda end: (end.launch, end.type))
     waiting = [end for end in subscriptions if _is_free(end, published)]
-    for (launch, kind), ends in grouped(waiting, lambda end: (end.launch, end.type)).items():
-        others = by_key.get((launch, kind), ())
-        if len(ends) != 1 or len(others) != 1 or kind is None:
-            continue
-        [asking], [offering] = ends, others
-        if asking.owner != offering.owner and _is_closed(graph.workspace, asking):
-            at, place = asking.location, offering.location
-            message = (
-                f"nothing publishes {asking.name}, and nothing subscribes to {offering.name}, "
-                f"which has its type {kind} ({place.file_and_line})"
-            )
-            yield warning(TOPIC_PARTNER, message, at, place)
+    for asking in waiting:
+        rivals = graph.alike(asking, waiting)
+        offering = graph.alike(asking, unheard)
+        if len(rivals) == 1 and len(offering) == 1 and asking.type is not None:
+            yield from _partners(graph.workspace, asking, offering[0])
+
+
+def _partners(workspace: Workspace, asking: End, offering: End) -> Iterator[Mismatch]:
+    """Yield that the topic of a subscription is meant to be that of a publisher."""
+    if asking.owner != offering.owner and _is_closed(workspace, asking):
+        message = (
+            f"nothing publishes {asking.name}, and nothing subscribes to {offering.name}, "
+            f"which has its type {asking.type} ({offering.location.file_and_line})"
+        )
+        yield warning(TOPIC_PARTNER, message, asking.location, offering.location)
 
 
 def _is_free(end: End, partners: "set[str]") -> bool:
