@@ -28,7 +28,7 @@ _IGNORED = re.compile(
     re.MULTILINE,
 )
 # `extern "C" {` for compilers of C++, whose brace another condition closes.
-_OF_CPP = r"^[ \t]*#[ \t]*if(?:def)?\b[^\n]*\b__cplusplus\b[^\n]*\n\s*"
+_OF_CPP = r"^[ \t]*#[ \t]*if(?:def)?\b[^\n]{0,80}\b__cplusplus\b[^\n]{0,80}\n\s*"
 _LINKAGE = re.compile(
     rf'{_OF_CPP}(?:extern\s+"C"\s*\{{|\}})[ \t]*(?://[^\n]*|/\*[^*\n]*\*/)?\s*#[ \t]*endif\b',
     re.MULTILINE,

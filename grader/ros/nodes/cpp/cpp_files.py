@@ -22,7 +22,7 @@ _LOST = re.compile(
     r"\b(?:create_\w+|declare_parameters?|get_parameter\w*|has_parameter|Subscriber|add_node|spin"
     r"|class|struct|namespace|template|using|main|make_(?:shared|unique)|\w+_from_this"
     r"|new(?!\s+(?:bool|char|double|float|int)\b)|Node|LifecycleNode|RCLCPP_COMPONENTS\w*)\b"
-    r"|[({,=]\s*\*?this\s*[,)};]|\b\w*[nN]ode\w*\s*[,)};]"
+    r"|[({,=]\s*\*?this\s*[,)};]|\b(?=\w*[nN]ode)\w++\s*+[,)};]"
 )
 _MAX_FILES = 200  # of one package
 _MAX_LINKED = 50  # targets

@@ -75,6 +75,7 @@ class NodeHolders:
         """
         self._unit, self._classes, self._budget = unit, node_classes, budget
         self._node_made = node_made
+        self._declared: dict[tuple[CppNode, str], list[CppNode]] = {}
         self._types: dict[tuple[str, tuple[str, ...]], bool] = {}
 
     # --- Types
@@ -167,7 +168,11 @@ class NodeHolders:
 
     def _declared_in(self, function: CppFunction, name: str) -> list[CppNode]:
         """Return the names in the declarations of a local variable or parameter of a function."""
-        return [use for use in self._uses_in(function, name) if declaration_of(use) is not None]
+        key = (function.node, name)
+        if key not in self._declared:
+            uses = self._uses_in(function, name)
+            self._declared[key] = [use for use in uses if declaration_of(use) is not None]
+        return self._declared[key]
 
     def _uses_in(self, function: CppFunction, name: str) -> list[CppNode]:
         inside, uses = function.node, self._unit.uses.get(name, ())

@@ -22,7 +22,7 @@ _MADE = (".xml.in", ".xml.em")  # endings of files of which a build makes descri
 _DESCRIBES = "base_class_type"
 _LIBRARY = re.compile(r"<library\s++path\s*+=\s*+[\"']([^\"']++)[\"']")
 _CLASS = re.compile(r"<class\s++([^<>]*+)>")
-_ATTRIBUTE = re.compile(r"(\w++)\s*+=\s*+[\"']([^\"']*+)[\"']")
+_ATTRIBUTE = re.compile(r"\b(\w++)\s*+=\s*+[\"']([^\"']*+)[\"']")
 # The packages whose classes are the bases of controllers and of hardware.
 _CONTROLLERS, _HARDWARE = "controller_interface::", "hardware_interface::"
 
