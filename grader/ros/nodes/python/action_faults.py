@@ -136,8 +136,7 @@ def buffers_without_listener(code: Code, names: Mapping[str, str]) -> Iterator[C
 
     `names` has the full names of what is imported. A buffer that anything is given may be filled.
     """
-    text = code.source.text
-    if "TransformListener" in text or "set_transform" in text or "Buffer" not in text:
+    if "set_transform" in code.source.text:
         return
     made: dict[str, list[ast.Call]] = {}
     for node in every_node(code.tree):

@@ -124,13 +124,15 @@ def _wrong_calls(module: ModuleText, releases: Sequence[Release]) -> Iterator[Co
     count = 0
     for part in module.parts:
         owner = module.nodes.get(part.of) if part.of is not None else None
-        certain = {node for node in certain_nodes(part.node) if isinstance(node, ast.Call)}
-        for call in sorted(certain.intersection(part.calls), key=position_of):
-            wrong = functions.wrong_call(call, owner, {})
-            if wrong is not None and count < _MAX_FAULTS:
-                count += 1
+        wrong_calls = {call: functions.wrong_call(call, owner, {}) for call in part.calls}
+        reactions = {call: wrong.reaction for call, wrong in wrong_calls.items() if wrong}
+        certain = set(certain_nodes(part.node)) if reactions else set[ast.AST]()
+        said = [call for call in reactions if call in certain]
+        for call in sorted(said, key=position_of):
+            count += 1
+            if count <= _MAX_FAULTS:
                 at = location_in(module.code.source, position_of(call))
-                yield CodeFault("wrong call", wrong.reaction, at)
+                yield CodeFault("wrong call", reactions[call], at)
 
 
 def _undefined_names(code: Code) -> Iterator[CodeFault]:
@@ -407,9 +409,12 @@ class _Search:
             if registered.by == "ActionServer" and function is not None:
                 goals.append(RegisteredGoal(function, registered.call))
         yield from goals_without_state(self._code, goals)
-        yield from answers_for_results(self._code, self._module.parts, self._functions)
-        names = imported_names(every_node(self._code.tree))
-        yield from buffers_without_listener(self._code, names)
+        text = self._code.source.text
+        if "get_result_async" in text:
+            yield from answers_for_results(self._code, self._module.parts, self._functions)
+        if "Buffer" in text and "TransformListener" not in text:
+            names = imported_names(every_node(self._code.tree))
+            yield from buffers_without_listener(self._code, names)
 
     # --- Programs
 
