@@ -118,6 +118,8 @@ def _other_modules(package: Package) -> Iterator[Mismatch]:
         path = module_path(package, own_module)
         if entry.name == last or own_module in modules or path is None or not entry.function:
             continue
+        if entry_fault(package, entry.name) is not None:  # which is said
+            continue
         code = read_module(package, path)
         if code is not None and entry.function in bound_in(code.tree):
             message = (

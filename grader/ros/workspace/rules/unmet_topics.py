@@ -6,7 +6,9 @@ Only where all of the code is read, as another program may be the partner that i
 from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from grader.base.names import closest
 from grader.base.source import Location
+from grader.ros.known.package_tables import transport_types
 from grader.ros.known.shared_names import shared_names
 from grader.ros.nodes.node_facts import Endpoint
 from grader.ros.workspace.graph.code_ends import END_SOURCES, End
@@ -125,12 +127,26 @@ def _of_one_launch(graph: Graph) -> Iterator[Mismatch]:
 
 def _partners(workspace: Workspace, asking: End, offering: End) -> Iterator[Mismatch]:
     """Yield that the topic of a subscription is meant to be that of a publisher."""
+    if _is_of_other_rule(asking, offering):
+        return
     if asking.owner != offering.owner and _is_closed(workspace, asking):
         message = (
             f"nothing publishes {asking.name}, and nothing subscribes to {offering.name}, "
             f"which has its type {asking.type} ({offering.location.file_and_line})"
         )
         yield warning(TOPIC_PARTNER, message, asking.location, offering.location)
+
+
+def _is_of_other_rule(asking: End, offering: End) -> bool:
+    """Return whether another rule says what is wrong.
+
+    The names are similar, the topic is one of compressed images, or a remapping names another one.
+    """
+    is_similar = closest(asking.name, [offering.name]) is not None
+    is_compressed = asking.name.rpartition("/")[2] in transport_types()
+    plain = asking.node._replace(remaps=()).topic(asking.endpoint.name or "")
+    is_missed = bool(asking.node.remaps) and plain == asking.name
+    return is_similar or is_compressed or is_missed
 
 
 def _is_free(end: End, partners: "set[str]") -> bool:
