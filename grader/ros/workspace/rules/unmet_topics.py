@@ -46,6 +46,8 @@ def _of_unstarted(workspace: Workspace) -> Iterator[Mismatch]:
     No launch file starts the programs, and no node of the workspace has a partner for either one.
     A topic of a well-known name may have one in another program.
     """
+    if workspace.launches.has_more_nodes or workspace.launches.unknown_nodes:
+        return
     topics = _all_topics(workspace)
     if topics is None:
         return
