@@ -244,5 +244,6 @@ def resolve_include(path: str, included: str, files: Mapping[str, object]) -> st
     for candidate in (beside, f"include/{included}", f"src/{included}", included):
         if candidate in files:
             return candidate
-    elsewhere = [file for file in files if file.endswith(f"/include/{included}")]
+    headers = [file for file in files if file.startswith("include/") or "/include/" in file]
+    elsewhere = [file for file in headers if file.endswith(f"/{included}")]
     return elsewhere[0] if len(elsewhere) == 1 else None
