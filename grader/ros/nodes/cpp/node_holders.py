@@ -333,23 +333,25 @@ class NodeHolders:
         while argument.parent is not None and argument.parent.kind in _AROUND:
             argument = argument.parent
         given = argument.parent
-        if given is None:
-            return None
-        if given.kind == "assignment_expression" and argument.field == "right":
-            left = given.child("left")
-            key = self.node_of(left, function) if left is not None else None
-            return key if isinstance(key, Holder) else None
-        if given.kind == "init_declarator" and argument.field == "value":
-            declarator = given.child("declarator")
-            name = name_in(declarator) if declarator is not None else None
-            key = self.node_of(name, function) if name is not None else None
-            return key if isinstance(key, Holder) else None
-        taker = given.parent if given.kind in _LISTS else None
+        if given is None or given.kind not in _LISTS:
+            return self._holder_set(argument, function)
+        taker = given.parent
         if taker is None:
             return None
         if taker.kind == "call_expression" and _short_name(taker) in _SAME_FUNCTIONS:
             return self.holder_given(taker, function)
         return self._holder_of_argument(taker, given, argument, function)
+
+    def _holder_set(self, value: CppNode, function: CppFunction) -> Holder | None:
+        """Return the variable or member that is set to a node, or declared with it."""
+        around, written = value.parent, None
+        if around is not None and around.kind == "assignment_expression" and value.field == "right":
+            written = around.child("left")
+        if around is not None and around.kind == "init_declarator" and value.field == "value":
+            declarator = around.child("declarator")
+            written = name_in(declarator) if declarator is not None else None
+        key = self.node_of(written, function) if written is not None else None
+        return key if isinstance(key, Holder) else None
 
     def _holder_of_argument(
         self, taker: CppNode, given: CppNode, argument: CppNode, function: CppFunction
@@ -382,30 +384,42 @@ class NodeHolders:
 
     def _called_by(self, taker: CppNode, function: CppFunction) -> Sequence[CppFunction]:
         """Return the functions and constructors that may get the arguments of something."""
+        if taker.kind == "call_expression":
+            return self._called_in(taker, function)
         owner = self._unit.owner_of(function)
         if taker.kind == "field_initializer":
             return self._constructors(self._type_of_member(taker.children[0].text, owner), function)
-        if taker.kind != "call_expression":
-            written = class_written(taker)
-            if not written and taker.parent is not None:
-                written = class_written(taker.parent)
-            return self._constructors(written, function)
-        name = called_name(taker)
-        short = name.rpartition("::")[2]
-        types = template_arguments(taker)
+        written = class_written(taker)
+        if not written and taker.parent is not None:
+            written = class_written(taker.parent)
+        return self._constructors(written, function)
+
+    def _called_in(self, call: CppNode, function: CppFunction) -> Sequence[CppFunction]:
+        """Return the functions, methods and constructors that a call may mean."""
+        name, owner, called = (
+            called_name(call),
+            self._unit.owner_of(function),
+            call.child("function"),
+        )
+        scope, _, short = name.rpartition("::")
+        types = template_arguments(call)
         if short in _MAKERS:
-            return self._constructors(types[0] if types else name.rpartition("::")[0], function)
-        called = taker.child("function")
+            return self._constructors(types[0] if types else scope, function)
         if called is not None and called.kind == "field_expression":
-            object_called = called.child("argument")
-            is_own = object_called is not None and object_called.kind == "this"
-            methods = self._methods_named(short, owner if is_own else None)
-            member = object_called.text if object_called is not None else ""
-            made = self._constructors_of_pointer(member, short, owner, function)
-            return [*methods, *made]
+            return self._called_methods(called, short, function)
         methods = self._methods_named(short, owner) if owner and short == name else []
         free = [each for each in self._functions.get(short, ()) if not self._unit.owner_of(each)]
         return methods or [*free, *self._constructors(name, function)]
+
+    def _called_methods(
+        self, called: CppNode, name: str, function: CppFunction
+    ) -> Sequence[CppFunction]:
+        """Return the methods of an object of a name, or what emplace() of a member constructs."""
+        owner, receiver = self._unit.owner_of(function), called.child("argument")
+        is_own = receiver is not None and receiver.kind == "this"
+        methods = self._methods_named(name, owner if is_own else None)
+        member = receiver.text if receiver is not None else ""
+        return [*methods, *self._constructors_of_pointer(member, name, owner, function)]
 
     def _constructors_of_pointer(
         self, member: str, method: str, owner: str, function: CppFunction
