@@ -163,7 +163,7 @@ WEIGHTS = {
     "ros.known": 8_900,  # the packages that are released; when each table was read, and the last release that was read for it
     "ros.launch": 45_200,  # sets for dictionaries; what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing
     "ros.mesh": 4_300,
-    "ros.nodes": 56_700,  # calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions
+    "ros.nodes": 56_800,  # calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions
     "ros.package": 26_950,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
     "ros.python": 28_950,  # the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
