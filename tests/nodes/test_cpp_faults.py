@@ -224,3 +224,19 @@ REGISTERED = [
 def test_components_that_a_source_may_register(text: str) -> None:
     """Also under a condition, or by the macro of class_loader."""
     assert _registered(text) == []
+
+
+@pytest.mark.parametrize(
+    ("statement", "is_lost"),
+    [
+        ("add_on_set_parameters_callback(cb);", True),
+        ("auto handle = add_on_set_parameters_callback(cb);", True),
+        ("handle_ = this->add_on_set_parameters_callback(cb);", False),
+        ("handles_.push_back(add_post_set_parameters_callback(cb));", False),
+    ],
+)
+def test_handles_of_callbacks(statement: str, is_lost: bool) -> None:
+    """A callback of parameters runs as long as its handle is kept."""
+    messages = [fault.message for fault in faults_of(statement)]
+    lost = "nothing keeps this handle of a callback: it is destroyed when Talker() ends"
+    assert (lost in messages) == is_lost

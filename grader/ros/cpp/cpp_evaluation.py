@@ -7,6 +7,7 @@ from grader.ros.cpp.cpp_values import CppCall, CppName, CppSum, CppValue, not_kn
 from grader.ros.cpp.declarations import (
     CppFunction,
     CppVariable,
+    declaration_of,
     declared_in,
     is_constant,
     plain_name,
@@ -33,13 +34,6 @@ _MAX_DEPTH = 25
 _MAX_MACRO = 300  # characters
 _MAX_TEXT, _MAX_PARTS = 2_000, 200  # characters of a joined text, and its parts
 _OF_USE = 5  # parts of a place where a name is written
-_DECLARATIONS = (
-    "declaration",
-    "parameter_declaration",
-    "optional_parameter_declaration",
-    "for_range_loop",
-    "init_statement",
-)
 # Functions that only read what they are given.
 _READING = frozenset(
     {
@@ -179,8 +173,11 @@ class CppEvaluation:
         if function is not None and function.kind == "field_expression":
             owner = self.value_of(function.child("argument"))
         name = called_name(node)
-        if isinstance(owner, str) and name in _SAME_TEXT:
+        if _is_textual(owner) and name in _SAME_TEXT:
             return owner
+        is_text = _is_textual(owner) or isinstance(owner, CppCall)
+        if is_text and name == "append" and len(arguments) == 1 and _is_textual(arguments[0]):
+            return _joined([owner, arguments[0]])
         return _constructed(CppCall(name, arguments, node, template_arguments(node), owner))
 
     def made(self, node: CppNode) -> CppValue:
@@ -241,7 +238,7 @@ class CppEvaluation:
             uses = [use for use in self.unit.uses.get(name, ()) if use.file is node.file]
             inside = [use for use in uses if node.start <= use.start < node.end]
             self._budget.charge(1 + len(uses) + _OF_USE * len(inside))
-            declared = [use for use in inside if _declaration_of(use) is not None]
+            declared = [use for use in inside if declaration_of(use) is not None]
             self._locals[key] = _LocalVariable(declared, inside) if declared else None
         return self._locals[key]
 
@@ -266,7 +263,7 @@ class CppEvaluation:
         if len(local.declared) > 1:
             return not_known("the name is declared twice")
         name = local.declared[0]
-        declaration = _declaration_of(name)
+        declaration = declaration_of(name)
         assert declaration is not None
         if declaration.kind in ("parameter_declaration", "optional_parameter_declaration"):
             return CppName(node.text, name)
@@ -479,7 +476,8 @@ class CppEvaluation:
             if node.kind == "init_declarator":
                 value = node.child("value")
                 kinds = (*TEXTS, *NUMBERS, "concatenated_string")
-                if value is not None and value.kind in kinds and syntax.error is None:
+                is_read = syntax.error is None and not syntax.broken
+                if value is not None and value.kind in kinds and is_read:
                     return self.value_of(value)
         return not_known("the macro is not evaluated")
 
@@ -554,22 +552,6 @@ def is_member_of_this(use: CppNode) -> bool:
         return False
     owner = parent.child("argument")
     return owner is not None and owner.kind == "this"
-
-
-def _declaration_of(name: CppNode) -> CppNode | None:
-    """Return the declaration that declares a name as a local variable or a parameter.
-
-    Returns None for a name that is used.
-    """
-    node = name
-    for around in name.ancestors():
-        if around.kind in _DECLARATIONS:
-            is_declared = any(declared is name for declared, _ in declared_in(around))
-            return around if is_declared else None
-        if node.field == "value" or around.kind in ("argument_list", "compound_statement"):
-            return None
-        node = around
-    return None
 
 
 def _is_read(node: CppNode, parent: CppNode) -> bool:

@@ -19,6 +19,13 @@ CONDITIONS = (
 _CLASSES = ("class_specifier", "struct_specifier")
 _CONSTANTS = ("const", "constexpr", "constinit")
 _CALLS = ("call_expression", "new_expression", "init_declarator", "declaration", "this")
+_VARIABLES = (
+    "declaration",
+    "parameter_declaration",
+    "optional_parameter_declaration",
+    "for_range_loop",
+    "init_statement",
+)
 _NAMES = ("identifier", "field_identifier", "type_identifier")
 
 
@@ -92,7 +99,7 @@ class CppFile:
         self.aliases: list[tuple[str, str]] = []
         self.opened: list[str] = []  # what `using namespace` names
         self.macros: dict[str, list[CppMacro]] = {}
-        self.called_macros: set[str] = set()  # those with parameters
+        self.called_macros: dict[str, str] = {}  # those with parameters, and their texts
         _Reader(self).read()
 
     @cached_property
@@ -186,7 +193,7 @@ class _Reader:
 
     def read_called_macro(self, node: CppNode, _: _Around) -> None:
         """Read a macro with parameters."""
-        self.file.called_macros.add(_text(node.child("name")))
+        self.file.called_macros[_text(node.child("name"))] = _text(node.child("value"))
 
     def read_macro(self, node: CppNode, place: _Around) -> None:
         """Read a macro without parameters."""
@@ -327,6 +334,22 @@ def is_argument(node: CppNode) -> bool:
         return False
     around = list(islice(node.ancestors(), 5))
     return len(around) == 5 and around[4].kind == "compound_statement" and len(parent.children) == 1
+
+
+def declaration_of(name: CppNode) -> CppNode | None:
+    """Return the declaration that declares a name as a local variable or a parameter.
+
+    Returns None for a name that is used.
+    """
+    node = name
+    for around in name.ancestors():
+        if around.kind in _VARIABLES:
+            is_declared = any(declared is name for declared, _ in declared_in(around))
+            return around if is_declared else None
+        if node.field == "value" or around.kind in ("argument_list", "compound_statement"):
+            return None
+        node = around
+    return None
 
 
 def name_in(declarator: CppNode) -> CppNode | None:

@@ -22,9 +22,24 @@ _IGNORED = re.compile(
     r"^[ \t]*#(?:[^\n]*\\\r?\n)*[^\n]*"
     r"|\b[A-Z][A-Z0-9_]*_(?:PUBLIC|EXPORT|IMPORT|LOCAL|API|VISIBILITY|PUBLIC_TYPE|HIDDEN)\b(?=\s+[A-Za-z_~:])"
     r"|\bRCLCPP_(?>\w*?PTR)(?>\w*?DEFINITIONS)\w*+\([^()\n]*\)"
-    r"|\bQ_OBJECT\b",
+    r"|\bQ_OBJECT\b"
+    # The instantiation of a template declares nothing.
+    r"|^[ \t]*template[ \t]+(?:class|struct)[ \t]+[^;{}]{0,300}+;",
     re.MULTILINE,
 )
+# `extern "C" {` for compilers of C++, whose brace another condition closes.
+_OF_CPP = r"^[ \t]*#[ \t]*if(?:def)?\b[^\n]{0,80}\b__cplusplus\b[^\n]{0,80}\n\s*"
+_LINKAGE = re.compile(
+    rf'{_OF_CPP}(?:extern\s+"C"\s*\{{|\}})[ \t]*(?://[^\n]*|/\*[^*\n]*\*/)?\s*#[ \t]*endif\b',
+    re.MULTILINE,
+)
+# What holds statements, so that an error in one leaves the others as they are.
+_HOLDERS = (
+    *("compound_statement", "translation_unit", "declaration_list", "field_declaration_list"),
+    *("preproc_if", "preproc_ifdef", "preproc_else", "preproc_elif"),
+)
+_TEXTS = ("comment", "string_literal", "raw_string_literal", "char_literal")
+_PAIRS = {")": "(", "]": "[", "}": "{"}
 
 
 class CppNode:
@@ -88,8 +103,9 @@ class CppNode:
 class CppSyntax:
     """A C++ file: its text, and the root of its syntax.
 
-    `unread` says why it is not read, as part of a sentence; `error` is the place of the first text
-    that is no C++.
+    `unread` says why it is not read, as part of a sentence. `broken` are the statements, directives
+    and members with a text that is no C++, around which nothing is lost; `error` is the place of
+    the first other one.
     """
 
     def __init__(self, path: str, text: str) -> None:
@@ -98,6 +114,7 @@ class CppSyntax:
         self.root = CppNode(self, "translation_unit", None, (0, len(self.data)), None)
         self.unread = ""
         self.error: Location | None = None
+        self.broken: list[CppNode] = []
 
     def location(self, at: int) -> Location:
         """Return the location of a byte."""
@@ -138,8 +155,43 @@ def parse_cpp(data: bytes, path: str, budget: Budget) -> CppSyntax:
         return syntax
     if tree.root_node.is_error:
         syntax.error = syntax.location(0)
-    _copy(tree.walk(), syntax)
+    for error in _copy(tree.walk(), syntax):
+        _add_error(syntax, error)
     return syntax
+
+
+def _add_error(syntax: CppSyntax, error: CppNode) -> None:
+    """Add a text that is no C++: it leaves open the statement around it, or else the file."""
+    statement = error
+    if error.start == error.end and error.parent is not None:  # it is missing
+        statement = error.parent
+    for around in statement.ancestors():
+        if around.kind in _HOLDERS and statement.field not in ("condition", "name"):
+            break
+        statement = around
+    if statement in syntax.broken:
+        return
+    is_alone = all(around.kind != "ERROR" for around in statement.ancestors())
+    if is_alone and _is_balanced(statement):
+        syntax.broken.append(statement)
+    elif syntax.error is None:
+        syntax.error = error.location
+
+
+def _is_balanced(statement: CppNode) -> bool:
+    """Return whether each bracket in a statement has the one that closes it."""
+    data = bytearray(statement.file.data[statement.start : statement.end])
+    for node in statement.walk():
+        if node.kind in _TEXTS:
+            length = node.end - node.start
+            data[node.start - statement.start : node.end - statement.start] = b" " * length
+    opened: list[str] = []
+    for letter in data.decode("latin-1"):
+        if letter in "([{":
+            opened.append(letter)
+        elif letter in _PAIRS and (not opened or opened.pop() != _PAIRS[letter]):
+            return False
+    return not opened
 
 
 @cache
@@ -156,16 +208,24 @@ def _without_macros(text: str) -> str:
 
     def replaced(match: re.Match[str]) -> str:
         word = match[0]
-        return word if word.lstrip().startswith("#") else " " * len(word)
+        return word if word.lstrip().startswith("#") else _blanked(match)
 
+    if "__cplusplus" in text:
+        text = _LINKAGE.sub(_blanked, text)
     return _IGNORED.sub(replaced, text)
 
 
-def _copy(cursor: "TreeCursor", syntax: CppSyntax) -> None:
-    """Copy the nodes of tree-sitter that have a name or a role."""
+def _blanked(match: re.Match[str]) -> str:
+    """Return blanks in place of a text, in as many lines."""
+    return "".join(letter if letter == "\n" else " " * len(letter.encode()) for letter in match[0])
+
+
+def _copy(cursor: "TreeCursor", syntax: CppSyntax) -> list[CppNode]:
+    """Copy the nodes of tree-sitter that have a name or a role; return those that are no C++."""
+    errors: list[CppNode] = []
     parents = [syntax.root]
     if not cursor.goto_first_child():
-        return
+        return errors
     while True:
         node, field = cursor.node, cursor.field_name
         assert node is not None
@@ -174,14 +234,14 @@ def _copy(cursor: "TreeCursor", syntax: CppSyntax) -> None:
         if node.is_named or field is not None:
             parent.children.append(copy)
         is_broken = node.is_error or (node.is_missing and node.type != ";")
-        if is_broken and syntax.error is None:
-            syntax.error = copy.location
+        if is_broken:
+            errors.append(copy)
         if cursor.goto_first_child():
             parents.append(copy)
             continue
         while not cursor.goto_next_sibling():
             if not cursor.goto_parent():
-                return
+                return errors
             parents.pop()
             if not parents:
-                return
+                return errors

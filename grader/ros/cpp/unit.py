@@ -81,9 +81,18 @@ class CppUnit:
         return by_name
 
     @cached_property
-    def called_macros(self) -> frozenset[str]:
-        """The names of the macros with parameters."""
-        return frozenset(name for file in self.files for name in file.called_macros)
+    def _called_macros(self) -> Mapping[str, Sequence[str]]:
+        """The texts of the macros with parameters by their names."""
+        by_name: dict[str, list[str]] = {}
+        for file in self.files:
+            for name, text in file.called_macros.items():
+                by_name.setdefault(name, []).append(text)
+        return by_name
+
+    def texts_of_macro(self, name: str) -> Sequence[str]:
+        """Return the texts that a macro which is called stands for, with or without parameters."""
+        plain_macros = self.macros.get(name, ())
+        return [*self._called_macros.get(name, ()), *(macro.text for macro in plain_macros)]
 
     def meanings(self, name: str, scopes: Sequence[str] = ()) -> tuple[str, ...]:
         """Return the full names that a name of a type may stand for, in these scopes.
@@ -190,6 +199,8 @@ def called_name(call: CppNode) -> str:
         return ""
     if function.kind == "field_expression":
         field = function.child("field")
+        if field is not None and field.kind == "dependent_name" and field.children:
+            field = field.children[0]  # behind the word `template`
         return plain_name(field) if field is not None else ""
     return plain_name(function)
 
@@ -212,6 +223,9 @@ def template_arguments(call: CppNode) -> tuple[str, ...]:
         given = node.child("arguments")
         if given is not None and given.kind == "template_argument_list":
             return tuple(argument.text for argument in given.children if argument.kind != "comment")
+        if node.kind == "dependent_name" and node.children:
+            node = node.children[0]
+            continue
         node = node.child("field") or node.child("name")
     return ()
 
@@ -219,7 +233,7 @@ def template_arguments(call: CppNode) -> tuple[str, ...]:
 def resolve_include(path: str, included: str, files: Mapping[str, object]) -> str | None:
     """Return the file of a package that an `#include` in another one means.
 
-    Returns None for one of another package.
+    Returns None for one of another package. A folder of headers may be anywhere in the package.
 
     Args:
         path: The path of the file with the `#include`.
@@ -230,4 +244,6 @@ def resolve_include(path: str, included: str, files: Mapping[str, object]) -> st
     for candidate in (beside, f"include/{included}", f"src/{included}", included):
         if candidate in files:
             return candidate
-    return None
+    headers = [file for file in files if file.startswith("include/") or "/include/" in file]
+    elsewhere = [file for file in headers if file.endswith(f"/{included}")]
+    return elsewhere[0] if len(elsewhere) == 1 else None

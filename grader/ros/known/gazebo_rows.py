@@ -72,6 +72,7 @@ class Gazebo(NamedTuple):
     odometry_frames: tuple[str, ...]  # by default
     sensor_types: Mapping[str, str]  # older ones, with what they are called now
     sensor_words: tuple[_SensorWord, ...]
+    passive_systems: frozenset[str]
     system: Mapping[str, _SystemRow]
     library: Mapping[str, _LibraryRow]
     sensor: Mapping[str, _SensorRow]

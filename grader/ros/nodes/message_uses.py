@@ -20,7 +20,9 @@ from grader.ros.python.values import SCALARS, QualifiedName, Scope, Value
 
 _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 _KINDS = ("msg", "srv", "action")
-_CAUGHT = frozenset({"AttributeError", "ImportError", "ModuleNotFoundError", "Exception", ""})
+_CAUGHT = frozenset(
+    {"AttributeError", "ImportError", "ModuleNotFoundError", "TypeError", "Exception", ""}
+)
 # Functions that ask what a value is, or has.
 _ASKING = frozenset({"isinstance", "hasattr", "getattr", "setattr", "type"})
 _MAX_PATH = 12

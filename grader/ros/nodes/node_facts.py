@@ -145,6 +145,9 @@ class SynchronisedType(NamedTuple):
 CodeRule = Literal[
     "undefined name",
     "callback is called",
+    "wrong call",
+    "no goal state",
+    "no result",
     "no response",
     "nothing spins",
     "no rclpy.init",

@@ -282,12 +282,22 @@ class Build:
         if names_packages:
             self.made.depend(name, rest)
         else:
-            self.made.link(name, rest)
+            self.made.link(name, self._own_links(command))
         if self.values.is_opaque:
             return
         if name not in self.targets:
             self._stop_target(command, name)
         self._use_packages(command, rest if names_packages else ())
+
+    def _own_links(self, command: Command) -> list[Text]:
+        """Return what a target links, without libraries of others whose names are not known."""
+        links: list[Text] = []
+        for argument in command.arguments[1:]:
+            texts = self.values.expanded(argument)
+            is_unknown = any(isinstance(text, Unknown) for text in texts)
+            if not is_unknown or self.values.may_name_own_target(argument):
+                links += texts
+        return links
 
     def _use_packages(self, command: Command, texts: Sequence[Text]) -> None:
         """Note a package that a target depends on, and that was not found."""

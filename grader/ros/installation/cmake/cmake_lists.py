@@ -175,6 +175,7 @@ class _Evaluation:
         self.values.is_opaque |= command.name in cmake_words().opaque
         index = cmake_words().outputs.get(command.name, len(texts))
         names = texts if index < 0 else texts[index : index + 1]
+        self.values.note_libraries(command.name, names, texts)
         self.values.forget(names, f"the result of {command.name}() is not evaluated", command.at)
 
     # --- Control flow

@@ -22,6 +22,7 @@ _FOLDERS = {
 }
 _PIECES = re.compile(r"\\(.)|(\$\{)|(\})|\$(?:ENV|CACHE)\{[^}]*\}?|\$<|[^\\$}]+|.", re.DOTALL)
 _ESCAPES = {"n": "\n", "t": "\t", "r": "\r", ";": "\\;"}
+_NAMES = re.compile(r"\$\{([^${}]*)\}")
 _SEPARATOR = re.compile(r"(?<!\\);")
 _MAX_TEXT = 64 * 1024  # characters of a value
 
@@ -36,6 +37,10 @@ class Values:
         # why it is not known whether the current command is run
         self.uncertain: Unknown | None = None
         self.is_opaque = False  # whether something that is not evaluated may have set any variable
+        # The names of libraries: variables that find_library() sets, and how those of
+        # pkg_check_modules() begin.
+        self.libraries: set[str] = set()
+        self.prefixes: set[str] = set()
         # What variables were outside of the functions that are called; None for unset ones.
         self._outside: list[dict[str, Text | None]] = []
         self._reached: tuple[tuple[int, str], set[str] | None] | None = None
@@ -119,14 +124,40 @@ class Values:
         """Return the value of a variable: an empty text if it is certainly not set."""
         if name in self.variables:
             return self.variables[name]
+        if self.is_opaque or self._is_of_package(name):
+            return Unknown(f"the value of {name} is not known", at)
+        return ""
+
+    def _is_of_package(self, name: str) -> bool:
+        """Return whether CMake or a package that was found sets a variable."""
         lower = name.lower()
         ends = [index for index, letter in enumerate(lower) if letter == "_"]
         self.budget.charge(1, len(ends) * len(name))
-        is_of_package = any(lower[:end] in self.packages for end in ends)
-        is_foreign = lower.startswith((*cmake_words().foreign,))
-        if self.is_opaque or is_of_package or is_foreign:
-            return Unknown(f"the value of {name} is not known", at)
-        return ""
+        is_found = any(lower[:end] in self.packages for end in ends)
+        return is_found or lower.startswith((*cmake_words().foreign,))
+
+    def note_libraries(self, command: str, names: Sequence[Text], texts: Sequence[Text]) -> None:
+        """Note the variables in which a command puts the names of libraries of others.
+
+        `names` are the variables that it sets, `texts` its arguments.
+        """
+        if command == "find_library":
+            self.libraries.update(str(name) for name in names)
+        if command in ("pkg_check_modules", "pkg_search_module"):
+            self.prefixes.update(f"{text}_" for text in texts[:1])
+
+    def may_name_own_target(self, argument: Argument) -> bool:
+        """Return whether an argument whose value is not known may name targets of the file.
+
+        The variables of packages, as OpenCV_LIBS, and what find_library() finds name others.
+        """
+        names = _NAMES.findall(argument.text)
+        for name in names:
+            is_foreign = name not in self.variables and self._is_of_package(name)
+            is_foreign = is_foreign or name.startswith(tuple(self.prefixes))
+            if not is_foreign and name not in self.libraries:
+                return True
+        return not names
 
     def assign(self, name: str, value: Text) -> None:
         """Set a variable; to what is not known if the command may not run."""

@@ -26,6 +26,15 @@ _KEPT = {
     "create_service": "service",
     "create_server": "action server",
 }
+# rclcpp keeps only weak pointers to these: rclcpp/src/rclcpp/node_interfaces/node_parameters.cpp.
+_HANDLES = dict.fromkeys(
+    (
+        "add_pre_set_parameters_callback",
+        "add_on_set_parameters_callback",
+        "add_post_set_parameters_callback",
+    ),
+    "handle of a callback",
+)
 _LISTENER, _BUFFER = "TransformListener", "Buffer"
 _LOOKING_UP = ("lookupTransform", "canTransform")
 # What may spin a node, or wait for its messages.
@@ -89,8 +98,9 @@ class _CppSearch:
         for function in self._methods:
             if function.is_conditional or _may_wait(function, self._unit):
                 continue
-            for call in self._calls(function, *_KEPT):
-                kind = _KEPT[called_name(call).rpartition("::")[2]]
+            kept = {**_KEPT, **_HANDLES}
+            for call in self._calls(function, *kept):
+                kind = kept[called_name(call).rpartition("::")[2]]
                 if self._is_lost(call, function):
                     message = (
                         f"nothing keeps this {kind}: it is destroyed when {function.name}() ends"

@@ -1,5 +1,6 @@
 """The C++ files of a package, and which of them a build compiles into one program or library."""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import NamedTuple
@@ -15,6 +16,14 @@ from grader.ros.package.package import Package
 
 _SOURCES = (".cpp", ".cc", ".cxx", ".c++")
 _HEADERS = (".hpp", ".hh", ".hxx", ".h", ".h++", ".ipp", ".tpp")
+# What a statement that is no C++, or a macro, must not have: what makes, declares or opens
+# something, or is given a node, or sets what a name may be made of.
+_LOST = re.compile(
+    r"\b(?:create_\w+|declare_parameters?|get_parameter\w*|has_parameter|Subscriber|add_node|spin"
+    r"|class|struct|namespace|template|using|main|make_(?:shared|unique)|\w+_from_this"
+    r"|new(?!\s+(?:bool|char|double|float|int)\b)|Node|LifecycleNode|RCLCPP_COMPONENTS\w*)\b"
+    r"|[({,=]\s*\*?this\s*[,)};]|\b(?=\w*[nN]ode)\w++\s*+[,)};]"
+)
 _MAX_FILES = 200  # of one package
 _MAX_LINKED = 50  # targets
 
@@ -99,8 +108,9 @@ class CppFiles:
                 continue
             files.append(file)
             self._package.work.charge(1 + len(file.includes))
-            if file.syntax.error is not None:
-                unread.append(_UnreadCpp("this is no C++ that is known", file.syntax.error))
+            error = _lost_in(file)
+            if error is not None:
+                unread.append(_UnreadCpp("this is no C++ that is known", error))
             for included in file.includes:
                 header = resolve_include(path, included, self._paths)
                 if header is not None:
@@ -142,3 +152,16 @@ class CppFiles:
         if syntax.unread:
             return _UnreadCpp(syntax.unread, start)
         return CppFile(syntax)
+
+
+def may_hide(text: str) -> bool:
+    """Return whether a text that is not read may make, open or declare something."""
+    return _LOST.search(text) is not None
+
+
+def _lost_in(file: CppFile) -> Location | None:
+    """Return where a file is no C++ that is known, and a node may be made, open or declare more."""
+    for statement in file.syntax.broken:
+        if may_hide(statement.text):
+            return file.syntax.error or statement.location
+    return file.syntax.error

@@ -22,7 +22,7 @@ from grader.ros.cpp.declarations import (
     name_in,
     plain,
 )
-from grader.ros.cpp.objects import class_written, made_in, self_of, taker_of, variable_of
+from grader.ros.cpp.objects import class_written, self_of, taker_of, variable_of
 from grader.ros.cpp.syntax import CppNode
 from grader.ros.cpp.unit import (
     arguments_of,
@@ -31,14 +31,17 @@ from grader.ros.cpp.unit import (
 )
 from grader.ros.installation.installation import Installation
 from grader.ros.known.package_tables import cpp_table
+from grader.ros.nodes.cpp.call_sites import CallSites
 from grader.ros.nodes.cpp.cpp_faults import cpp_faults
-from grader.ros.nodes.cpp.cpp_files import CompiledTarget, CppFiles
+from grader.ros.nodes.cpp.cpp_files import CompiledTarget, CppFiles, may_hide
 from grader.ros.nodes.cpp.cpp_frames import frames_in
 from grader.ros.nodes.cpp.cpp_message_content import CppContentReader
 from grader.ros.nodes.cpp.cpp_message_uses import cpp_field_uses
+from grader.ros.nodes.cpp.node_holders import Holder, NodeHolders, NodeKey
 from grader.ros.nodes.cpp.rclcpp_calls import (
     ACTIONS,
     DECLARES,
+    INTERFACES_OF_ACTION,
     METHODS,
     endpoint_of,
     facts_of_method,
@@ -66,10 +69,15 @@ _SETTING = {"get_parameter": 1, "get_parameter_or": 1}
 _REGISTERED = re.compile(r"\bRCLCPP_COMPONENTS_REGISTER_NODE\s*\(\s*([\w:]+)\s*\)")
 _SUBSCRIBER = "message_filters::Subscriber"
 _FILTER = re.compile(r"(?P<class>(?<![\w:])[\w:]*\bSubscriber)\s*+<\s*+(?P<type>[\w:]++)\s*+[,>]")
+_CALLED_MACRO = re.compile(r"\b[A-Z][A-Z0-9_]{3,}\b(?=\s*\(|\Z)")
 _MESSAGE_PART = re.compile(r"::(msg|srv|action)::")
 _LISTS = ("argument_list", "initializer_list")
 _OF_NODE = 20  # parts of a class that may be that of a node
-_SELF = ("shared_from_this", "weak_from_this", "get_node_base_interface")
+_INTERFACE = "get_node_base_interface"
+_SELF = ("shared_from_this", "weak_from_this", _INTERFACE)
+# Methods that return what their object is, or points to.
+_SAME = (*_SELF, "get", "lock")
+_OF_ANOTHER = "its node is one of another program"
 
 
 class _Created(NamedTuple):
@@ -138,6 +146,7 @@ class _Target:
         self._compiled, self._unit, self._budget = compiled, compiled.unit, budget
         interface = LibraryCalls(cpp_table().reading, _SETTING)
         self._evaluation = CppEvaluation(self._unit, interface, budget)
+        self._sites = CallSites(self._unit, self._evaluation, budget)
         self.content = CppContentReader(self._unit, self._evaluation, budget)
         self.has_loose_declarations = False
         self.doubts: list[Doubt] = []
@@ -149,18 +158,25 @@ class _Target:
             )
         if not compiled.target.is_certain:
             self.doubts.append(Doubt("its sources are not known", self._start))
-        self._facts: dict[str | CppNode, list[_Fact]] = {name: [] for name in self._node_classes}
+        self._facts: dict[NodeKey, list[_Fact]] = {name: [] for name in self._node_classes}
         self._created = [*self._find_created()]
         self._created_at = {created.node: created for created in self._created}
-        self._nodes: dict[str | CppNode, NodeFacts] = {}
+        self._nodes: dict[NodeKey, NodeFacts] = {}
+        # What is given a node, and the calls of methods of what holds one.
+        self._flows: dict[NodeKey, dict[NodeKey, None]] = {}
+        self._pending: list[Holder] = []
+        self._loose_calls: dict[Holder, list[CppNode]] = {}
+        known = {*self._node_classes, *cpp_table().nodes}
+        self._holders = NodeHolders(self._unit, frozenset(known), self._key_made, budget)
         for created in self._created:
             if created.class_name in cpp_table().nodes:
                 self._facts[created.node] = []
         for function in self._unit.functions:
             self._read_function(function)
         for created in self._created:
-            key = created.node if created.node in self._facts else created.class_name
-            self._facts[key] += self._doubts_of_object(created)
+            self._give_object(created)
+        self._follow_holders()
+        self._strangers = [*self._find_strangers()]
         self._add_doubts()
 
     @property
@@ -194,7 +210,7 @@ class _Target:
     def _doubts_of_class(self, each: CppClass) -> Iterator[Doubt]:
         """Yield why a class may declare or open more than its own methods do."""
         at, scopes = each.node.location, each.name.split("::")[:-1]
-        harmless = cpp_table().nodes | cpp_table().other_bases
+        harmless = {*cpp_table().nodes, *cpp_table().other_bases, *self._node_classes}
         for base in each.bases:
             if harmless.isdisjoint(self._unit.meanings(base, scopes)):
                 yield Doubt("what another base class does is not added", at)
@@ -208,7 +224,8 @@ class _Target:
             for use in self._unit.uses.get(word, ())[:1]:
                 common.append(Doubt(f"{word} of its NodeOptions", use.location))
         for key, facts in self._facts.items():
-            facts.extend(common)
+            if not isinstance(key, Holder):
+                facts.extend(common)
             if isinstance(key, str):
                 facts.extend(self._doubts_of_class(self._node_classes[key]))
 
@@ -246,38 +263,26 @@ class _Target:
                 return meaning
         return None
 
-    def _receiver(self, call: CppNode, function: CppFunction) -> "str | CppNode | None":
-        """Return the node whose method a call is.
+    def _key_made(self, node: CppNode) -> NodeKey | None:
+        """Return the node that something makes; None for something else."""
+        created = self._created_at.get(node)
+        if created is None:
+            return None
+        return node if node in self._facts else created.class_name
 
-        It is a class, or where an object of rclcpp's own class is made. The result is None where
-        that is not known.
-        """
+    def _receiver(self, call: CppNode, function: CppFunction) -> NodeKey | None:
+        """Return the node whose method a call is; None where that is not known."""
         called = call.child("function")
         is_member = called is not None and called.kind == "field_expression"
         owner = called.child("argument") if called is not None and is_member else None
-        if owner is None or owner.kind == "this":
-            name = self._unit.owner_of(function)
-            return name if name in self._facts else None
-        made = self._object_of(owner, function)
-        if made is None or made not in self._created_at:
-            return None
-        return made if made in self._facts else self._created_at[made].class_name
-
-    def _object_of(self, node: CppNode, function: CppFunction) -> CppNode | None:
-        """Return what makes the object that a local variable, which is set once, has."""
-        if node.kind != "identifier":
-            return None
-        uses = self._uses_in(function, node.text)
-        self._budget.charge(1 + len(uses))
-        made: list[CppNode] = []
-        for use in uses:
-            parent = use.parent
-            if parent is not None and parent.kind == "assignment_expression":
-                if use.field == "left":
-                    return None
-            elif use.field == "declarator" and parent is not None:
-                made.append(made_in(parent))
-        return made[0] if len(made) == 1 else None
+        if owner is not None and owner.kind != "this":
+            return self._holders.node_of(owner, function)
+        name = self._unit.owner_of(function)
+        if name in self._facts:
+            return name
+        is_other = self._holders.has_other_base(name)
+        is_own = not is_other or self._is_own_function(call, called_name(call), function)
+        return None if is_own else Holder("own", name, "")
 
     def _uses_in(self, function: CppFunction, name: str) -> list[CppNode]:
         """Return where a function has a name."""
@@ -285,21 +290,109 @@ class _Target:
         uses = [use for use in self._unit.uses.get(name, ()) if use.file is inside.file]
         return [use for use in uses if inside.start <= use.start < inside.end]
 
-    def _doubts_of_object(self, created: _Created) -> Iterator[Doubt]:
-        """Yield that something is given a node that is made, which may declare or open more."""
-        function = self._unit.function_around(created.node)
+    def _give_object(self, created: _Created) -> None:
+        """Note what is given a node that is made, which may declare or open more."""
+        function, key = self._unit.function_around(created.node), self._key_made(created.node)
+        if function is None or key is None:
+            return
         variable = variable_of(created.node)
-        uses = [created.node]
-        if variable is not None and function is not None:
-            if variable.kind == "identifier" and variable.field == "declarator":
-                uses = self._uses_in(function, variable.text)
-            else:
-                uses = [*self._unit.uses.get(variable.text, ())]
+        is_held = self._give(created.node, function, key)
+        if variable is None or is_held:
+            return
+        if variable.kind == "identifier" and variable.field == "declarator":
+            uses = self._uses_in(function, variable.text)
+        else:
+            uses = [*self._unit.uses.get(variable.text, ())]
         self._budget.charge(1 + len(uses))
         for use in uses:
-            taker = taker_of(self_of(use, _SELF))
-            if taker is not None and not _is_harmless(taker):
-                yield Doubt(f"{taker} is given the node", use.location)
+            where = self._unit.function_around(use)
+            if where is not None:
+                self._give(self_of(use, _SAME), where, key)
+
+    def _give(self, node: CppNode, function: CppFunction, key: NodeKey) -> bool:
+        """Note what is given a node by an expression; return whether something holds it then.
+
+        Something else that is given the node may declare or open more.
+        """
+        subscription = self._subscription_of_filter(node)
+        if subscription is not None:
+            self._facts.setdefault(key, []).append(subscription)
+            return False
+        holder = self._holders.holder_given(node, function)
+        if holder is not None:
+            self._flows.setdefault(key, {})[holder] = None
+            self._pending.append(holder)
+            return True
+        taker = taker_of(node)
+        if taker is not None and not _is_harmless(taker):
+            doubt = Doubt(f"{taker} is given the node", node.location)
+            self._facts.setdefault(key, []).append(doubt)
+        return False
+
+    def _follow_holders(self) -> None:
+        """Note what is given the nodes that variables, parameters and members hold."""
+        self._pending += [key for key in self._facts if isinstance(key, Holder)]
+        followed = set[Holder]()
+        while self._pending:
+            holder = self._pending.pop()
+            if holder in followed:
+                continue
+            followed.add(holder)
+            for use in self._holders.uses_of(holder):
+                function = self._unit.function_around(use)
+                if function is not None:
+                    self._give(self_of(use, _SAME), function, holder)
+        for name, node_class in self._node_classes.items():
+            for base in node_class.bases:
+                for meaning in self._unit.meanings(base, name.split("::")[:-1]):
+                    if meaning in self._node_classes:
+                        self._flows.setdefault(name, {})[meaning] = None
+
+    def _reached_from(self, key: NodeKey) -> list[NodeKey]:
+        """Return a node, the classes that it is derived from, and all that holds it."""
+        reached: dict[NodeKey, None] = {}
+        pending = [key]
+        while pending:
+            each = pending.pop()
+            if each not in reached:
+                reached[each] = None
+                self._budget.charge(1)
+                pending += self._flows.get(each, ())
+        return [*reached]
+
+    def _find_strangers(self) -> Iterator[NodeFacts]:
+        """Yield the nodes of other programs that classes get, as those of controllers.
+
+        Where a node is none of these, it may be any one of the target.
+        """
+        nodes = [key for key in self._facts if not isinstance(key, Holder)]
+        known = {reached for key in nodes for reached in self._reached_from(key)}
+        keys_by_class: dict[str, list[Holder]] = {}
+        for key in [key for key in self._facts if key not in known]:
+            assert isinstance(key, Holder)
+            owner = self._class_of(key)
+            if self._holders.has_other_base(owner):
+                keys_by_class.setdefault(owner, []).append(key)
+                continue
+            for call in self._loose_calls.get(key, ()):
+                self._doubt_loose(call)
+        for name, keys in keys_by_class.items():
+            at = self._unit.classes[name][0].node.location
+            stranger = self._facts_of(keys, name, None, at)
+            yield stranger._replace(doubts=(Doubt(_OF_ANOTHER, at), *stranger.doubts))
+
+    def _class_of(self, holder: Holder) -> str:
+        """Return the class that holds a node, in a member or in one of its methods."""
+        if isinstance(holder.scope, str):
+            return holder.scope
+        function = self._unit.function_around(holder.scope)
+        return self._unit.owner_of(function) if function is not None else ""
+
+    def _doubt_loose(self, call: CppNode) -> None:
+        """Doubt what all nodes of the target do, as a call may be a method of each."""
+        name = called_name(call)
+        self.has_loose_declarations |= name in DECLARES
+        self.doubts.append(Doubt(f"the node of this {name}() is not known", call.location))
 
     # --- Functions
     # ----------------------------------------------------------------------
@@ -310,7 +403,8 @@ class _Target:
         owner = self._unit.owner_of(function)
         for node in self._unit.calls_in(function):
             if node.kind == "this":
-                self._read_this(node, owner)
+                if owner in self._facts:
+                    self._give(node, function, owner)
             elif node.kind == "call_expression":
                 self._read_call(node, function, scopes, owner)
         self.field_uses += cpp_field_uses(function, self._unit)
@@ -326,21 +420,31 @@ class _Target:
         name = called_name(call)
         short = name.rpartition("::")[2]
         if name in ACTIONS or f"rclcpp_action::{name}" in ACTIONS:
-            self._read_action(call, name, scopes, owner)
+            self._read_action(call, name, function)
         elif short in METHODS and name == short:
             self._read_method(call, function, scopes)
         elif short in METHODS:
-            self._read_function_of_library(call, owner)
+            self._read_function_of_library(call, function)
         elif owner in self._facts and short.isupper() and len(short) > 3:
             self._read_macro(call, short, owner)
         elif owner in self._facts and short in _SELF:
-            self._read_this(call, owner)
+            self._give(call, function, owner)
 
     def _read_macro(self, call: CppNode, name: str, owner: str) -> None:
         """Doubt what a class does with a macro that is not known to be harmless."""
-        if not name.startswith(tuple(cpp_table().macros)):
+        if not self._is_harmless_macro(name):
             reason = f"the macro {name} is not evaluated"
             self._facts[owner].append(Doubt(reason, call.location))
+
+    def _is_harmless_macro(self, name: str) -> bool:
+        """Return whether a macro is known to be harmless, or an own one that only calls such."""
+        known = tuple(cpp_table().macros)
+        texts = self._unit.texts_of_macro(name) if not name.startswith(known) else ()
+        for text in texts:
+            called = _CALLED_MACRO.findall(text)
+            if may_hide(text) or not all(other.startswith(known) for other in called):
+                return False
+        return bool(texts) or name.startswith(known)
 
     def _read_method(self, call: CppNode, function: CppFunction, scopes: Sequence[str]) -> None:
         key = self._receiver(call, function)
@@ -348,16 +452,27 @@ class _Target:
         if key is None:
             if self._is_own_function(call, name, function):
                 return
-            self.has_loose_declarations |= name in DECLARES
-            reason = f"the node of this {name}() is not known"
-            self.doubts.append(Doubt(reason, call.location))
+            self._doubt_loose(call)
             return
         value = self._evaluation.value_of(call)
-        facts = self._facts[key]
-        if isinstance(value, CppCall):
-            facts += facts_of_method(value, self._unit, scopes)
+        facts = self._facts.setdefault(key, [])
+        if isinstance(key, Holder):
+            self._loose_calls.setdefault(key, []).append(call)
+        for alternative in self._alternatives(value):
+            facts += facts_of_method(alternative, self._unit, scopes)
         if function.is_template or is_conditional(call, function.node) or function.is_conditional:
             facts.append(Doubt("it depends on the preprocessor or on a template", call.location))
+
+    def _alternatives(self, value: CppValue) -> list[CppCall]:
+        """Return what a call may be, with the values of the parameters of its function.
+
+        A class of nodes whose objects get different ones is left open.
+        """
+        alternatives = self._sites.alternatives(value)
+        is_many = len(alternatives) > 1
+        if is_many and self._sites.is_of_constructor(value, self._node_classes):
+            alternatives = [value]
+        return [each for each in alternatives if isinstance(each, CppCall)]
 
     def _is_own_function(self, call: CppNode, name: str, function: CppFunction) -> bool:
         """Return whether a call certainly is one of a function of the files themselves."""
@@ -370,19 +485,21 @@ class _Target:
             for candidate in self._unit.functions
         )
 
-    def _read_function_of_library(self, call: CppNode, owner: str) -> None:
+    def _read_function_of_library(self, call: CppNode, function: CppFunction) -> None:
         """Add that a function such as rclcpp::create_timer() is given a node, which may be open."""
         name = called_name(call)
         is_timer = name.rpartition("::")[2] in ("create_timer", "create_wall_timer")
         if is_timer:
             return
-        reason = f"what {name}() opens is not evaluated"
-        if owner in self._facts:
-            self._facts[owner].append(Doubt(reason, call.location))
+        doubt = Doubt(f"what {name}() opens is not evaluated", call.location)
+        arguments = arguments_of(call)
+        key = self._holders.node_of(arguments[0], function) if arguments else None
+        if key is None:
+            self.doubts.append(doubt)
         else:
-            self.doubts.append(Doubt(reason, call.location))
+            self._facts.setdefault(key, []).append(doubt)
 
-    def _read_action(self, call: CppNode, name: str, scopes: Sequence[str], owner: str) -> None:
+    def _read_action(self, call: CppNode, name: str, function: CppFunction) -> None:
         """Add the action that rclcpp_action::create_server() or create_client() opens."""
         full = name if name in ACTIONS else f"rclcpp_action::{name}"
         value = self._evaluation.value_of(call)
@@ -390,30 +507,29 @@ class _Target:
         if not isinstance(value, CppCall) or not is_of_action:
             self._read_plain_action(call)
             return
-        first = value.argument(0)
-        is_own = isinstance(first, CppName) and first.name == "this"
-        if is_own and owner in self._facts:
-            self._facts[owner].append(endpoint_of(ACTIONS[full], value, self._unit, scopes))
+        arguments = arguments_of(call)
+        first = arguments[0] if arguments else call
+        position = 1
+        if first.kind == "call_expression" and called_name(first) == _INTERFACE:
+            position = INTERFACES_OF_ACTION
+            key = self._receiver(first, function)
         else:
+            key = self._holders.node_of(first, function)
+        if key is None:
             self.doubts.append(Doubt(f"the node of this {name}() is not known", call.location))
+            return
+        scopes = self._unit.scopes_of(function)
+        for alternative in self._alternatives(value):
+            endpoint = endpoint_of(ACTIONS[full], alternative, self._unit, scopes, position)
+            self._facts.setdefault(key, []).append(endpoint)
+        if isinstance(key, Holder):
+            self._loose_calls.setdefault(key, []).append(call)
 
     def _read_plain_action(self, call: CppNode) -> None:
         """Add a client of a service, whose function has the name of that of actions."""
         function = self._unit.function_around(call)
         if function is not None and called_name(call) in METHODS:
             self._read_method(call, function, self._unit.scopes_of(function))
-
-    def _read_this(self, node: CppNode, owner: str) -> None:
-        """Add that something is given the node itself, which may declare or open more."""
-        if owner not in self._facts:
-            return
-        subscription = self._subscription_of_filter(node)
-        if subscription is not None:
-            self._facts[owner].append(subscription)
-            return
-        name = taker_of(node)
-        if name is not None and not _is_harmless(name):
-            self._facts[owner].append(Doubt(f"{name} is given the node", node.location))
 
     def _subscription_of_filter(self, node: CppNode) -> Endpoint | None:
         """Return the subscription of a filter of message_filters that is given a node.
@@ -460,47 +576,55 @@ class _Target:
 
     @cached_property
     def nodes(self) -> tuple[NodeFacts, ...]:
-        """The nodes of the target: its classes, and what is made of rclcpp's own."""
-        return tuple(self._node(key) for key in self._facts)
+        """The nodes of the target: its classes, what is made of rclcpp's own, and strangers."""
+        nodes = [self._node(key) for key in self._facts if not isinstance(key, Holder)]
+        return (*nodes, *self._strangers)
 
-    def _node(self, key: "str | CppNode") -> NodeFacts:
+    def _node(self, key: str | CppNode) -> NodeFacts:
         """Return the facts of a node, once all functions are read."""
         if key not in self._nodes:
             self._nodes[key] = self._make_node(key)
         return self._nodes[key]
 
-    def _make_node(self, key: "str | CppNode") -> NodeFacts:
-        endpoints: list[Endpoint] = []
+    def _make_node(self, key: str | CppNode) -> NodeFacts:
+        if isinstance(key, str):
+            name, at = self._names[key], self._node_classes[key].node.location
+        else:
+            name, at = self._name_of_object(key), key.location
+        given_name = name if isinstance(name, str) else None
+        class_name = key if isinstance(key, str) else ""
+        return self._facts_of(self._reached_from(key), class_name, given_name, at)
+
+    def _facts_of(
+        self, keys: Sequence[NodeKey], class_name: str, name: str | None, at: Location
+    ) -> NodeFacts:
+        """Return a node with the facts of all that holds it."""
+        endpoints: dict[Endpoint, None] = {}
         parameters: list[NodeParameter] = []
         timers: list[Timer] = []
-        doubts: list[Doubt] = []
+        doubts: dict[Doubt, None] = {}
         frames: list[NodeFrame] = []
-        for fact in self._facts[key]:
+        for fact in [fact for key in keys for fact in self._facts.get(key, ())]:
             match fact:
                 case Endpoint():
                     known = self._encodings.get(fact.location, ())
-                    endpoints.append(fact._replace(encodings=known))
+                    endpoints[fact._replace(encodings=known)] = None
                 case NodeParameter():
                     parameters.append(fact)
                 case Timer():
                     timers.append(fact)
                 case Doubt():
-                    doubts.append(fact)
+                    doubts[fact] = None
                 case NodeFrame():
                     frames.append(fact)
-        if isinstance(key, str):
-            name, at = self._names[key], self._node_classes[key].node.location
-        else:
-            name, at = self._name_of_object(key), key.location
-        is_certain = isinstance(name, str)
         return NodeFacts(
-            class_name=key if isinstance(key, str) else "",
-            name=str(name) if is_certain else None,
+            class_name=class_name,
+            name=name,
             location=at,
             endpoints=tuple(endpoints),
             parameters=tuple(parameters),
             timers=tuple(timers),
-            doubts=tuple(dict.fromkeys(doubts)),
+            doubts=tuple(doubts),
             frames=tuple(frames),
         )
 
@@ -571,7 +695,7 @@ class _Target:
             started.node if started.node in self._facts else started.class_name
             for started in self._created
         ]
-        is_known = not any(isinstance(fact, Doubt) for key in created for fact in self._facts[key])
+        is_known = not any(self._node(key).doubts for key in created)
         is_read = not self._compiled.unread and self._compiled.target.is_certain
         is_program = self._compiled.target.kind == "executable" and bool(created) and is_known
         yield from cpp_faults(

@@ -31,6 +31,7 @@ ACTIONS: Mapping[str, EndpointKind] = {
     "rclcpp_action::create_server": "action server",
     "rclcpp_action::create_client": "action client",
 }
+INTERFACES_OF_ACTION = 4  # which functions of actions take in place of a node
 DECLARES = ("declare_parameter", "declare_parameters")
 _READS_IF_DECLARED = ("get_parameter_or", "has_parameter")
 _READS = ("get_parameter", *_READS_IF_DECLARED)
@@ -80,11 +81,10 @@ _VALUE_METHODS = frozenset(
 
 
 def endpoint_of(
-    kind: EndpointKind, call: CppCall, unit: CppUnit, scopes: Sequence[str]
+    kind: EndpointKind, call: CppCall, unit: CppUnit, scopes: Sequence[str], position: int = 0
 ) -> Endpoint:
-    """Return what a call opens; of an action, whose first argument is the node, too."""
-    position = 1 if kind.startswith("action") else 0
-    name, parts = name_of(call.argument(position))
+    """Return what a call opens; `position` is that of the name among its arguments."""
+    name, parts = name_of(call.argument(position), call.owner)
     qos = Qos()
     if kind in ("publisher", "subscription"):
         qos = _qos(call.argument(1))
@@ -134,25 +134,28 @@ def message_type(written: str, unit: CppUnit, scopes: Sequence[str]) -> str | No
     return types.pop() if len(types) == 1 else None
 
 
-def name_of(value: CppValue) -> tuple[str | None, tuple[NamePart, ...]]:
-    """Return a name that is plain text, or the parts of one that is not."""
+def name_of(value: CppValue, node: CppValue = None) -> tuple[str | None, tuple[NamePart, ...]]:
+    """Return a name that is plain text, or the parts of one that is not.
+
+    `node` is what has the node, if that is not the object itself.
+    """
     if isinstance(value, str):
         return value, ()
     if isinstance(value, CppSum):
-        return None, tuple(_part(part) for part in value.parts)
+        return None, tuple(_part(part, node) for part in value.parts)
     if isinstance(value, CppCall):
-        return None, (_part(value),)
+        return None, (_part(value, node),)
     return None, ()
 
 
-def _part(value: CppValue) -> NamePart:
+def _part(value: CppValue, node: CppValue) -> NamePart:
     if isinstance(value, str):
         return NamePart("text", value)
     parameter = _parameter_read(value)
     if parameter is not None:
         return NamePart("parameter", parameter)
     is_call = isinstance(value, CppCall) and not value.args
-    is_own = is_call and (value.owner is None or _is_this(value.owner))
+    is_own = is_call and (_is_node(value.owner) or _is_same(value.owner, node))
     if is_own and value.name == "get_name":
         return NamePart("node name")
     if is_own and value.name == "get_namespace":
@@ -162,6 +165,20 @@ def _part(value: CppValue) -> NamePart:
 
 def _is_this(value: CppValue) -> bool:
     return isinstance(value, CppName) and value.name == "this"
+
+
+def _is_node(value: CppValue) -> bool:
+    """Return whether a value is the object itself, or the node of a controller."""
+    if value is None or _is_this(value):
+        return True
+    return isinstance(value, CppCall) and value.name == "get_node" and not value.args
+
+
+def _is_same(one: CppValue, other: CppValue) -> bool:
+    """Return whether two values are one variable."""
+    if not isinstance(one, CppName) or not isinstance(other, CppName):
+        return False
+    return one.name.removeprefix("this->") == other.name.removeprefix("this->")
 
 
 def _parameter_read(value: CppValue) -> str | None:

@@ -13,8 +13,16 @@ from grader.base.names import closest, near
 from grader.base.problems import NO_FIXES, Fix, Fixes
 from grader.base.source import Location
 from grader.ros.known.package_tables import python_table
+from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
 from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.nodes.python.action_faults import (
+    RegisteredGoal,
+    answers_for_results,
+    buffers_without_listener,
+    goals_without_state,
+)
+from grader.ros.nodes.python.called_functions import CalledFunctions, imported_names
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, is_passive
 from grader.ros.python.constants import binds_unseen, dotted, last_name
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
@@ -69,14 +77,16 @@ class _PackageAttributes(NamedTuple):
 
 def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
     """Return the attributes of the modules of a package."""
-    stored, texts = set[str](), set[str]()
+    stored, texts, increased = set[str](), set[str](), set[ast.AST]()
     may_be_more = False
     for module in modules:
         nodes = every_node(module.code.tree)
         may_be_more = may_be_more or binds_unseen(nodes)
         for node in nodes:
             match node:
-                case ast.Attribute(attr=name, ctx=ast.Store()):
+                case ast.AugAssign(target=ast.Attribute() as target):
+                    increased.add(target)  # which makes no attribute
+                case ast.Attribute(attr=name, ctx=ast.Store()) if node not in increased:
                     stored.add(name)
                 case ast.Constant(value=str(text)):
                     texts.add(text)
@@ -84,12 +94,15 @@ def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
 
 
 def code_faults(
-    module: ModuleText, others: Mapping[str, ModuleText], attributes: _PackageAttributes
+    module: ModuleText,
+    others: Mapping[str, ModuleText],
+    attributes: _PackageAttributes,
+    releases: Sequence[Release],
 ) -> Iterator[CodeFault]:
     """Yield what is wrong in a module.
 
     `others` are all modules of the package, by their names, and `attributes` those of all of
-    them.
+    them. Calls are those of the given releases, or of any that are known.
     """
     search = _Search(module, others)
     yield from _undefined_names(module.code)
@@ -98,6 +111,28 @@ def code_faults(
     yield from search.without_response()
     yield from search.waiting_callbacks()
     yield from search.of_programs()
+    yield from _wrong_calls(module, releases or RELEASES)
+    yield from search.of_actions()
+
+
+def _wrong_calls(module: ModuleText, releases: Sequence[Release]) -> Iterator[CodeFault]:
+    """Yield the calls of rclpy and tf2_ros whose arguments Python cannot bind."""
+    nodes = every_node(module.code.tree)
+    if binds_unseen(nodes):
+        return
+    functions = CalledFunctions(module.code, nodes, imported_names(nodes), releases)
+    count = 0
+    for part in module.parts:
+        owner = module.nodes.get(part.of) if part.of is not None else None
+        wrong_calls = {call: functions.wrong_call(call, owner, {}) for call in part.calls}
+        reactions = {call: wrong.reaction for call, wrong in wrong_calls.items() if wrong}
+        certain = set(certain_nodes(part.node)) if reactions else set[ast.AST]()
+        said = [call for call in reactions if call in certain]
+        for call in sorted(said, key=position_of):
+            count += 1
+            if count <= _MAX_FAULTS:
+                at = location_in(module.code.source, position_of(call))
+                yield CodeFault("wrong call", reactions[call], at)
 
 
 def _undefined_names(code: Code) -> Iterator[CodeFault]:
@@ -215,6 +250,8 @@ class _Search:
             match node:
                 case ast.Attribute(value=ast.Name(id="self"), ctx=ast.Load()):
                     read.append(node)
+                case ast.AugAssign(target=ast.Attribute(value=ast.Name(id="self")) as target):
+                    read.append(target)
         for node in sorted(read, key=position_of):  # the first use is said
             name = node.attr
             if name in own_names or name in known or name in asked or name.startswith("_"):
@@ -363,6 +400,21 @@ class _Search:
             ):
                 return True
         return False
+
+    def of_actions(self) -> Iterator[CodeFault]:
+        """Yield what is done wrong with actions and transforms."""
+        goals = []
+        for registered in self._registered:
+            function = self._function(registered.given, registered.part)
+            if registered.by == "ActionServer" and function is not None:
+                goals.append(RegisteredGoal(function, registered.call))
+        yield from goals_without_state(self._code, goals)
+        text = self._code.source.text
+        if "get_result_async" in text:
+            yield from answers_for_results(self._code, self._module.parts, self._functions)
+        if "Buffer" in text and "TransformListener" not in text:
+            names = imported_names(every_node(self._code.tree))
+            yield from buffers_without_listener(self._code, names)
 
     # --- Programs
 

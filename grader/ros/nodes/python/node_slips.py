@@ -9,7 +9,6 @@ import ast
 import builtins
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
-from functools import partial
 from typing import NamedTuple
 
 from grader.base.names import near
@@ -18,7 +17,12 @@ from grader.base.source import Edit
 from grader.ros.known.package_tables import python_table
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import given_argument
-from grader.ros.nodes.python.python_calls import ArgumentKind, Written, wrong_call
+from grader.ros.nodes.python.called_functions import (
+    CalledFunctions,
+    imported_names,
+    made_in,
+    methods_of,
+)
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
 from grader.ros.python.constants import binds_unseen, dotted
 from grader.ros.python.parse import Code, Position, location_in, position_of
@@ -31,19 +35,6 @@ _INTERRUPTS = frozenset({"KeyboardInterrupt", "SystemExit", "ExternalShutdownExc
 _MODULES = ("rclpy", "math", "time", "os", "sys", "random")
 _IMPORTED = {"Node": "rclpy.node"}
 _WAITING = frozenset({"threading", "asyncio", "time", "signal", "multiprocessing"})
-
-
-_PLAIN_NODES = ("rclpy.Node", "rclpy.node.Node")
-# The classes of what calls make, of which the table of calls has methods.
-_MAKING = {
-    "create_publisher": "Publisher",
-    "create_client": "Client",
-    "create_timer": "Timer",
-    **{
-        name: name
-        for name in ("ActionClient", "Buffer", "TransformBroadcaster", "StaticTransformBroadcaster")
-    },
-}
 
 
 class Program(NamedTuple):
@@ -87,20 +78,13 @@ class _NodeSlips:
         releases: Sequence[Release],
     ) -> None:
         self._code, self._nodes, self._program = code, nodes, program
-        self._releases = releases
-        self._imports: dict[str, str] = {}  # full names
+        self._imports = imported_names(nodes)
         self._has_star = False
         self._names_left = _MAX_NAMES
         self._bound: set[str] = set()
         for node in nodes:
             self._bind(node)
         self._known = {*self._bound, *self._imports}
-        self._stored = Counter(  # how often a variable or an attribute is bound
-            getattr(node, "id", getattr(node, "attr", ""))
-            for node in nodes
-            if isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)
-        )
-        self._statements = [node for node in nodes if isinstance(node, ast.Assign)]
         self._functions = {
             node.name: node for node in code.tree.body if isinstance(node, ast.FunctionDef)
         }
@@ -110,6 +94,7 @@ class _NodeSlips:
                 continue
             if self._full_name(node.bases[0]) in NODE_CLASSES:
                 self._classes[node.name] = node
+        self._calls = CalledFunctions(code, nodes, self._imports, releases)
 
     def _bind(self, node: ast.AST) -> None:
         match node:
@@ -119,14 +104,8 @@ class _NodeSlips:
                 self._bound.add(name)
             case ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name)):
                 self._bound.add(name)
-            case ast.Import(names=names):
-                for alias in names:
-                    top = alias.name.partition(".")[0]
-                    self._imports[alias.asname or top] = alias.name if alias.asname else top
-            case ast.ImportFrom(module=module, names=names):
+            case ast.ImportFrom(names=names):
                 self._has_star |= names[0].name == "*"
-                for alias in names:
-                    self._imports[alias.asname or alias.name] = f"{module}.{alias.name}"
 
     def _full_name(self, node: ast.expr) -> str:
         first, dot, rest = dotted(node).partition(".")
@@ -222,7 +201,7 @@ class _NodeSlips:
 
     def _methods(self, owner: ast.ClassDef, statements: Sequence[ast.stmt]) -> Iterator[_Function]:
         """Yield the methods that statements of a method call, or let be called."""
-        methods = _methods_of(owner)
+        methods = methods_of(owner)
         for statement in statements:
             for call in _calls(statement):
                 name = dotted(call.func)
@@ -334,7 +313,7 @@ class _NodeSlips:
 
     def _attributes_of(self, owner: ast.ClassDef) -> set[str]:
         """Return the attributes that a class of a node may have, as far as names say."""
-        names = {*_methods_of(owner)}
+        names = {*methods_of(owner)}
         for node in self._nodes:
             match node:
                 case ast.Attribute(attr=name, ctx=ast.Store()) | ast.Name(id=name, ctx=ast.Store()):
@@ -345,7 +324,7 @@ class _NodeSlips:
         self, owner: ast.ClassDef, statements: Sequence[ast.stmt]
     ) -> Iterator[Slip]:
         """Yield callbacks that are called where they should be given."""
-        methods = _methods_of(owner)
+        methods = methods_of(owner)
         for statement in statements:
             for call in _calls(statement):
                 given = _callback(call)
@@ -365,72 +344,17 @@ class _NodeSlips:
     def _wrong_calls(self, function: _Function, statements: Sequence[ast.stmt]) -> Iterator[Slip]:
         """Yield the calls of rclpy and tf2_ros with arguments that stop the program."""
         filled = {"node_name": f'"{self._program.name.removesuffix(".py")}"'}
-        nodes = [name for name, made in self._made_in(statements) if made in self._classes]
+        nodes = [name for name, made in made_in(statements) if made in self._classes]
         if function.owner is not None:
             filled["node"] = "self"
         elif len(nodes) == 1:
             filled["node"] = nodes[0]
         for statement in statements:
             for call in _calls(statement):
-                called = self._called_function(call, function)
-                if called is None:
-                    continue
-                kind_of = partial(self._kind_of, function.owner)
-                written = Written(call, self._code.source, self._span, kind_of, filled)
-                wrong = wrong_call(written, called, self._releases)
+                wrong = self._calls.wrong_call(call, function.owner, filled)
                 if wrong is not None:
                     at = location_in(self._code.source, position_of(call))
                     yield Slip(wrong.edits, wrong.reaction, wrong.assumption, at, is_refused=True)
-
-    def _made_in(self, statements: Sequence[ast.stmt]) -> Iterator[tuple[str, str]]:
-        """Yield the variables and attributes that statements bind, with what their calls make."""
-        for statement in statements:
-            match statement:
-                case ast.Assign(
-                    targets=[ast.Name() | ast.Attribute() as to], value=ast.Call() as made
-                ):
-                    yield dotted(to), dotted(made.func)
-
-    def _called_function(self, call: ast.Call, function: _Function) -> str | None:
-        """Return the key of the table of calls for what is surely called."""
-        owner = function.owner
-        name = dotted(call.func)
-        receiver, _, method = name.rpartition(".")
-        if owner is not None and receiver == "self":
-            return f"Node.{method}" if method not in _methods_of(owner) else None
-        match call.func:
-            case ast.Attribute(attr="__init__", value=ast.Call(func=ast.Name(id="super"), args=[])):
-                is_plain = owner is not None and self._full_name(owner.bases[0]) in _PLAIN_NODES
-                return "Node.__init__" if is_plain else None
-        full = self._full_name(call.func)
-        if full in _PLAIN_NODES or full.startswith(("rclpy.action.", "tf2_ros.")):
-            return f"{full.rpartition('.')[2]}.__init__"
-        if full.startswith("rclpy."):
-            return full
-        kind = self._kind_of_object(receiver)
-        return f"{kind}.{method}" if kind is not None else None
-
-    def _kind_of_object(self, name: str) -> str | None:
-        """Return what a variable or attribute holds that the file binds once."""
-        made = [kind for target, kind in self._made_in(self._statements) if target == name]
-        if len(made) != 1 or self._stored[name.rpartition(".")[2]] != 1:
-            return None
-        return _MAKING.get(made[0].rpartition(".")[2])
-
-    def _kind_of(self, owner: ast.ClassDef | None, argument: ast.expr) -> ArgumentKind | None:
-        """Return what an argument surely is."""
-        if isinstance(argument, ast.BinOp):
-            kinds = {self._kind_of(owner, side) for side in (argument.left, argument.right)}
-            return "number" if kinds == {"number"} else None
-        if isinstance(argument, ast.Constant | ast.JoinedStr | ast.Lambda):
-            return _kind_of_value(argument)
-        name = dotted(argument)
-        methods = _methods_of(owner) if owner is not None else {}
-        method = methods.get(name.removeprefix("self.")) if name.startswith("self.") else None
-        if method is not None and not method.decorator_list:
-            return "function"
-        module = self._full_name(argument).rpartition(".")[0]
-        return "type" if name and module.endswith((".msg", ".srv", ".action")) else None
 
     def _without_init_of_node(self, owner: ast.ClassDef) -> Iterator[Slip]:
         """Yield that the constructor of a node does not call that of its base."""
@@ -542,10 +466,6 @@ class _NodeSlips:
         at = location_in(self._code.source, position_of(node))
         return Slip((edit,), reaction, assumption, at, is_refused=True)
 
-    def _span(self, node: ast.AST) -> tuple[int, int]:
-        assert isinstance(node, ast.expr | ast.keyword)
-        return self._offset(position_of(node)), self._end(node)
-
     def _offset(self, position: Position) -> int:
         location = location_in(self._code.source, position)
         return self._code.source.offset(location.line, location.column)
@@ -628,14 +548,6 @@ def _callback(call: ast.Call) -> ast.expr | None:
     return None
 
 
-def _kind_of_value(value: ast.Constant | ast.JoinedStr | ast.Lambda) -> ArgumentKind | None:
-    if isinstance(value, ast.Lambda):
-        return "function"
-    if isinstance(value, ast.JoinedStr) or isinstance(value.value, str):
-        return "text"
-    return "number" if type(value.value) in (int, float) else None
-
-
 def _package_of_message(name: str) -> str | None:
     """Return the module of the only well-known message of a name."""
     matches = [full for full in python_table().messages if full.rpartition(".")[2] == name]
@@ -648,11 +560,6 @@ def _meant_attribute(name: str, own_names: Collection[str]) -> str | None:
     """Return the attribute that a name surely means: but for underscores, else a similar one."""
     alike = [other for other in own_names if other.strip("_") == name.strip("_")]
     return alike[0] if len(alike) == 1 else near(name, own_names)
-
-
-def _methods_of(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:
-    """Return the methods of a class by their names."""
-    return {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
 
 
 def _count_stored(function: ast.AST) -> Counter[str]:

@@ -41,7 +41,7 @@ _ANYTHING = "..."
 _READ: tuple[Release, ...] = ("humble", "iron", "jazzy")  # those that were read, and between them
 
 
-class _WrongCall(NamedTuple):
+class WrongCall(NamedTuple):
     """What is wrong with the arguments of a call, and the edits that write what is assumed."""
 
     reaction: str
@@ -106,7 +106,7 @@ class _Signature(NamedTuple):
         return self.by_name.union(self.positional)
 
 
-def wrong_call(written: Written, function: str, releases: Sequence[Release]) -> _WrongCall | None:
+def wrong_call(written: Written, function: str, releases: Sequence[Release]) -> WrongCall | None:
     """Return what is wrong with the arguments of a call in each of some releases.
 
     `function` is a key of the table of calls. None where nothing is wrong, or where arguments are
@@ -156,7 +156,7 @@ def _parsed(signature: str, *, takes_more: bool) -> _Signature:
     )
 
 
-def _unbound(written: Written, shown: str, signature: _Signature) -> _WrongCall | None:
+def _unbound(written: Written, shown: str, signature: _Signature) -> WrongCall | None:
     """Return the first thing that is wrong with the arguments of a call."""
     return (
         _unknown_keyword(written, shown, signature)
@@ -166,7 +166,7 @@ def _unbound(written: Written, shown: str, signature: _Signature) -> _WrongCall 
     )
 
 
-def _unknown_keyword(written: Written, shown: str, signature: _Signature) -> _WrongCall | None:
+def _unknown_keyword(written: Written, shown: str, signature: _Signature) -> WrongCall | None:
     keywords = written.call.keywords
     for keyword in keywords if not signature.takes_more else ():
         name = keyword.arg or ""
@@ -177,22 +177,22 @@ def _unknown_keyword(written: Written, shown: str, signature: _Signature) -> _Wr
         if meant is not None:
             start, end = written.span_of(keyword)[0], written.span_of(keyword)[0] + len(name)
             edit = written.source.edit(start, end, meant)
-            return _WrongCall(reaction, f"{name} is read as {meant}", (edit,))
-        return _WrongCall(reaction, f"{name} is ignored", written.without([keyword]))
+            return WrongCall(reaction, f"{name} is read as {meant}", (edit,))
+        return WrongCall(reaction, f"{name} is ignored", written.without([keyword]))
     return None
 
 
-def _too_many(written: Written, shown: str, signature: _Signature) -> _WrongCall | None:
+def _too_many(written: Written, shown: str, signature: _Signature) -> WrongCall | None:
     arguments, most = written.call.args, len(signature.positional)
     for keyword in written.call.keywords:
         if keyword.arg in signature.positional[: len(arguments)]:
             reaction = f"{shown} gets {keyword.arg} twice"
-            return _WrongCall(reaction, "the second one is ignored", written.without([keyword]))
+            return WrongCall(reaction, "the second one is ignored", written.without([keyword]))
     if len(arguments) <= most or signature.takes_more:
         return None
     taken = counted(most, "argument") if most else "no argument"
     reaction = f"{shown} takes {taken} without a name, and gets {len(arguments)}"
-    return _WrongCall(reaction, "the others are ignored", written.without(arguments[most:]))
+    return WrongCall(reaction, "the others are ignored", written.without(arguments[most:]))
 
 
 class _Given(NamedTuple):
@@ -203,7 +203,7 @@ class _Given(NamedTuple):
     kind: ArgumentKind | None
 
 
-def _exchanged(written: Written, shown: str, signature: _Signature) -> _WrongCall | None:
+def _exchanged(written: Written, shown: str, signature: _Signature) -> WrongCall | None:
     """Return that two arguments surely stand in each other's place."""
     given = [
         _Given(name, argument, written.kind_of(argument))
@@ -216,7 +216,7 @@ def _exchanged(written: Written, shown: str, signature: _Signature) -> _WrongCal
                 written.replaced(other.argument, one.argument),
             )
             reaction = f"{shown} gets {one.name} and {other.name} in the wrong order"
-            return _WrongCall(reaction, "they are exchanged", edits)
+            return WrongCall(reaction, "they are exchanged", edits)
     return None
 
 
@@ -227,7 +227,7 @@ def _are_exchanged(one: _Given, other: _Given) -> bool:
     return not is_right and _fits(one.name, other.kind) and _fits(other.name, one.kind)
 
 
-def _missing(written: Written, shown: str, signature: _Signature) -> _WrongCall | None:
+def _missing(written: Written, shown: str, signature: _Signature) -> WrongCall | None:
     """Return the first argument that is missing; all that are missing are added."""
     arguments = written.call.args
     given = {keyword.arg or "" for keyword in written.call.keywords}
@@ -248,7 +248,7 @@ def _missing(written: Written, shown: str, signature: _Signature) -> _WrongCall 
         place += len(given)
     assumption = f"`{value}` is added" if value != _ANYTHING else "it is assumed"
     edit = written.added(place, ", ".join(added))
-    return _WrongCall(f"{shown} lacks its argument {name}", assumption, (edit,))
+    return WrongCall(f"{shown} lacks its argument {name}", assumption, (edit,))
 
 
 def _place_of_missing(names: Sequence[str], kinds: Sequence[ArgumentKind | None]) -> int:

@@ -17,6 +17,7 @@ from grader.base.errors import InputError
 from grader.base.slips import Slip
 from grader.base.source import Edits, Location
 from grader.ros.installation.installation import InstalledFile
+from grader.ros.known.releases import Release
 from grader.ros.nodes.message_uses import CodePart, field_uses, given_argument, type_imports
 from grader.ros.nodes.node_facts import (
     CodeFault,
@@ -170,7 +171,7 @@ def read_nodes(package: Package, *, reads_meant: bool = False) -> PackageNodes:
         read, doubts_of_program = _without_stopped(package, program, unread)
         programs.append(read)
         doubts += doubts_of_program
-    return _joined_nodes(modules.values(), nodes, programs, doubts)
+    return _joined_nodes(modules.values(), nodes, programs, doubts, package.releases)
 
 
 def _without_stopped(
@@ -222,6 +223,7 @@ def _joined_nodes(
     nodes: Sequence[NodeFacts],
     programs: Sequence[NodeProgram],
     doubts: Sequence[Doubt],
+    releases: Sequence[Release],
 ) -> PackageNodes:
     """Return the nodes of a package with what its modules import and use, and their faults."""
     is_loose = any(module.has_loose_declarations for module in modules)
@@ -230,7 +232,7 @@ def _joined_nodes(
     synchronised: list[SynchronisedType] = []
     for module in modules:
         synchronised += module.synchronised_types()
-    faults, is_searched = _faults_of([module.text() for module in modules])
+    faults, is_searched = _faults_of([module.text() for module in modules], releases)
     return PackageNodes(
         nodes=tuple(nodes),
         programs=tuple(programs),
@@ -244,7 +246,9 @@ def _joined_nodes(
     )
 
 
-def _faults_of(modules: Sequence[ModuleText]) -> tuple[list[CodeFault], bool]:
+def _faults_of(
+    modules: Sequence[ModuleText], releases: Sequence[Release]
+) -> tuple[list[CodeFault], bool]:
     """Return the faults in the code of modules, and whether all of them are searched."""
     by_name = {module.name: module for module in modules}
     attributes = attributes_in(modules)
@@ -254,7 +258,7 @@ def _faults_of(modules: Sequence[ModuleText]) -> tuple[list[CodeFault], bool]:
         left -= len(module.code.source.text)
         try:
             if left >= 0:
-                faults += code_faults(module, by_name, attributes)
+                faults += code_faults(module, by_name, attributes, releases)
         except RecursionError:
             left = -1
         is_searched = is_searched and left >= 0

@@ -119,7 +119,7 @@ def _topics_of_gazebo(workspace: Workspace, bridged: set[str]) -> _GazeboTopics:
         if node.package == "ros_gz_image":
             taken |= {(word or "").strip("/") for word in node.arguments or ()}
     unused = [topic for topic in topics if topic.name not in taken]
-    is_known = not _is_open(workspace)
+    is_known = not has_unread_topics(workspace)
     are_expanded = any(_EXPANDED in text for text in workspace.texts.searched_launch_texts())
     return _GazeboTopics(
         by_name=by_name,
@@ -403,7 +403,7 @@ def _is_clock_bridged(
     has_clock = any(row.ros == "clock" for row in rows)
     if not has_bridge or not used or has_clock:
         return True
-    return _is_open(workspace) or _may_include_bridge(workspace)
+    return has_unread_topics(workspace) or _may_include_bridge(workspace)
 
 
 def _may_include_bridge(workspace: Workspace) -> bool:
@@ -446,7 +446,7 @@ def _topics_from(element: Element) -> Iterator[str]:
         yield f"{text}/{name}"
 
 
-def _is_open(workspace: Workspace) -> bool:
+def has_unread_topics(workspace: Workspace) -> bool:
     """Return whether there may be other sensors and bridges than those that were read."""
     robots = workspace.robots
     if not robots.known or robots.may_be_others or workspace.launches.has_more_nodes:

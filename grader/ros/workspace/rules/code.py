@@ -7,13 +7,16 @@ from grader.ros.package.found_problems import syntax_fixes
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, Undecided
 from grader.ros.workspace.rules.rule_table import (
+    ACTION_RESULT,
     BUFFER_LISTENER,
+    CALL_ARGUMENTS,
     CALLBACK_CALL,
     CALLBACK_SLEEP,
     CALLBACK_WAIT,
     CODE_SYNTAX,
     COMPONENT_MACRO,
     ENTITY_KEPT,
+    GOAL_STATE,
     NAME_BINDING,
     NODE_SPINS,
     RCLPY_INIT,
@@ -25,6 +28,9 @@ from grader.ros.workspace.rules.rule_table import (
 _RULES: Mapping[CodeRule, Rule] = {
     "undefined name": NAME_BINDING,
     "callback is called": CALLBACK_CALL,
+    "wrong call": CALL_ARGUMENTS,
+    "no goal state": GOAL_STATE,
+    "no result": ACTION_RESULT,
     "no response": SERVICE_RESPONSE,
     "nothing spins": NODE_SPINS,
     "no rclpy.init": RCLPY_INIT,

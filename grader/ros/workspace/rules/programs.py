@@ -13,9 +13,15 @@ from grader.ros.installation.installation import Installation
 from grader.ros.known.package_rows import package_row
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.launch.node_parameters import parameters_of
-from grader.ros.package.entry_points import entry_fault, entry_points, module_path
+from grader.ros.package.entry_points import (
+    entry_fault,
+    entry_points,
+    module_path,
+    read_module,
+)
 from grader.ros.package.package import CMAKE, SETUP, Package
 from grader.ros.package.program_names import meant_program, program_names
+from grader.ros.python.parse import bound_in
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import (
     Compared,
@@ -26,8 +32,10 @@ from grader.ros.workspace.rules.names import (
     Undecided,
     Use,
     corrections,
+    warning,
 )
 from grader.ros.workspace.rules.rule_table import (
+    ENTRY_MODULE,
     ENTRY_POINT,
     PROGRAM_EXISTS,
     PROGRAM_RUNS,
@@ -94,6 +102,32 @@ def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
             message = f"the entry point of {entry.name!r} names no function: {fault.message}"
             either = corrections(fault.written, fault.location, fault.meant)
             yield Mismatch(ENTRY_POINT, message, fault.location, corrections=either)
+    yield from _other_modules(package)
+
+
+def _other_modules(package: Package) -> Iterator[Mismatch]:
+    """Yield the entry points that run another module than the one of their own name.
+
+    The one of their name has the function that they name, and no other entry point runs it.
+    """
+    entries = entry_points(package)
+    modules = {entry.module for entry in entries}
+    for entry in entries:
+        folder, _, last = entry.module.rpartition(".")
+        own_module = f"{folder}.{entry.name}" if folder else entry.name
+        path = module_path(package, own_module)
+        if entry.name == last or own_module in modules or path is None or not entry.function:
+            continue
+        if entry_fault(package, entry.name) is not None:  # which is said
+            continue
+        code = read_module(package, path)
+        if code is not None and entry.function in bound_in(code.tree):
+            message = (
+                f"the entry point {entry.name!r} runs {entry.module}; no entry point runs "
+                f"{own_module}, which has {entry.function}() too"
+            )
+            place = Location(package.path(path), 1, 1)
+            yield warning(ENTRY_MODULE, message, entry.location, place)
 
 
 def _not_executed(package: Package, node: StartedNode) -> Iterator[Mismatch]:

@@ -24,9 +24,11 @@ from grader.ros.workspace.rules.gazebo import gazebo_facts
 from grader.ros.workspace.rules.interfaces import interface_facts
 from grader.ros.workspace.rules.known_ends import known_end_facts
 from grader.ros.workspace.rules.known_parameters import known_parameter_facts
+from grader.ros.workspace.rules.launch_tables import launch_table_facts
 from grader.ros.workspace.rules.limit_values import limit_facts
 from grader.ros.workspace.rules.looked_up_transforms import lookup_facts
 from grader.ros.workspace.rules.meeting_ends import meeting_facts
+from grader.ros.workspace.rules.mimic_interfaces import mimic_facts
 from grader.ros.workspace.rules.missing_ends import missing_end_facts
 from grader.ros.workspace.rules.moveit import moveit_facts
 from grader.ros.workspace.rules.names import (
@@ -41,6 +43,7 @@ from grader.ros.workspace.rules.names import (
 from grader.ros.workspace.rules.namespaces import namespace_facts
 from grader.ros.workspace.rules.one_machine import machine_facts
 from grader.ros.workspace.rules.parameters import parameter_facts
+from grader.ros.workspace.rules.plugin_classes import plugin_class_facts
 from grader.ros.workspace.rules.programs import program_facts
 from grader.ros.workspace.rules.published_transforms import transform_facts
 from grader.ros.workspace.rules.rate_values import rate_facts
@@ -48,9 +51,11 @@ from grader.ros.workspace.rules.received_messages import received_message_facts
 from grader.ros.workspace.rules.remapped_names import remapping_facts
 from grader.ros.workspace.rules.renamed_nodes import renamed_node_facts
 from grader.ros.workspace.rules.rule_table import DEFINED, AnyFamily
+from grader.ros.workspace.rules.simulated_topics import simulated_topic_facts
 from grader.ros.workspace.rules.spawners import spawner_facts
 from grader.ros.workspace.rules.srdf import srdf_facts
 from grader.ros.workspace.rules.topic_wiring import topic_wiring_facts
+from grader.ros.workspace.rules.unmet_topics import unmet_topic_facts
 from grader.ros.workspace.rules.unused import unused_files
 from grader.ros.workspace.rules.wheel_values import wheel_value_facts
 
@@ -58,9 +63,12 @@ _READERS = (
     file_facts,
     frame_facts,
     controller_facts,
+    plugin_class_facts,
+    mimic_facts,
     spawner_facts,
     parameter_facts,
     known_parameter_facts,
+    launch_table_facts,
     argument_facts,
     program_facts,
     component_facts,
@@ -69,6 +77,7 @@ _READERS = (
     remapping_facts,
     gazebo_facts,
     bridge_facts,
+    simulated_topic_facts,
     srdf_facts,
     moveit_facts,
     dependency_facts,
@@ -85,6 +94,7 @@ _READERS = (
     renamed_node_facts,
     machine_facts,
     topic_wiring_facts,
+    unmet_topic_facts,
     received_message_facts,
     gain_facts,
     known_end_facts,

@@ -171,6 +171,19 @@ CONTROLLER_INTERFACE = _controller(
 CONTROLLER_HARDWARE = _controller(
     "controller-hardware", sentence="A robot with a controller manager has <ros2_control>."
 )
+MIMIC_COMMAND = _controller(
+    "mimic-command", sentence="A joint that mimics another one has no command interface."
+)
+PLUGIN_CLASS = _controller(
+    "plugin-class",
+    sentence="A package of the workspace describes the controller or hardware that a file names.",
+)
+PLUGIN_EXPORTED = _controller(
+    "plugin-exported", sentence="CMakeLists.txt exports the files that describe plugins."
+)
+PLUGIN_LIBRARY = _controller(
+    "plugin-library", sentence="A target makes the library of a file that describes plugins."
+)
 SPAWNER_MANAGER = _controller(
     "spawner-manager", sentence="The controller manager that a spawner asks is started."
 )
@@ -245,6 +258,9 @@ ROBOT_LINKS = _parameter(
 CREATED_FROM = _parameter(
     "created-from", sentence="The program that creates a robot in Gazebo gets its source."
 )
+PARAMETER_TABLE = _parameter(
+    "parameter-table", sentence="The parameters of a node in a launch file are a dictionary."
+)
 PARAMETER_NAME = Rule(
     "parameter-name",
     "parameters",
@@ -287,6 +303,10 @@ PROGRAM_EXISTS = _program(
     "program-exists", sentence="The package of a started node has its program."
 )
 ENTRY_POINT = _program("entry-point", sentence="An entry point names a function that exists.")
+ENTRY_MODULE = _program(
+    "entry-module",
+    sentence="An entry point runs the module of its own name, if that has such a function.",
+)
 PROGRAM_RUNS = _program("program-runs", sentence="The first line of a script names an interpreter.")
 _NODE_STARTED = _program(
     "node-started", sentence="A launch file starts the nodes that a lifecycle manager manages."
@@ -331,6 +351,13 @@ BRIDGE_TYPE = _topic(
 BRIDGE_TOPIC = _topic("bridge-topic", sentence="Gazebo has the topic of a row of a bridge.")
 BRIDGE_CLOCK = _topic("bridge-clock", sentence="A bridge takes the clock from Gazebo.")
 BRIDGE_TOPICS = _topic("bridge-topics", sentence="A bridge has topics.")
+BRIDGE_SYSTEM = _topic(
+    "bridge-system",
+    sentence="The robot has a system for the commands, joints and odometry of a bridge.",
+)
+ODOMETRY_BRIDGED = _topic(
+    "odometry-bridged", sentence="A bridge takes the transform of odometry that RViz shows to /tf."
+)
 SENSOR_SYSTEM = _topic("sensor-system", sentence="A world has the systems that its sensors need.")
 CREATED_WORLD = _topic(
     "created-world", sentence="A robot is created in the world that Gazebo runs."
@@ -390,9 +417,18 @@ NAME_BINDING = _code(
 CALLBACK_CALL = _code(
     "callback-call", sentence="A callback is given as a function, and not called."
 )
+CALL_ARGUMENTS = _code(
+    "call-arguments", sentence="A call of rclpy or tf2_ros has the arguments that it takes."
+)
 SERVICE_RESPONSE = _code(
     "service-response",
     sentence="The callback of a service or action returns its response or result on every path.",
+)
+GOAL_STATE = _slow_code(
+    "goal-state", sentence="A function that executes a goal sets the state of the goal."
+)
+ACTION_RESULT = _code(
+    "action-result", sentence="The result of an action is the field result of its answer."
 )
 NODE_SPINS = _code("node-spins", sentence="A node with callbacks is spun.")
 RCLPY_INIT = _code("rclpy-init", sentence="A node is made after rclpy.init().")
@@ -477,6 +513,14 @@ CLOCK_PUBLISHED = _companion(
 SIMULATION_TIME = _companion("simulation-time", sentence="The nodes of a simulation use its time.")
 CONTAINER_STARTED = _companion(
     "container-started", sentence="The container of a component is started."
+)
+UNSTARTED_TYPE = _companion(
+    "unstarted-type",
+    sentence="Two programs of a package that share a topic have one type for it.",
+)
+TOPIC_PARTNER = _companion(
+    "topic-partner",
+    sentence="A topic that a node waits for is one that another node of its launch publishes.",
 )
 SENSOR_TOPIC = _companion(
     "sensor-topic", sentence="The sensor whose messages a bridge takes has a <topic>."

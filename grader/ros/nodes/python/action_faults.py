@@ -1,0 +1,166 @@
+"""What nodes in Python do wrong with actions and with the transforms that they look up."""
+
+import ast
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.ros.nodes.message_uses import CodePart
+from grader.ros.nodes.node_facts import CodeFault
+from grader.ros.python.constants import dotted
+from grader.ros.python.parse import Code, every_node, location_in, position_of
+
+_Function = ast.FunctionDef | ast.AsyncFunctionDef
+# What sets the state of a goal: rclpy/rclpy/action/server.py of jazzy.
+_ENDING_STATES = frozenset({"succeed", "abort", "canceled"})
+# The fields of the answer that has the result of an action, and what each message has.
+_OF_RESULT = frozenset({"status", "result", "get_fields_and_field_types"})
+_BUFFERS = ("tf2_ros.Buffer", "tf2_ros.buffer.Buffer")
+_LOOKS_UP = frozenset({"lookup_transform", "can_transform", "transform", "lookup_transform_async"})
+
+
+class RegisteredGoal(NamedTuple):
+    """A function that executes the goals of an action, and the call that is given it."""
+
+    function: _Function
+    call: ast.Call
+
+
+def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Iterator[CodeFault]:
+    """Yield functions that end without setting the state of their goal: rclpy aborts it then.
+
+    One that gives the goal to something else, or keeps it, may set it there.
+    """
+    for goal in registered:
+        function = goal.function
+        names = [parameter.arg for parameter in function.args.args if parameter.arg != "self"]
+        if len(names) != 1 or function.decorator_list:
+            continue
+        used = _attributes_of(names[0], function)
+        returned = [node for node in ast.walk(function) if isinstance(node, ast.Return)]
+        if used is None or not _ENDING_STATES.isdisjoint(used) or not returned:
+            continue
+        message = (
+            f"{function.name}() sets no state of its goal, so rclpy aborts it; "
+            f"call {names[0]}.succeed()"
+        )
+        at = location_in(code.source, position_of(function))
+        place = location_in(code.source, position_of(goal.call))
+        yield CodeFault("no goal state", message, at, place, is_certain=False)
+
+
+def _attributes_of(name: str, function: _Function) -> set[str] | None:
+    """Return the attributes of a variable that a function uses; None where it is used otherwise."""
+    used = set[str]()
+    owners = set[ast.AST]()
+    for node in ast.walk(function):
+        if isinstance(node, ast.Attribute):
+            owners.add(node.value)
+            if isinstance(node.value, ast.Name) and node.value.id == name:
+                used.add(node.attr)
+    for node in ast.walk(function):
+        if isinstance(node, ast.Name) and node.id == name and node not in owners:
+            return None
+    return used
+
+
+def answers_for_results(
+    code: Code, parts: Sequence[CodePart], methods: Mapping[tuple[Location | None, str], _Function]
+) -> Iterator[CodeFault]:
+    """Yield fields of a result that are read of the answer, which has it as its field `result`."""
+    callbacks: dict[tuple[Location | None, str], set[bool]] = {}
+    for part in parts:
+        results = _result_futures(part)
+        for call in part.calls:
+            match call.func:
+                case ast.Attribute(attr="add_done_callback", value=future) if call.args:
+                    name = dotted(call.args[0])
+                    is_result = dotted(future) in results or _asks_for_result(future)
+                    key = (part.of, name.removeprefix("self."))
+                    callbacks.setdefault(key, set()).add(is_result)
+    for key, kinds in callbacks.items():
+        function = methods.get(key)
+        if kinds == {True} and function is not None:
+            yield from _wrong_fields(code, function)
+
+
+def _result_futures(part: CodePart) -> set[str]:
+    """Return the variables that a function binds to the future of a result, and to nothing else."""
+    made: dict[str, set[bool]] = {}
+    for node in ast.walk(part.node):
+        match node:
+            case ast.Assign(targets=[ast.Name() | ast.Attribute() as to], value=value):
+                made.setdefault(dotted(to), set()).add(_asks_for_result(value))
+    return {name for name, kinds in made.items() if kinds == {True}}
+
+
+def _asks_for_result(node: ast.expr) -> bool:
+    match node:
+        case ast.Call(func=ast.Attribute(attr="get_result_async")):
+            return True
+    return False
+
+
+def _wrong_fields(code: Code, function: _Function) -> Iterator[CodeFault]:
+    """Yield the fields that the callback of a result reads of `future.result()`."""
+    names = [parameter.arg for parameter in function.args.args if parameter.arg != "self"]
+    if len(names) != 1:
+        return
+    answers = {f"{names[0]}.result"}
+    bound: dict[str, set[bool]] = {}
+    for node in ast.walk(function):
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                bound.setdefault(name, set()).add(_is_answer(value, answers))
+    variables = {name for name, kinds in bound.items() if kinds == {True}}
+    for node in ast.walk(function):
+        match node:
+            case ast.Attribute(attr=field, value=value, ctx=ast.Load()):
+                is_variable = isinstance(value, ast.Name) and value.id in variables
+                is_wrong = field not in _OF_RESULT and not field.startswith("_")
+                if is_wrong and (is_variable or _is_answer(value, answers)):
+                    message = (
+                        f"the answer to get_result_async() has no field {field}: the result is "
+                        f"{names[0]}.result().result"
+                    )
+                    at = location_in(code.source, position_of(node))
+                    yield CodeFault("no result", message, at)
+
+
+def _is_answer(node: ast.expr, answers: set[str]) -> bool:
+    return isinstance(node, ast.Call) and not node.args and dotted(node.func) in answers
+
+
+def buffers_without_listener(code: Code, names: Mapping[str, str]) -> Iterator[CodeFault]:
+    """Yield the buffers that look up transforms, and that nothing fills.
+
+    `names` has the full names of what is imported. A buffer that anything is given may be filled.
+    """
+    if "set_transform" in code.source.text:
+        return
+    made: dict[str, list[ast.Call]] = {}
+    for node in every_node(code.tree):
+        match node:
+            case ast.Assign(targets=[ast.Name() | ast.Attribute() as to], value=ast.Call() as call):
+                first, dot, rest = dotted(call.func).partition(".")
+                if f"{names.get(first, first)}{dot}{rest}" in _BUFFERS:
+                    made.setdefault(dotted(to), []).append(call)
+    for name, calls in made.items():
+        if len(calls) == 1 and _is_only_asked(name, code):
+            message = f"no TransformListener fills {name}: it never has a transform"
+            yield CodeFault("no listener", message, location_in(code.source, position_of(calls[0])))
+
+
+def _is_only_asked(name: str, code: Code) -> bool:
+    """Return whether code looks up transforms in a buffer and does nothing else with it."""
+    asked = others = 0
+    owners = set[ast.AST]()
+    for node in every_node(code.tree):
+        if isinstance(node, ast.Attribute) and dotted(node.value) == name:
+            owners.add(node.value)
+            asked += node.attr in _LOOKS_UP
+    for node in every_node(code.tree):
+        is_read = isinstance(node, ast.Name | ast.Attribute) and isinstance(node.ctx, ast.Load)
+        if isinstance(node, ast.Name | ast.Attribute) and is_read and dotted(node) == name:
+            others += node not in owners
+    return asked > 0 and others == 0

@@ -1,0 +1,150 @@
+"""Which functions of rclpy and tf2_ros a module calls, and what is wrong with their arguments."""
+
+import ast
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
+
+from grader.ros.known.releases import Release
+from grader.ros.nodes.python.python_calls import ArgumentKind, Written, WrongCall, wrong_call
+from grader.ros.python.constants import dotted
+from grader.ros.python.parse import Code, Position, location_in, position_of
+
+_PLAIN_NODES = ("rclpy.Node", "rclpy.node.Node")
+# The classes of what calls make, of which the table of calls has methods.
+_MAKING = {
+    "create_publisher": "Publisher",
+    "create_client": "Client",
+    "create_timer": "Timer",
+    **{
+        name: name
+        for name in ("ActionClient", "Buffer", "TransformBroadcaster", "StaticTransformBroadcaster")
+    },
+}
+
+
+class CalledFunctions:
+    """The functions that a module calls, by the keys of the table of calls."""
+
+    def __init__(
+        self,
+        code: Code,
+        nodes: Sequence[ast.AST],
+        imports: Mapping[str, str],
+        releases: Sequence[Release],
+    ) -> None:
+        """Search in the nodes of the code; `imports` has the full names of what it imports."""
+        self._code, self._imports, self._releases = code, imports, releases
+        self._stored = Counter(  # how often a variable or an attribute is bound
+            getattr(node, "id", getattr(node, "attr", ""))
+            for node in nodes
+            if isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)
+        )
+        made: dict[str, list[str]] = {}
+        for target, kind in made_in(node for node in nodes if isinstance(node, ast.stmt)):
+            made.setdefault(target, []).append(kind)
+        self._made = made
+
+    def wrong_call(
+        self, call: ast.Call, owner: ast.ClassDef | None, filled: Mapping[str, str]
+    ) -> WrongCall | None:
+        """Return what is wrong with the arguments of a call in a method of a node's class.
+
+        `filled` is what is given to parameters where it is missing.
+        """
+        called = self._called_function(call, owner)
+        if called is None:
+            return None
+        kind_of = partial(self._kind_of, owner)
+        written = Written(call, self._code.source, self._span, kind_of, filled)
+        return wrong_call(written, called, self._releases)
+
+    def _called_function(self, call: ast.Call, owner: ast.ClassDef | None) -> str | None:
+        """Return the key of the table of calls for what is surely called."""
+        name = dotted(call.func)
+        receiver, _, method = name.rpartition(".")
+        if owner is not None and receiver == "self":
+            return f"Node.{method}" if method not in methods_of(owner) else None
+        match call.func:
+            case ast.Attribute(attr="__init__", value=ast.Call(func=ast.Name(id="super"), args=[])):
+                is_plain = owner is not None and self._full_name(owner.bases[0]) in _PLAIN_NODES
+                return "Node.__init__" if is_plain else None
+        full = self._full_name(call.func)
+        if full in _PLAIN_NODES or full.startswith(("rclpy.action.", "tf2_ros.")):
+            return f"{full.rpartition('.')[2]}.__init__"
+        if full.startswith("rclpy."):
+            return full
+        kind = self._kind_of_object(receiver)
+        return f"{kind}.{method}" if kind is not None else None
+
+    def _full_name(self, node: ast.expr) -> str:
+        first, dot, rest = dotted(node).partition(".")
+        return f"{self._imports.get(first, first)}{dot}{rest}"
+
+    def _kind_of_object(self, name: str) -> str | None:
+        """Return what a variable or attribute holds that the file binds once."""
+        made = self._made.get(name, ())
+        if len(made) != 1 or self._stored[name.rpartition(".")[2]] != 1:
+            return None
+        return _MAKING.get(made[0].rpartition(".")[2])
+
+    def _kind_of(self, owner: ast.ClassDef | None, argument: ast.expr) -> ArgumentKind | None:
+        """Return what an argument surely is."""
+        if isinstance(argument, ast.BinOp):
+            kinds = {self._kind_of(owner, side) for side in (argument.left, argument.right)}
+            return "number" if kinds == {"number"} else None
+        if isinstance(argument, ast.Constant | ast.JoinedStr | ast.Lambda):
+            return _kind_of_value(argument)
+        name = dotted(argument)
+        methods = methods_of(owner) if owner is not None else {}
+        method = methods.get(name.removeprefix("self.")) if name.startswith("self.") else None
+        if method is not None and not method.decorator_list:
+            return "function"
+        module = self._full_name(argument).rpartition(".")[0]
+        return "type" if name and module.endswith((".msg", ".srv", ".action")) else None
+
+    def _span(self, node: ast.AST) -> tuple[int, int]:
+        assert isinstance(node, ast.expr | ast.keyword)
+        start = position_of(node)
+        end = Position(node.end_lineno or node.lineno, (node.end_col_offset or 0) + 1)
+        return self._offset(start), self._offset(end)
+
+    def _offset(self, position: Position) -> int:
+        location = location_in(self._code.source, position)
+        return self._code.source.offset(location.line, location.column)
+
+
+def made_in(statements: Iterable[ast.stmt]) -> Iterator[tuple[str, str]]:
+    """Yield the variables and attributes that statements bind, with what their calls make."""
+    for statement in statements:
+        match statement:
+            case ast.Assign(targets=[ast.Name() | ast.Attribute() as to], value=ast.Call() as made):
+                yield dotted(to), dotted(made.func)
+
+
+def methods_of(owner: ast.ClassDef) -> dict[str, ast.FunctionDef]:
+    """Return the methods of a class by their names."""
+    return {node.name: node for node in owner.body if isinstance(node, ast.FunctionDef)}
+
+
+def imported_names(nodes: Iterable[ast.AST]) -> dict[str, str]:
+    """Return the full names of what imports bind, by the names in the module."""
+    imports: dict[str, str] = {}
+    for node in nodes:
+        match node:
+            case ast.Import(names=names):
+                for alias in names:
+                    top = alias.name.partition(".")[0]
+                    imports[alias.asname or top] = alias.name if alias.asname else top
+            case ast.ImportFrom(module=module, names=names):
+                for alias in names:
+                    imports[alias.asname or alias.name] = f"{module}.{alias.name}"
+    return imports
+
+
+def _kind_of_value(value: ast.Constant | ast.JoinedStr | ast.Lambda) -> ArgumentKind | None:
+    if isinstance(value, ast.Lambda):
+        return "function"
+    if isinstance(value, ast.JoinedStr) or isinstance(value.value, str):
+        return "text"
+    return "number" if type(value.value) in (int, float) else None
