@@ -70,7 +70,7 @@ ALSO = {
     "URDF095": "URDF009",
     "URDF099": "URDF031",
 }
-_OF_WORKSPACE = ("PKG018", "PKG022", "PKG024")  # at the beginning of a file
+_OF_WORKSPACE = ("PKG018", "PKG022", "PKG025")  # at the beginning of a file
 FOLDERS = {
     ".launch": "launch",
     ".launch.py": "launch",
