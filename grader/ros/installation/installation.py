@@ -114,6 +114,18 @@ class CmakeTarget(NamedTuple):
     program: str = ""  # the name of its file; empty for a library, or where it is not known
 
 
+class FoundPackage(NamedTuple):
+    """A package that find_package() of CMake looks for.
+
+    Where it is not certain that it is called, as under a condition, `is_certain` is False.
+    """
+
+    name: str
+    at: Position
+    is_required: bool
+    is_certain: bool
+
+
 class KnownPrograms(NamedTuple):
     """The programs that a build installs: paths below the prefix, and names in setup.py."""
 
@@ -159,6 +171,7 @@ class Installation(NamedTuple):
     interfaces: tuple[GeneratedInterfaces, ...] = ()  # one for each call in CMakeLists.txt
     targets: tuple[CmakeTarget, ...] = ()  # of CMake
     later_stops: tuple[LaterStop, ...] = ()  # in releases that may not be meant
+    found_packages: tuple[FoundPackage, ...] = ()  # of CMake, in their order
 
     def in_releases(self, releases: Collection[Release]) -> "Installation":
         """Return it as it is built for some releases.

@@ -16,6 +16,7 @@ from grader.ros.installation.cmake.language import Command
 from grader.ros.installation.file_search import EmptyGlob, PackageListing
 from grader.ros.installation.installation import (
     CmakeComponent,
+    FoundPackage,
     GeneratedInterfaces,
     Installation,
     InstalledFile,
@@ -49,6 +50,7 @@ class Build:
         self.interfaces: list[GeneratedInterfaces] = []
         self.stops: list[InstallError] = []
         self.later_stops: list[LaterStop] = []
+        self.found_packages: list[FoundPackage] = []
         self.unknown: list[Unknown] = []
         self.doubts: list[Unknown] = []
         self.last = START
@@ -86,6 +88,7 @@ class Build:
             files_at=self._package_at or self.last,
             packages=tuple(self.modules),
             interfaces=tuple(self.interfaces),
+            found_packages=tuple(self.found_packages),
             targets=self.made.all(
                 {
                     written_path: self._source(written_path)

@@ -27,7 +27,7 @@ from grader.ros.installation.cmake.language import (
     parse_cmake,
 )
 from grader.ros.installation.file_search import PackageListing
-from grader.ros.installation.installation import Installation
+from grader.ros.installation.installation import FoundPackage, Installation
 from grader.ros.known.cmake_words import cmake_words
 from grader.ros.known.released import is_released
 from grader.ros.known.releases import RELEASES
@@ -343,6 +343,9 @@ class _Evaluation:
             hint = f"; did you mean {meant!r}?"
             self.build.stop(f"there is no package {name!r}", command.at, hint=hint)
             name = meant
+        is_certain = self.values.uncertain is None
+        looked_for = FoundPackage(name, command.at, "REQUIRED" in words, is_certain)
+        self.build.found_packages.append(looked_for)
         self.values.packages.add(name.lower())
         self.values.assign(f"{name}_FOUND", "1")
 

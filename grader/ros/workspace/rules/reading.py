@@ -42,6 +42,7 @@ from grader.ros.workspace.rules.namespaces import namespace_facts
 from grader.ros.workspace.rules.one_machine import machine_facts
 from grader.ros.workspace.rules.parameters import parameter_facts
 from grader.ros.workspace.rules.programs import program_facts
+from grader.ros.workspace.rules.provided_packages import provision_facts
 from grader.ros.workspace.rules.published_transforms import transform_facts
 from grader.ros.workspace.rules.rate_values import rate_facts
 from grader.ros.workspace.rules.received_messages import received_message_facts
@@ -88,6 +89,7 @@ _READERS = (
     received_message_facts,
     gain_facts,
     known_end_facts,
+    provision_facts,
 )
 
 

@@ -28,7 +28,7 @@ Family = Literal[
 ]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 # The families that are added here have only warnings, and no rubric can ask for them.
-AnyFamily = Family | Literal["wiring", "machine", "moveit", "words", "messages", "effects"]
+AnyFamily = Family | Literal["wiring", "machine", "moveit", "words", "messages", "effects", "keys"]
 DefinedKind = Literal[
     "frame",
     "link",
@@ -75,6 +75,11 @@ _MOVES_NOTHING = _warning("REF026", "Controller that moves nothing")
 _NO_SUCH_PARAMETER = _warning("REF027", "Parameter that a well-known node does not have")
 _NO_EFFECT = _warning("REF028", "Parameter that has no effect")
 _UNCONNECTED = _warning("REF029", "Transform between frames that nothing connects")
+_BUILT_LATER = _error("REF040", "Package that a build does not find")
+_NO_PACKAGE = _error("REF041", "Package that does not exist")
+_NOWHERE = _warning("REF042", "Package that neither the workspace nor a release has")
+_NO_KEY = _warning("REF043", "Name that rosdep does not know")
+_UNKNOWN_KEY = Kind("REF044", "Name that may be no key of rosdep", severity="note", effect="other")
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -334,6 +339,24 @@ DEPENDENCY_DECLARED = Rule(
     _NO_DEPENDENCY,
     _SIMILAR,
     "package.xml declares the packages that the files of the package use.",
+)
+BUILD_ORDER = _rules_of("dependencies", _BUILT_LATER)(
+    "build-order",
+    sentence="package.xml declares the packages of the workspace that CMake needs.",
+)
+PACKAGE_EXISTS = Rule(
+    "package-exists",
+    "dependencies",
+    _NO_PACKAGE,
+    _NOWHERE,
+    "The packages that files name exist: in the workspace, or in a release of ROS 2.",
+)
+ROSDEP_KEY = Rule(
+    "rosdep-key",
+    "keys",
+    _NO_KEY,
+    _UNKNOWN_KEY,
+    "rosdep knows the dependencies in package.xml that the workspace does not have.",
 )
 
 _service = _rules_of("services", _NO_SERVICE, _SIMILAR)
