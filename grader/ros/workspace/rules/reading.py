@@ -40,6 +40,7 @@ from grader.ros.workspace.rules.names import (
 )
 from grader.ros.workspace.rules.namespaces import namespace_facts
 from grader.ros.workspace.rules.one_machine import machine_facts
+from grader.ros.workspace.rules.parameter_lists import list_facts
 from grader.ros.workspace.rules.parameters import parameter_facts
 from grader.ros.workspace.rules.programs import program_facts
 from grader.ros.workspace.rules.provided_packages import provision_facts
@@ -90,6 +91,7 @@ _READERS = (
     gain_facts,
     known_end_facts,
     provision_facts,
+    list_facts,
 )
 
 

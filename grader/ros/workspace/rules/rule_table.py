@@ -267,6 +267,10 @@ NAME_RELEASE = Rule(
     _OTHER_RELEASE,
     "Packages, programs, controllers, plugins and topics are of the stated release.",
 )
+PARAMETER_LIST = _parameter(
+    "parameter-list",
+    sentence="A list in a parameter file has values of one type, and a key has a value.",
+)
 
 _argument = _rules_of("arguments", _NO_ARGUMENT, _SIMILAR)
 _LAUNCH_ARGUMENT = _argument(
