@@ -112,6 +112,7 @@ class CmakeTarget(NamedTuple):
     is_installed: bool
     is_certain: bool
     program: str = ""  # the name of its file; empty for a library, or where it is not known
+    is_shared: bool = False  # whether it is a library that programs load when they start
 
 
 class FoundPackage(NamedTuple):
@@ -124,6 +125,22 @@ class FoundPackage(NamedTuple):
     at: Position
     is_required: bool
     is_certain: bool
+
+
+class UnclosedExpression(NamedTuple):
+    """A generator expression of CMake, `$<...>`, that is not closed."""
+
+    command: str
+    target: str
+    text: str  # of the argument
+    at: Position
+
+    @property
+    def message(self) -> str:
+        """What is wrong, as a sentence."""
+        return (
+            f"{self.command}() has a generator expression that is not closed: {self.text} lacks >"
+        )
 
 
 class KnownPrograms(NamedTuple):
@@ -172,6 +189,7 @@ class Installation(NamedTuple):
     targets: tuple[CmakeTarget, ...] = ()  # of CMake
     later_stops: tuple[LaterStop, ...] = ()  # in releases that may not be meant
     found_packages: tuple[FoundPackage, ...] = ()  # of CMake, in their order
+    unclosed: tuple[UnclosedExpression, ...] = ()  # of CMake, which do not stop it
 
     def in_releases(self, releases: Collection[Release]) -> "Installation":
         """Return it as it is built for some releases.

@@ -12,6 +12,7 @@ from grader.base.names import near
 from grader.base.source import Source
 from grader.files.tree import Tree
 from grader.ros.installation.cmake.cmake_build import BUILD_COMMANDS, Build
+from grader.ros.installation.cmake.cmake_tests import check_tests
 from grader.ros.installation.cmake.cmake_values import (
     Text,
     Values,
@@ -59,13 +60,14 @@ def read_cmake(
             source, SyntaxFault(source, str(fault), location_in(source, fault.at), fault.is_certain)
         )
     listing = PackageListing(tree, budget)
-    build = Build(listing, Values(listing.budget), name)
+    build = Build(listing, Values(listing.budget), name, text)
     every_command = [*all_commands(commands)]
     names = {command.name for command in every_command}
     build.may_have_other_targets = not names.isdisjoint(cmake_words().target_makers)
     try:
         with suppress(_Returns):
             _Evaluation(build).run(commands)
+        check_tests(build, commands)
     except OutOfBudget:
         build.give_up("the file is too long to evaluate", START)
     build.note_calls(every_command)
@@ -114,6 +116,7 @@ class _Evaluation:
             self.build.last = command.at
             self._require_provider(command)
             self._note_release(command)
+            self.build.require_closed(command)
             if command.name in _COMMANDS:
                 _COMMANDS[command.name](self, command)
             elif command.name in BUILD_COMMANDS:

@@ -13,6 +13,7 @@ from grader.ros.python.values import Unknown
 
 _OF_FILE = ("PREFIX", "OUTPUT_NAME", "SUFFIX")
 _SCOPES = ("PUBLIC", "PRIVATE", "INTERFACE")
+_SHARED = "SHARED"
 _CPP = (".cpp", ".cc", ".cxx", ".c++", ".c")
 
 
@@ -123,6 +124,7 @@ class CmakeTargets:
                     is_installed=made.is_installed,
                     is_certain=made.is_certain,
                     program=self._program(name, made),
+                    is_shared=_SHARED in made.sources,
                 )
             )
         return tuple(targets)
