@@ -21,6 +21,7 @@ from grader.ros.workspace.rules.footprint_values import footprint_facts
 from grader.ros.workspace.rules.frames import frame_facts
 from grader.ros.workspace.rules.gains import gain_facts
 from grader.ros.workspace.rules.gazebo import gazebo_facts
+from grader.ros.workspace.rules.headers import header_facts
 from grader.ros.workspace.rules.interfaces import interface_facts
 from grader.ros.workspace.rules.known_ends import known_end_facts
 from grader.ros.workspace.rules.known_parameters import known_parameter_facts
@@ -92,6 +93,7 @@ _READERS = (
     known_end_facts,
     provision_facts,
     list_facts,
+    header_facts,
 )
 
 

@@ -28,7 +28,10 @@ Family = Literal[
 ]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 # The families that are added here have only warnings, and no rubric can ask for them.
-AnyFamily = Family | Literal["wiring", "machine", "moveit", "words", "messages", "effects", "keys"]
+AnyFamily = (
+    Family
+    | Literal["wiring", "machine", "moveit", "words", "messages", "effects", "keys", "builds"]
+)
 DefinedKind = Literal[
     "frame",
     "link",
@@ -80,6 +83,7 @@ _NO_PACKAGE = _error("REF041", "Package that does not exist")
 _NOWHERE = _warning("REF042", "Package that neither the workspace nor a release has")
 _NO_KEY = _warning("REF043", "Name that rosdep does not know")
 _UNKNOWN_KEY = Kind("REF044", "Name that may be no key of rosdep", severity="note", effect="other")
+_NOT_COMPILED = _error("REF045", "C++ file that does not compile")
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -554,6 +558,14 @@ GAIN_SET = Rule(
 )
 NAMES_COMPARED = Rule(
     "names-compared", "files", _UNCOMPARED, _UNCOMPARED, "All names of a workspace are compared."
+)
+
+_build = _rules_of("builds", _NOT_COMPILED)
+OWN_HEADER = _build(
+    "own-header", sentence="The headers of a package that a compiled file includes exist."
+)
+HEADER_INSTALLED = _build(
+    "header-installed", sentence="A build installs the headers that other packages include."
 )
 
 # What is wrong where a name of a kind is not defined.

@@ -34,15 +34,15 @@ _CALL = re.compile(
     r"|\$\((?:find-pkg-(?:share|prefix)|exec-in-pkg\s+\S+)\s+(?P<xml>\w+)\s*\)"
 )
 _LONG_TEXT = re.compile(r"\"\"\".*?\"\"\"|\'\'\'.*?\'\'\'", re.DOTALL)
-_CPP = (".cpp", ".cc", ".cxx", ".c++", ".hpp", ".hh", ".hxx", ".h", ".h++")
-_HEADERS = (".hpp", ".hh", ".hxx", ".h", ".h++")
+CPP_FILES = (".cpp", ".cc", ".cxx", ".c++", ".hpp", ".hh", ".hxx", ".h", ".h++")
+HEADERS = (".hpp", ".hh", ".hxx", ".h", ".h++")
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)|\"(?:[^\"\\\n]|\\.)*\"", re.DOTALL)
 _DIRECTIVE = re.compile(
     r"^[ \t]*#[ \t]*(?:(?P<open>if\w*)|(?P<close>endif)|include[ \t]*[<\"](?P<path>[\w./-]+)[>\"])"
     r"(?P<rest>[^\n]*)",
     re.MULTILINE,
 )
-_OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|[._]test\.")
+OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|[._]test\.")
 
 
 class PackageUse(NamedTuple):
@@ -132,8 +132,8 @@ def _asked_for(workspace: Workspace, package: Package) -> Iterator[tuple[str, Lo
     for source in texts.launch_sources(package):
         if source.path in launched:
             yield from calls_in(source)
-    for source in texts.sources_of(package, (".py", *_CPP)):
-        if source.path not in launched and not _OF_TESTS.search(source.path):
+    for source in texts.sources_of(package, (".py", *CPP_FILES)):
+        if source.path not in launched and not OF_TESTS.search(source.path):
             yield from calls_in(source)
 
 
@@ -160,7 +160,7 @@ def _imported(
     for source in workspace.texts.sources_of(package, (".py",)):
         is_launch = is_launch_file(source.path)
         is_part = is_launch or _is_installed(package, source.path)
-        is_part = is_part and not _OF_TESTS.search(source.path)
+        is_part = is_part and not OF_TESTS.search(source.path)
         for match in _IMPORT.finditer(source.text):
             for name, offset in _modules_of(match):
                 is_ros = name in names or name.endswith("_msgs") or name in _OF_ROS
@@ -222,12 +222,15 @@ def _included(
         return
     compiled = {path for target in setup.targets for path in target.sources}
     folders = _folders_of_headers(workspace)
-    for source in workspace.texts.sources_of(package, _CPP):
+    for source in workspace.texts.sources_of(package, CPP_FILES):
         inside = source.path.removeprefix(package.path(""))
-        is_header = inside.endswith(_HEADERS) and not _OF_TESTS.search(inside)
+        is_header = inside.endswith(HEADERS) and not OF_TESTS.search(inside)
         if inside not in compiled and not is_header:
             continue
-        for name, at in _included_packages(source):
+        for header in included_headers(source):
+            name, at = header.path.partition("/")[0], header.location
+            if name == header.path:
+                continue
             owners: Collection[str] = folders.get(name, ())
             is_ros = name in names or _is_code(name)
             if is_ros and name != package.name and {*owners} <= {name}:
@@ -240,14 +243,22 @@ def _folders_of_headers(workspace: Workspace) -> Mapping[str, set[str]]:
     for package in workspace.packages:
         workspace.charge(1 + len(package.tree.files) // FILES_A_PART)
         for path in package.tree.files:
-            if path.endswith(_HEADERS):
+            if path.endswith(HEADERS):
                 for folder in posixpath.dirname(path).split("/"):
                     owners.setdefault(folder, set()).add(package.name)
     return owners
 
 
-def _included_packages(source: Source) -> Iterator[tuple[str, Location]]:
-    """Yield the first folders of the headers that a file includes under no condition.
+class IncludedHeader(NamedTuple):
+    """A header that a C++ file includes, by its path as it is written."""
+
+    path: str
+    location: Location
+    is_quoted: bool
+
+
+def included_headers(source: Source) -> Iterator[IncludedHeader]:
+    """Yield the headers that a file includes under no condition.
 
     The guard of a header is no condition.
     """
@@ -259,8 +270,9 @@ def _included_packages(source: Source) -> Iterator[tuple[str, Location]]:
             depth += 0 if is_guard else 1
         elif directive["close"]:
             depth = max(0, depth - 1)
-        elif depth == 0 and "/" in directive["path"]:
-            yield directive["path"].partition("/")[0], source.at(directive.start("path"))
+        elif depth == 0:
+            at = source.at(directive.start("path"))
+            yield IncludedHeader(directive["path"], at, text[directive.start("path") - 1] == '"')
         is_first = False
 
 
