@@ -112,6 +112,7 @@ class CmakeTarget(NamedTuple):
     is_installed: bool
     is_certain: bool
     program: str = ""  # the name of its file; empty for a library, or where it is not known
+    has_other_sources: bool = False  # that the package does not have: a build may make them
     is_shared: bool = False  # whether it is a library that programs load when they start
 
 

@@ -36,6 +36,7 @@ from grader.ros.nodes.cpp.cpp_files import CompiledTarget, CppFiles
 from grader.ros.nodes.cpp.cpp_frames import frames_in
 from grader.ros.nodes.cpp.cpp_message_content import CppContentReader
 from grader.ros.nodes.cpp.cpp_message_uses import cpp_field_uses
+from grader.ros.nodes.cpp.cpp_programs import program_faults
 from grader.ros.nodes.cpp.rclcpp_calls import (
     ACTIONS,
     DECLARES,
@@ -109,6 +110,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
             programs += target.programs(package)
             doubts |= dict.fromkeys(target.doubts)
             faults |= dict.fromkeys((*target.faults(), *target.unregistered(package)))
+            faults |= dict.fromkeys(program_faults(compiled, starts_nodes=target.makes_nodes))
             loose_frames |= dict.fromkeys(target.loose_frames)
             field_uses |= dict.fromkeys(target.field_uses)
             synchronised |= dict.fromkeys(target.content.synchronised_types())
@@ -577,6 +579,11 @@ class _Target:
         yield from cpp_faults(
             self._unit, self._node_classes, is_program=is_program, is_read=is_read
         )
+
+    @property
+    def makes_nodes(self) -> bool:
+        """Whether functions of the target make nodes."""
+        return bool(self._created)
 
     def unregistered(self, package: Package) -> Iterator[CodeFault]:
         """Yield the components that CMakeLists.txt registers and no source does."""

@@ -78,12 +78,12 @@ _MOVES_NOTHING = _warning("REF026", "Controller that moves nothing")
 _NO_SUCH_PARAMETER = _warning("REF027", "Parameter that a well-known node does not have")
 _NO_EFFECT = _warning("REF028", "Parameter that has no effect")
 _UNCONNECTED = _warning("REF029", "Transform between frames that nothing connects")
-_BUILT_LATER = _error("REF040", "Package that a build does not find")
-_NO_PACKAGE = _error("REF041", "Package that does not exist")
-_NOWHERE = _warning("REF042", "Package that neither the workspace nor a release has")
-_NO_KEY = _warning("REF043", "Name that rosdep does not know")
-_UNKNOWN_KEY = Kind("REF044", "Name that may be no key of rosdep", severity="note", effect="other")
-_NOT_COMPILED = _error("REF045", "C++ file that does not compile")
+_BUILT_LATER = _error("REF030", "Package that a build does not find")
+_NO_PACKAGE = _error("REF031", "Package that does not exist")
+_NOWHERE = _warning("REF032", "Package that neither the workspace nor a release has")
+_NO_KEY = _warning("REF033", "Name that rosdep does not know")
+_UNKNOWN_KEY = Kind("REF034", "Name that may be no key of rosdep", severity="note", effect="other")
+_NOT_COMPILED = _error("REF035", "C++ file that does not compile")
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -423,6 +423,11 @@ BUFFER_LISTENER = _code("buffer-listener", sentence="A buffer of transforms has 
 ROTATION_SET = _code("rotation-set", sentence="A transform that is sent has a rotation.")
 COMPONENT_MACRO = _code(
     "component-macro", sentence="A source file registers the component that CMakeLists.txt names."
+)
+PROGRAM_MAIN = _code("program-main", sentence="The sources of a C++ program have a main().")
+RCLCPP_INIT = _code("rclcpp-init", sentence="A C++ program makes its nodes after rclcpp::init().")
+COMPONENT_CONSTRUCTOR = _code(
+    "component-constructor", sentence="A component has a constructor that takes NodeOptions."
 )
 
 _value = _rules_of("values", _WRONG_VALUE, _OTHER_VALUE)
