@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 from grader.base.source import Location, Source
 from grader.base.text import counted, cut, quoted
+from grader.ros.installation.places import is_of_one_machine
 from grader.ros.known.ros_machine import ros_machine
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
@@ -15,7 +16,10 @@ from grader.ros.workspace.rules.rule_table import (
 
 _HOME = re.compile(r"(?<![\w$}/.:])(?:file://)?(/(?:home|Users)/[\w.-]+/[^\s\"'<>,;:)}\]]*)")
 _PLACEHOLDERS = re.compile(r"^/(?:home|Users)/(?:user|username|you|your[\w-]*|<.*)/")
-_TEXTS = (".yaml", ".yml", ".urdf", ".xacro", ".sdf", ".world", ".py", ".cpp", ".hpp")
+_TEXTS = (
+    *(".yaml", ".yml", ".urdf", ".xacro", ".sdf", ".world", ".py", ".cpp", ".hpp"),
+    ".launch.xml",
+)
 _ENVIRONMENT = re.compile(
     r"\bos\.environ\[\s*[\"'](?P<python>\w+)[\"']\s*\](?!\s*=[^=])"
     r"|\bEnvironmentVariable\(\s*(?:name\s*=\s*)?[\"'](?P<launch>\w+)[\"']\s*,?\s*\)"
@@ -29,12 +33,15 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
 
     A path in somebody's home folder is yielded once a file.
 
-    Paths in launch files are problems of these files.
+    Paths of files that a launch file reads are problems of this file.
     """
-    launch_files = {package.path(path) for package, path, _ in workspace.launches.files}
+    said = set()
+    for package, path, launch in workspace.launches.files:
+        if any(is_of_one_machine(reference.path or "") for reference in launch.references):
+            said.add(package.path(path))
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, _TEXTS):
-            if source.path not in launch_files:
+            if source.path not in said:
                 yield Compared("machine")
                 yield from _home_paths(source)
     yield from _variables(workspace)
