@@ -27,6 +27,7 @@ from grader.ros.workspace.rules.known_ends import known_end_facts
 from grader.ros.workspace.rules.known_parameters import known_parameter_facts
 from grader.ros.workspace.rules.limit_values import limit_facts
 from grader.ros.workspace.rules.looked_up_transforms import lookup_facts
+from grader.ros.workspace.rules.mass_values import mass_facts
 from grader.ros.workspace.rules.meeting_ends import meeting_facts
 from grader.ros.workspace.rules.missing_ends import missing_end_facts
 from grader.ros.workspace.rules.moveit import moveit_facts
@@ -94,6 +95,7 @@ _READERS = (
     provision_facts,
     list_facts,
     header_facts,
+    mass_facts,
 )
 
 

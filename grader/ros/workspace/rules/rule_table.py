@@ -467,6 +467,12 @@ ROBOT_STANDS = _other_value(
     "robot-stands",
     sentence="A robot stands level on its wheels, and they drive it straight ahead.",
 )
+CENTRE_OF_MASS = _other_value(
+    "centre-of-mass", sentence="The centre of mass of a link is within its shapes."
+)
+INERTIA_AXIS = _other_value(
+    "inertia-axis", sentence="The inertia of a cylinder is that about its own axis."
+)
 MESH_UNIT = _other_value("mesh-unit", sentence="Meshes are in metres.")
 
 _transform = _rules_of("transforms", _WRONG_TRANSFORM, _OTHER_TRANSFORM)
