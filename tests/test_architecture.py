@@ -158,17 +158,17 @@ WEIGHTS = {
     "ros": 300,
     "ros.config": 5_750,  # numbers of parameters in quotes
     "ros.cpp": 12_300,
-    "ros.installation": 31_200,  # names of program files, targets of tests and of other projects; what stops a build from a release on; functions for what was branches of long ones
+    "ros.installation": 32_200,  # the packages that CMake finds, tests, expressions that are not closed; names of program files, targets of tests and of other projects; what stops a build from a release on; functions for what was branches of long ones
     "ros.interfaces": 4_400,  # since and until when there is a type; functions for the checks of one default
-    "ros.known": 8_900,  # the packages that are released; when each table was read, and the last release that was read for it
+    "ros.known": 8_950,  # the keys of rosdep; the packages that are released; when each table was read, and the last release that was read for it
     "ros.launch": 45_100,  # what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing
     "ros.mesh": 4_300,
-    "ros.nodes": 47_700,  # calls are bound as Python binds them
+    "ros.nodes": 49_050,  # what keeps a C++ program from linking or starting; calls are bound as Python binds them
     "ros.package": 26_950,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
     "ros.python": 28_950,  # the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_650,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
-    "ros.workspace": 112_900,  # dependencies as the build and rosdep see them; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches
+    "ros.workspace": 115_700,  # dependencies as the build and rosdep see them, headers, lists that rcl refuses, masses; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches
     "ros.xacro": 28_600,  # xacro:attribute, letters outside of ASCII; functions that do one thing
     "ros.xml": 13_400,  # the attributes of broken tags, end tags of macros, the attributes of newer versions of URDF
     "": 400,

@@ -76,10 +76,13 @@ class Build:
                 self.last,
             )
         self._name_programs()
-        for unclosed in self._unclosed:
-            if unclosed.target in self._exported and unclosed.command == _INCLUDED:
-                reason = f"{unclosed.message}, so CMake cannot export {unclosed.target!r}"
-                self.stops.append(InstallError("", reason, unclosed.at))
+        unclosed: list[UnclosedExpression] = []
+        for expression in self._unclosed:
+            if expression.target in self._exported and expression.command == _INCLUDED:
+                reason = f"{expression.message}, so CMake cannot export {expression.target!r}"
+                self.stops.append(InstallError("", reason, expression.at))
+            else:
+                unclosed.append(expression)
         project = self.values.variables.get("PROJECT_NAME")
         first_stops = {stop.reason: stop for stop in reversed(self.later_stops)}
         return Installation(
@@ -98,9 +101,7 @@ class Build:
             packages=tuple(self.modules),
             interfaces=tuple(self.interfaces),
             found_packages=tuple(self.found_packages),
-            unclosed=tuple(
-                unclosed for unclosed in self._unclosed if unclosed.target not in self._exported
-            ),
+            unclosed=tuple(unclosed),
             targets=self.made.all(
                 {
                     written_path: self._source(written_path)

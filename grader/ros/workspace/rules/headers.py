@@ -160,9 +160,12 @@ def _with_guess(
 
 
 def _names_in(headers: _Headers, package: Package) -> list[str]:
-    return [
-        name for name, owners in headers.items() if any(each.package is package for each in owners)
-    ]
+    """Return the names of the headers that a package has."""
+    names = []
+    for name, having in headers.items():
+        if any(header.package is package for header in having):
+            names.append(name)
+    return names
 
 
 def _not_installed(package: Package, owned: _Header, header: IncludedHeader) -> Iterator[Mismatch]:
