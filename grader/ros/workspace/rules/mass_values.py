@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from math import dist, hypot
 
 from grader.base.quantities import in_millimetres, point
-from grader.base.source import Location, place
+from grader.base.source import place
 from grader.base.text import quoted
 from grader.base.transforms import Vector
 from grader.ros.urdf.mass_properties import Tensor, solid_inertia, turned, with_volume
@@ -26,7 +26,7 @@ def mass_facts(workspace: Workspace) -> Iterator[Fact]:
 
     A link with a mesh is not compared: only its file says what it is.
     """
-    said: set[tuple[Rule, Location]] = set()  # of a macro, the first link
+    said: set[tuple[Rule, str, int]] = set()  # of a macro, the first link
     for robot in workspace.robots.known:
         for link in robot.robot.links:
             workspace.charge(_OF_LINK)
@@ -34,8 +34,9 @@ def mass_facts(workspace: Workspace) -> Iterator[Fact]:
             if inertial is None or inertial.mass <= 0.0 or inertial.location is None:
                 continue
             for wrong in (*_centre_outside(link, inertial), *_other_axis(link, inertial)):
-                if (wrong.rule, wrong.location) not in said:
-                    said.add((wrong.rule, wrong.location))
+                key = (wrong.rule, wrong.location.path, wrong.location.line)
+                if key not in said:
+                    said.add(key)
                     yield wrong
 
 

@@ -11,7 +11,7 @@ from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.installation.places import is_launch_file
 from grader.ros.known.package_rows import controller_row, is_known_controller
-from grader.ros.known.released import is_released, packages_brought_by
+from grader.ros.known.released import is_released
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
 from grader.ros.workspace.model.text_files import FILES_A_PART
@@ -33,6 +33,8 @@ _CALL = re.compile(
     r"\s*(?:package(?:_name)?\s*=\s*)?[\"'](?P<call>\w+)[\"']"
     r"|\$\((?:find-pkg-(?:share|prefix)|exec-in-pkg\s+\S+)\s+(?P<xml>\w+)\s*\)"
 )
+# Metapackages whose name folders of headers and modules of other packages have.
+_OF_SEVERAL = ("moveit",)
 _LONG_TEXT = re.compile(r"\"\"\".*?\"\"\"|\'\'\'.*?\'\'\'", re.DOTALL)
 CPP_FILES = (".cpp", ".cc", ".cxx", ".c++", ".hpp", ".hh", ".hxx", ".h", ".h++")
 HEADERS = (".hpp", ".hh", ".hxx", ".h", ".h++")
@@ -171,11 +173,8 @@ def _imported(
 
 
 def _is_code(name: str) -> bool:
-    """Return whether a module or a folder of headers may be that of a released package.
-
-    A metapackage has none: the headers in moveit/ are those of several packages.
-    """
-    return is_released(name) and not packages_brought_by(name)
+    """Return whether a module or a folder of headers may be that of a released package."""
+    return is_released(name) and name not in _OF_SEVERAL
 
 
 def _modules_of(match: re.Match[str]) -> Iterator[tuple[str, int]]:
