@@ -84,16 +84,31 @@ def _wrong_key(workspace: Workspace, name: str, at: Location) -> Mismatch | None
     if name in words.elsewhere:
         message = f"{no_key}: delete the line; {words.elsewhere[name]}"
         return Mismatch(ROSDEP_KEY, message, at, word=name)
-    meant = words.instead.get(name) or _near_key(workspace, name)
+    own_names = [package.name for package in workspace.packages]
+    workspace.charge(cost_of_guess(len(own_names)))
+    meant = words.instead.get(name) or near(name, own_names) or _near_key(workspace, name)
     if meant is not None:
         message = f"{no_key}, so rosdep install stops; did you mean {quoted(meant)}?"
         either = corrections(name, at, meant)
         return Mismatch(ROSDEP_KEY, message, at, corrections=either, word=name)
+    if _is_of_family(name, own_names):
+        return None
     message = (
         f"{no_key}, and neither the workspace nor a release of ROS 2 ({released_date()}) has such "
         "a package: rosdep install stops, unless it is told to skip the name"
     )
     return Mismatch(ROSDEP_KEY, message, at, is_certain=False, word=name)
+
+
+def _is_of_family(name: str, others: Sequence[str]) -> bool:
+    """Return whether a name begins as that of a package of the workspace: arm_msgs and arm_driver.
+
+    Such a package is one of the same project, of which only a part is inspected.
+    """
+    first = name.partition("_")[0]
+    if first in _OF_TEMPLATES:
+        first = name.rpartition("_")[0]
+    return any(other == first or other.startswith(f"{first}_") for other in others)
 
 
 def _of_other_release(workspace: Workspace, name: str, at: Location) -> Mismatch | None:
@@ -218,7 +233,11 @@ def _absent(workspace: Workspace, named: _NamedPackage) -> Iterator[Mismatch]:
         f"neither the workspace nor a release of ROS 2 ({released_date()}) has the package "
         f"{quoted(name)}, and no package.xml declares it"
     )
-    yield Mismatch(PACKAGE_EXISTS, message, at, is_certain=False, word=name)
+    released = _near_key(workspace, name)
+    if released is not None:
+        message += f"; did you mean {quoted(released)}?"
+    either = corrections(name, at, released)
+    yield Mismatch(PACKAGE_EXISTS, message, at, None, False, either, word=name)
 
 
 def _package_meant(name: str, names: Sequence[str]) -> str | None:
