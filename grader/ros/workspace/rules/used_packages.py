@@ -28,6 +28,7 @@ _OF_LAUNCH_FILES = (
     *("launch", "launch_ros", "launch_xml", "launch_yaml", "launch_testing"),
     *("launch_testing_ros", "ament_index_python"),
 )
+_CALL_WORDS = ("FindPackage", "get_package_", "$(find-pkg-", "$(exec-in-pkg")  # of each call
 _CALL = re.compile(
     r"\b(?:FindPackageShare|FindPackagePrefix|get_package_(?:share_(?:directory|path)|prefix))\("
     r"\s*(?:package(?:_name)?\s*=\s*)?[\"'](?P<call>\w+)[\"']"
@@ -44,6 +45,7 @@ _DIRECTIVE = re.compile(
     r"(?P<rest>[^\n]*)",
     re.MULTILINE,
 )
+_MAX_DIRECTIVE = 500  # characters of an #include, behind which none is searched
 OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|[._]test\.")
 
 
@@ -142,6 +144,8 @@ def _asked_for(workspace: Workspace, package: Package) -> Iterator[tuple[str, Lo
 def calls_in(source: Source) -> Iterator[tuple[str, Location]]:
     """Yield the packages for whose folder a text asks; a docstring of Python asks for none."""
     text = source.text
+    if not any(word in text for word in _CALL_WORDS):
+        return
     if source.path.endswith(".py"):
         text = _LONG_TEXT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
     for match in _CALL.finditer(text):
@@ -159,9 +163,13 @@ def _imported(
     modules = set()  # of the package, as far as their names say
     for path in package.tree.files:
         modules |= {part.removesuffix(".py") for part in path.split("/")}
+    setup, installed = package.installation, {*package.installed.values()}
+    python_packages = setup.packages if setup is not None else ()
+    own_folders = {name.partition(".")[0] for name in python_packages}
     for source in workspace.texts.sources_of(package, (".py",)):
         is_launch = is_launch_file(source.path)
-        is_part = is_launch or _is_installed(package, source.path)
+        inside = source.path.removeprefix(package.path(""))
+        is_part = is_launch or inside in installed or inside.partition("/")[0] in own_folders
         is_part = is_part and not OF_TESTS.search(source.path)
         for match in _IMPORT.finditer(source.text):
             for name, offset in _modules_of(match):
@@ -188,15 +196,6 @@ def _modules_of(match: re.Match[str]) -> Iterator[tuple[str, int]]:
         if name is not None:
             yield name[1], offset + name.start(1)
         offset += len(part) + 1
-
-
-def _is_installed(package: Package, path: str) -> bool:
-    """Return whether a build installs a Python file, as it is or in a Python package."""
-    inside = path.removeprefix(package.path(""))
-    setup = package.installation
-    if setup is None or inside in package.installed.values():
-        return setup is not None
-    return inside.partition("/")[0] in {name.partition(".")[0] for name in setup.packages}
 
 
 def _controller_packages(section: YamlNode) -> Iterator[tuple[str, Location]]:
@@ -261,7 +260,9 @@ def included_headers(source: Source) -> Iterator[IncludedHeader]:
 
     The guard of a header is no condition.
     """
-    text = _COMMENT.sub(_without_comment, source.text)
+    text = source.text[: source.text.rfind("include") + _MAX_DIRECTIVE]
+    if "/*" in text:
+        text = _COMMENT.sub(_without_comment, text)
     depth, is_first = 0, True
     for directive in _DIRECTIVE.finditer(text):
         if directive["open"]:
