@@ -137,8 +137,8 @@ def test_a_header_of_a_package_that_a_target_does_not_name(more: str, is_said: b
         "find_package(rclcpp REQUIRED)\nfind_package(sensor_msgs REQUIRED)\n"
         f"add_library(other src/other.cpp)\n{_BUILT}ament_target_dependencies(talk rclcpp)\n{more}"
     )
-    found = problems(commands, talk=_IMU, other="int other;")
-    assert [code for code, _ in found] == (["PKG021"] if is_said else [])
+    reported = problems(commands, talk=_IMU, other="int other;")
+    assert [code for code, _ in reported] == (["PKG021"] if is_said else [])
 
 
 def test_a_library_that_a_program_loads() -> None:
@@ -158,8 +158,8 @@ def test_a_generator_expression_without_end(end: str) -> None:
     """CMake takes it for text; the `>` may be in a later argument."""
     target = "add_library(parts src/parts.cpp)\n"
     option = f"{target}target_compile_options(parts PRIVATE $<$<CONFIG:Debug>:-g -O0{end})\n"
-    [*found] = problems(option, parts="int part;")
-    assert [code for code, _ in found] == ([] if end else ["PKG024"])
+    [*reported] = problems(option, parts="int part;")
+    assert [code for code, _ in reported] == ([] if end else ["PKG024"])
     assert (
         problems(f"{target}if(UNSEEN)\ntarget_compile_options(parts PRIVATE $<a)\nendif()\n") == []
     )
