@@ -59,6 +59,7 @@ KEYS = {
 }
 LANGUAGES = {
     ".cpp": "cpp",
+    ".hpp": "cpp",
     ".launch": "xml",
     ".msg": "text",
     ".obj": "text",

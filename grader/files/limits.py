@@ -38,7 +38,7 @@ MAX_RATIO = 200  # of the content of an archive to its own size
 SETUP_ASSISTANT = ".setup_assistant"  # where a MoveIt configuration says which robot it is for
 # Hidden files that say how a folder, or the only one in it, is built: workflows and containers.
 _SETTING = re.compile(
-    r"(?:[^/]+/)?(?:\.gitlab-ci\.yml|\.env|\.github/workflows/[^/]+\.ya?ml"
+    r"(?:[^/]+/)?(?:\.gitlab-ci\.yml|\.env|\.gitmodules|\.github/workflows/[^/]+\.ya?ml"
     r"|\.(?:devcontainer|docker)/(?:[^/]+/)?[^/]+)"
 )
 _OF_SETTINGS = re.compile(

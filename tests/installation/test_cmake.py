@@ -273,3 +273,58 @@ def test_a_long_text_takes_little_time() -> None:
             doubled,
         ):
             read(text)
+
+
+_FIND = "find_package(ament_cmake_gtest REQUIRED)\n"
+_NO_FILE = (
+    "ament_add_gtest() lists 'src/nod.cpp', but there is no such file; did you mean 'src/node.cpp'?"
+)
+_NO_COMMAND = "CMake knows no command ament_add_gtest(), because nothing finds the package ament_cmake_gtest; write find_package(ament_cmake_gtest REQUIRED)"
+
+
+@pytest.mark.parametrize(
+    ("before", "tests", "said"),
+    [
+        ("", f"{_FIND}ament_add_gtest(t src/node.cpp TIMEOUT 60)", []),
+        ("", f"{_FIND}ament_add_gtest(t src/nod.cpp)", [_NO_FILE]),
+        ("", "ament_add_gtest(t src/node.cpp)", [_NO_COMMAND]),
+        ("find_package(unseen REQUIRED)\n", "ament_add_gtest(t src/node.cpp)", []),
+        (_FIND, "ament_add_gmock_executable(t src/node.cpp)", []),
+        ("", "find_package(ament_cmake_ros REQUIRED)\nament_add_gtest(t src/node.cpp)", []),
+        ("", f"{_FIND}set(name nod)\nament_add_gtest(t src/${{name}}.cpp $<x> ${{other}}.cpp)", []),
+        ("set(name nod)\n", f"{_FIND}ament_add_gtest(t src/${{name}}.cpp)", [_NO_FILE]),
+        ("set(BUILD_TESTING OFF)\n", "ament_add_gtest(t src/nod.cpp)", []),
+        ("pkg_check_modules(unseen)\n", "ament_add_gtest(t src/node.cpp)", []),
+    ],
+)
+def test_a_build_has_tests(before: str, tests: str, said: list[str]) -> None:
+    """Their sources have to be there, and a package that has their command has to be found."""
+    setup = read(f"{before}if(BUILD_TESTING)\n{tests}\nendif()")
+    assert [stop.message + stop.hint for stop in setup.stops] == said
+
+
+def test_a_test_outside_of_a_condition() -> None:
+    """Its sources have to be there, too."""
+    setup = read(
+        f"{_FIND}ament_add_gtest(t src/nod.cpp SKIP_TEST)\nadd_custom_target(words src/nod.cpp)"
+    )
+    assert [stop.message + stop.hint for stop in setup.stops] == [_NO_FILE]
+
+
+@pytest.mark.parametrize("export", ["", "EXPORT parts "])
+def test_a_generator_expression_of_an_exported_target(export: str) -> None:
+    """CMake 3.25 (run) stops, because the exported folder is in the sources; else it takes it for text."""
+    folder = "$<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/include"
+    setup = read(
+        "add_library(parts src/node.cpp)\n"
+        f"target_include_directories(parts PUBLIC {folder} $<INSTALL_INTERFACE:include>)\n"
+        f"install(TARGETS parts {export}DESTINATION lib)"
+    )
+    message = f"target_include_directories() has a generator expression that is not closed: {folder} lacks >"
+    if export:
+        assert [stop.message for stop in setup.stops] == [
+            f"{message}, so CMake cannot export 'parts'"
+        ]
+    else:
+        assert setup.stops == ()
+    assert [unclosed.message for unclosed in setup.unclosed] == ([] if export else [message])

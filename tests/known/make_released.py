@@ -1,7 +1,7 @@
 """Write the packages that are released for ROS 2: `python -m tests.known.make_released CHECKOUT`.
 
 The argument is a clone of ros/rosdistro, of which the newest commit is read with git. The names stand by repository and by the
-releases that have them, in `grader/ros/known/rosdistro.json.xz`.
+releases that have them, in `grader/ros/known/rosdistro.json.xz`, and beside them the keys of rosdep.
 """
 
 import json
@@ -52,6 +52,7 @@ _WITH_CODE = frozenset(
         ),
     }
 )
+_ROSDEP_FILES = ("base", "python", "ruby")  # rosdep/sources.list.d/20-default.list names them
 _MIN_OTHERS, _MIN_NAMED = 3, 4  # of the repository, and of those that are called after a package
 
 
@@ -67,6 +68,14 @@ def released_names(distribution: str) -> Iterator[tuple[str, str]]:
         if "version" in release:
             for package in release.get("packages") or [repository]:
                 yield repository, package
+
+
+def rosdep_keys(checkout: str) -> list[str]:
+    """Return the keys of rosdep that are no packages of ROS: what rosdep installs with apt or pip."""
+    keys: set[str] = set()
+    for name in _ROSDEP_FILES:
+        keys |= yaml.load(_git(checkout, "show", f"HEAD:rosdep/{name}.yaml"), _LOADER).keys()
+    return sorted(keys)
 
 
 def make_released(checkout: str) -> bytes:
@@ -97,6 +106,7 @@ def make_released(checkout: str) -> bytes:
         "commit": _git(checkout, "rev-parse", "HEAD").strip(),
         "date": _git(checkout, "log", "-1", "--format=%cs").strip(),
         "metapackages": " ".join(sorted(metapackages)),
+        "rosdep": " ".join(rosdep_keys(checkout)),
         "repositories": {
             repository: {
                 words: " ".join(names) for words, names in sorted(groups[repository].items())

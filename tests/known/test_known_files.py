@@ -15,6 +15,7 @@ from grader.ros.known.package_tables import INTERFACE_KINDS, TABLES
 from grader.ros.known.parameter_rows import NodeTable, is_name_of_node, read_rows
 from grader.ros.known.releases import RELEASES
 from grader.ros.known.ros_machine import RosMachine, ros_machine
+from grader.ros.known.rosdep_words import RosdepWords, rosdep_words
 from grader.ros.known.shared_names import SharedNames, shared_names
 from grader.ros.known.typed_rows import read_row, read_typed
 
@@ -24,6 +25,7 @@ _OTHERS: Mapping[str, tuple[Callable[..., Any], Callable[[], Any]]] = {
     "cmake": (CMakeWords, cmake_words),
     "gazebo": (Gazebo, gazebo),
     "machine": (RosMachine, ros_machine),
+    "rosdep": (RosdepWords, rosdep_words),
     "shared_names": (SharedNames, shared_names),
 }
 

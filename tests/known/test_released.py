@@ -12,7 +12,10 @@ from grader.ros.known.released import (
     is_released,
     packages_brought_by,
     released_date,
+    released_packages,
+    rosdep_keys,
 )
+from grader.ros.known.rosdep_words import rosdep_words
 from tests.known.make_released import make_released
 
 _DISTRIBUTION = """
@@ -34,7 +37,7 @@ def test_the_file_says_what_it_is_of() -> None:
     licence = RELEASED_FILE.with_name("rosdistro_license.txt").read_text(encoding="utf-8")
     assert "Copyright (c) Open Source Robotics Foundation, Inc." in licence
     assert "rosdistro_license.txt" in data["notice"]
-    assert RELEASED_FILE.stat().st_size < 30_000
+    assert RELEASED_FILE.stat().st_size < 40_000
 
 
 def test_packages_and_their_releases() -> None:
@@ -53,6 +56,13 @@ def test_what_a_metapackage_brings() -> None:
     assert packages_brought_by("no_such_package") == frozenset()
 
 
+def test_keys_of_rosdep() -> None:
+    """What people write instead is no key, and what is written instead of it is one, or a package."""
+    known = {*rosdep_keys(), *released_packages()}
+    assert known.isdisjoint({*rosdep_words().instead, *rosdep_words().elsewhere})
+    assert known.issuperset(rosdep_words().instead.values())
+
+
 def _git(folder: Path, *arguments: str) -> None:
     identity = ("-c", "user.name=Kim", "-c", "user.email=kim@example.org")
     subprocess.run(["git", *identity, *arguments], cwd=folder, check=True, capture_output=True)
@@ -65,11 +75,15 @@ def test_the_script_reads_what_has_a_version(tmp_path: Path) -> None:
         (tmp_path / release).mkdir()
         text = _DISTRIBUTION if release != "foxy" else "repositories: {}\n"
         (tmp_path / release / "distribution.yaml").write_text(text, encoding="utf-8")
+    (tmp_path / "rosdep").mkdir()
+    for name, text in (("base", "eigen: {}"), ("python", "python3-numpy: {}"), ("ruby", "{}")):
+        (tmp_path / f"rosdep/{name}.yaml").write_text(text, encoding="utf-8")
     _git(tmp_path, "init", "-q")
     _git(tmp_path, "add", ".")
     _git(tmp_path, "commit", "-q", "-m", "All")
     data = json.loads(lzma.decompress(make_released(str(tmp_path))))
     assert data["metapackages"] == "arms"
+    assert data["rosdep"] == "eigen python3-numpy"
     since = "galactic humble iron jazzy kilted lyrical rolling"
     assert data["repositories"] == {
         "arms": {since: "arms arms_core arms_msgs arms_tools"},

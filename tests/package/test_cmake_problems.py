@@ -26,7 +26,7 @@ def problems(commands: str, **sources: str) -> list[tuple[str, str]]:
     files = {f"ws/hub/{path}": text.encode() for path, text in texts.items()}
     [package] = read_packages(overlaid(make_tree("work", (), ()), files), "urdf/hub.urdf")
     found = [(it.code, it.message) for it in build_problems(package)]
-    return [each for each in found if each[0] in ("PKG019", "PKG020", "PKG021")]
+    return [each for each in found if each[0] in ("PKG019", "PKG020", "PKG021", "PKG024")]
 
 
 def test_a_source_without_target() -> None:
@@ -107,3 +107,59 @@ DEPENDING = [
 def test_dependencies_that_are_not_known(commands: str) -> None:
     """What else is linked may bring the headers; without ament_target_dependencies() nothing is said."""
     assert problems(f"{_FOUND}{_BUILT}{commands}", talk=_INCLUDING) == []
+
+
+_GUESS = "file(GLOB parts /elsewhere/*.cpp)\nadd_library(parts ${parts})\n"
+
+
+def test_a_target_that_is_not_known_silences_no_other_one() -> None:
+    """It may compile any file, so that nothing is said of those that no target names."""
+    missing = "no install() names the target 'talk', so ros2 run does not find it"
+    commands = f"{_GUESS}add_executable(talk src/talk.cpp)\n"
+    assert problems(commands, talk=_NODE, walk=_NODE) == [("PKG020", missing)]
+
+
+_IMU = "#include <rclcpp/rclcpp.hpp>\n#include <sensor_msgs/msg/imu.hpp>\nint main() {}\n"
+
+
+@pytest.mark.parametrize(
+    ("more", "is_said"),
+    [
+        ("target_link_libraries(other m)\n", True),
+        ("link_libraries(${sensor_msgs_TARGETS})\n", False),
+        ("target_link_libraries(talk ${sensor_msgs_TARGETS})\n", False),
+        ("include_directories(${sensor_msgs_INCLUDE_DIRS})\n", False),
+    ],
+)
+def test_a_header_of_a_package_that_a_target_does_not_name(more: str, is_said: bool) -> None:
+    """Another target's libraries are no way to find it, those of all targets are."""
+    commands = (
+        "find_package(rclcpp REQUIRED)\nfind_package(sensor_msgs REQUIRED)\n"
+        f"add_library(other src/other.cpp)\n{_BUILT}ament_target_dependencies(talk rclcpp)\n{more}"
+    )
+    reported = problems(commands, talk=_IMU, other="int other;")
+    assert [code for code, _ in reported] == (["PKG021"] if is_said else [])
+
+
+def test_a_library_that_a_program_loads() -> None:
+    """It has to be installed, unless it is linked into the program."""
+    commands = "target_link_libraries(talk parts)\n"
+    sources = {"talk": "int main() {}", "parts": "int part;"}
+    shared = f"{_BUILT}add_library(parts SHARED src/parts.cpp)\n{commands}"
+    message = "no install() names the target 'parts', so 'talk', which links it, does not find the library when it starts"
+    assert problems(shared, **sources) == [("PKG020", message)]
+    assert problems(shared.replace("SHARED ", ""), **sources) == []
+    assert problems(shared.replace(commands, ""), **sources) == []
+    assert problems(f"{shared}install(TARGETS parts DESTINATION lib)\n", **sources) == []
+
+
+@pytest.mark.parametrize("end", ["", ">"])
+def test_a_generator_expression_without_end(end: str) -> None:
+    """CMake takes it for text; the `>` may be in a later argument."""
+    target = "add_library(parts src/parts.cpp)\n"
+    option = f"{target}target_compile_options(parts PRIVATE $<$<CONFIG:Debug>:-g -O0{end})\n"
+    [*reported] = problems(option, parts="int part;")
+    assert [code for code, _ in reported] == ([] if end else ["PKG024"])
+    assert (
+        problems(f"{target}if(UNSEEN)\ntarget_compile_options(parts PRIVATE $<a)\nendif()\n") == []
+    )

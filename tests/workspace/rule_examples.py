@@ -72,7 +72,7 @@ def files_of_example(example: Mapping[str, Any], side: str) -> ExampleFiles:
         nodes = "\n".join(f"Node(package='rover', executable='{each}')," for each in programs)
         files["launch/rover.launch.py"] = _framed("rover.launch.py", nodes)[0]
     if "CMakeLists.txt" in files:
-        return ExampleFiles(files, path, lines)
+        return _in_workspace(ExampleFiles(files, path, lines))
     folders = {each.partition("/")[0] for each in files}
     around = {
         "package.xml": _MANIFEST,
@@ -82,7 +82,17 @@ def files_of_example(example: Mapping[str, Any], side: str) -> ExampleFiles:
         "rover/__init__.py": "",
         "rviz/rover.rviz": "Visualization Manager:\n  Displays: []\n",
     }
-    return ExampleFiles({**around, **files}, path, lines)
+    return _in_workspace(ExampleFiles({**around, **files}, path, lines))
+
+
+def _in_workspace(example: ExampleFiles) -> ExampleFiles:
+    """Return an example as a workspace, if it has files of another package: ../arm/package.xml."""
+    if not any(path.startswith("../") for path in example.files):
+        return example
+    files = {}
+    for path, text in example.files.items():
+        files[path.removeprefix("../") if path.startswith("../") else f"rover/{path}"] = text
+    return example._replace(files=files, path=f"rover/{example.path}")
 
 
 def _framed(frame: str, text: str) -> tuple[str, range]:
@@ -98,6 +108,8 @@ def _framed(frame: str, text: str) -> tuple[str, range]:
 def _path_of(frame: str) -> str:
     """Return the path in the package of the file of a frame."""
     place = PurePosixPath(frame)
+    if frame.startswith("../"):
+        return frame
     if place.name in _OF_ROOT or frame.startswith("./"):
         return place.name
     if place.parent.name in _KEPT:

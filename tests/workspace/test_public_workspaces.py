@@ -4,6 +4,7 @@ import re
 import tomllib
 from collections import Counter
 
+from grader.ros.workspace.rules.rule_table import RULES
 from tests.command_line import ROOT
 
 _TABLE = ROOT / "tests/workspace/public_workspaces.toml"
@@ -22,3 +23,17 @@ def test_the_errors_of_public_workspaces_are_true() -> None:
             verdicts[error["is_true"]] += len(error["places"])
     assert len({workspace["repository"] for workspace in workspaces}) == len(workspaces) >= 40
     assert verdicts[True] >= _LEAST * verdicts.total()
+
+
+_RULES = ROOT / "tests/workspace/public_rules.toml"
+_LEAST_OF_RULE = 0.9  # of the findings of a rule are true
+
+
+def test_the_findings_of_a_rule_are_true() -> None:
+    """Each rule of which the findings in public workspaces were counted is true in nearly all of them."""
+    table = tomllib.loads(_RULES.read_text(encoding="utf-8"))
+    names = [rule["name"] for rule in table["rule"]]
+    assert len({*names}) == len(names)
+    assert {*names} <= RULES.keys()
+    for rule in table["rule"]:
+        assert rule["true"] >= _LEAST_OF_RULE * (rule["true"] + rule["false"]), rule

@@ -112,6 +112,36 @@ class CmakeTarget(NamedTuple):
     is_installed: bool
     is_certain: bool
     program: str = ""  # the name of its file; empty for a library, or where it is not known
+    has_other_sources: bool = False  # that the package does not have: a build may make them
+    is_shared: bool = False  # whether it is a library that programs load when they start
+
+
+class FoundPackage(NamedTuple):
+    """A package that find_package() of CMake looks for.
+
+    Where it is not certain that it is called, as under a condition, `is_certain` is False.
+    """
+
+    name: str
+    at: Position
+    is_required: bool
+    is_certain: bool
+
+
+class UnclosedExpression(NamedTuple):
+    """A generator expression of CMake, `$<...>`, that is not closed."""
+
+    command: str
+    target: str
+    text: str  # of the argument
+    at: Position
+
+    @property
+    def message(self) -> str:
+        """What is wrong, as a sentence."""
+        return (
+            f"{self.command}() has a generator expression that is not closed: {self.text} lacks >"
+        )
 
 
 class KnownPrograms(NamedTuple):
@@ -159,6 +189,8 @@ class Installation(NamedTuple):
     interfaces: tuple[GeneratedInterfaces, ...] = ()  # one for each call in CMakeLists.txt
     targets: tuple[CmakeTarget, ...] = ()  # of CMake
     later_stops: tuple[LaterStop, ...] = ()  # in releases that may not be meant
+    found_packages: tuple[FoundPackage, ...] = ()  # of CMake, in their order
+    unclosed: tuple[UnclosedExpression, ...] = ()  # of CMake, which do not stop it
 
     def in_releases(self, releases: Collection[Release]) -> "Installation":
         """Return it as it is built for some releases.

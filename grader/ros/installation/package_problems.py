@@ -36,6 +36,7 @@ NOT_INSTALLED = _kind("PKG020", "warning", "Target of CMakeLists.txt that is not
 NOT_LINKED = _kind("PKG021", "warning", "Package that a target includes and does not depend on")
 NO_LAUNCH_FILES = _kind("PKG022", "warning", "Launch files that no build installs")
 OLDER_ONLY = _kind("PKG023", "note", "Something in CMakeLists.txt that stops newer releases")
+UNCLOSED = _kind("PKG024", "warning", "Generator expression of CMake that is not closed")
 PACKAGE_TWICE = _kind("PKG025", "error", "Package that a workspace has twice")
 LAUNCH_SYNTAX = _kind("LCH001", "error", "Unreadable launch file")
 LAUNCH_FAULT = _kind("LCH002", "error", "Error that stops a launch file")

@@ -28,6 +28,8 @@ class CMakeWords(NamedTuple):
     python_keywords: frozenset[str]
     auto_keywords: frozenset[str]
     target_keywords: frozenset[str]
+    test_keywords: frozenset[str]  # behind the sources of a test
+    without_tests: frozenset[str]  # packages without commands for tests, besides `exports`
     source_endings: tuple[str, ...]  # that a source may lack
     foreign: frozenset[str]  # how variables of CMake begin
     modules: frozenset[str]  # that only define commands

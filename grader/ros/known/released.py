@@ -1,8 +1,7 @@
-"""The packages that are released for ROS 2, by repository: the file rosdistro.json.xz.
+"""The packages that are released for ROS 2, and the keys of rosdep: the file rosdistro.json.xz.
 
 The file is made of ros/rosdistro by `python -m tests.known.make_released CHECKOUT`, and read when a
-name is looked up first. rosdistro_license.txt is the licence of what is in it. Further names of
-rosdistro (the keys of rosdep) are further keys of the file.
+name is looked up first. rosdistro_license.txt is the licence of what is in it.
 """
 
 import json
@@ -25,6 +24,7 @@ class _ReleasedTable(NamedTuple):
     repositories: Mapping[str, str]
     metapackages: frozenset[str]
     by_repository: Mapping[str, frozenset[str]]
+    rosdep: frozenset[str]
 
 
 @cache
@@ -42,7 +42,10 @@ def _table() -> _ReleasedTable:
                 names.add(name)
         by_repository[repository] = frozenset(names)
     metapackages = frozenset(data["metapackages"].split())
-    return _ReleasedTable(data["date"], releases_of, repositories, metapackages, by_repository)
+    rosdep = frozenset(data["rosdep"].split())
+    return _ReleasedTable(
+        data["date"], releases_of, repositories, metapackages, by_repository, rosdep
+    )
 
 
 def released_date() -> str:
@@ -58,6 +61,30 @@ def is_released(name: str, releases: Collection[Release] = ()) -> bool:
     """
     having = _table().releases.get(name, frozenset())
     return bool(having) and (not releases or not having.isdisjoint(releases))
+
+
+def releases_of(name: str) -> tuple[Release, ...]:
+    """Return the releases for which a package is released, in their order.
+
+    >>> releases_of("ros_ign_bridge")
+    ('foxy', 'galactic', 'humble', 'iron')
+    """
+    having = _table().releases.get(name, frozenset())
+    return tuple(release for release in RELEASES if release in having)
+
+
+def rosdep_keys() -> frozenset[str]:
+    """Return the keys by which rosdep installs what is no package of ROS.
+
+    >>> "python3-serial" in rosdep_keys(), "pyserial" in rosdep_keys()
+    (True, False)
+    """
+    return _table().rosdep
+
+
+def released_packages() -> Collection[str]:
+    """Return the names of all packages that are released for any release."""
+    return _table().releases.keys()
 
 
 def packages_brought_by(name: str) -> frozenset[str]:

@@ -157,6 +157,9 @@ CodeRule = Literal[
     "no listener",
     "no rotation",
     "not registered",
+    "no main",
+    "no rclcpp::init",
+    "no constructor",
 ]
 
 

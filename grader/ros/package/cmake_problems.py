@@ -20,7 +20,9 @@ _PROGRAM = re.compile(
 _COMMENT_OF_CMAKE = re.compile(r"#\[=*+\[.*?(?:\]=*+\]|\Z)|#[^\n]*", re.DOTALL)
 _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[\"<](\w+)/", re.MULTILINE)
 # Other ways to find headers: of all packages, or by their folders.
-_OTHER_WAYS = ("ament_auto", "_INCLUDE_DIR", "link_libraries(")
+_OTHER_WAYS = re.compile(
+    r"ament_auto|_INCLUDE_DIR|(?<!target_)link_libraries\(|target_link_libraries\(\s*\$"
+)
 _OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|_test\.")
 
 
@@ -28,14 +30,19 @@ def cmake_problems(package: Package, setup: Installation) -> Iterator[Problem]:
     """Yield programs, targets and packages that CMakeLists.txt forgets.
 
     These are programs that no target compiles, targets that no install() names, and packages that a
-    target needs. Yields nothing where a part of CMakeLists.txt is not known.
+    target needs. A target whose sources are not known may compile any file, and says nothing of the
+    others.
     """
-    is_known = setup.doubt is None and not setup.unknown and not setup.stops
-    if not is_known or not all(target.is_certain for target in setup.targets):
+    for unclosed in setup.unclosed:
+        message = f"{unclosed.message}, so CMake takes it for text"
+        yield Problem(kinds.UNCLOSED, message, setup.location(unclosed.at))
+    if setup.doubt is not None or setup.stops:
         return
     for target in setup.targets:
-        yield from _target_problems(package, setup, target)
-    yield from _not_compiled(package, setup)
+        if target.is_certain:
+            yield from _target_problems(package, setup, target)
+    if not setup.unknown and all(target.is_certain for target in setup.targets):
+        yield from _not_compiled(package, setup)
 
 
 def _target_problems(
@@ -43,7 +50,8 @@ def _target_problems(
 ) -> Iterator[Problem]:
     """Yield that a target is not installed, and the packages that it needs."""
     is_of_tests = any(_OF_TESTS.search(path) for path in target.sources)
-    if not target.is_installed and target.sources and not is_of_tests:
+    is_left_out = not target.is_installed and not setup.unknown
+    if is_left_out and target.sources and not is_of_tests:
         yield from _not_installed(package, setup, target)
     if not target.links and not is_of_tests:
         yield from _not_linked(package, setup, target)
@@ -57,6 +65,14 @@ def _not_installed(package: Package, setup: Installation, target: CmakeTarget) -
         yield Problem(kinds.NOT_INSTALLED, f"{message}ros2 run does not find it", at)
     elif target.components:
         yield Problem(kinds.NOT_INSTALLED, f"{message}nothing can load its components", at)
+    elif target.is_shared:
+        for other in setup.targets:
+            if other.is_installed and target.name in other.links:
+                message += (
+                    f"{other.name!r}, which links it, does not find the library when it starts"
+                )
+                yield Problem(kinds.NOT_INSTALLED, message, at)
+                return
 
 
 def _not_linked(package: Package, setup: Installation, target: CmakeTarget) -> Iterator[Problem]:
@@ -65,7 +81,7 @@ def _not_linked(package: Package, setup: Installation, target: CmakeTarget) -> I
     Neither ament_target_dependencies() names them nor what it names exports them.
     """
     exports = cmake_words().exports
-    if any(word in setup.source.text for word in _OTHER_WAYS):
+    if _OTHER_WAYS.search(setup.source.text):
         return
     if not target.packages or not {*target.packages} <= exports.keys():
         return

@@ -12,15 +12,17 @@ from grader.base.source import Source
 from grader.files.limits import ignored_part
 from grader.ros.installation.cmake.cmake_targets import CmakeTargets
 from grader.ros.installation.cmake.cmake_values import ROOT, Text, Values
-from grader.ros.installation.cmake.language import Command
+from grader.ros.installation.cmake.language import Argument, Command
 from grader.ros.installation.file_search import EmptyGlob, PackageListing
 from grader.ros.installation.installation import (
     CmakeComponent,
+    FoundPackage,
     GeneratedInterfaces,
     Installation,
     InstalledFile,
     InstallError,
     LaterStop,
+    UnclosedExpression,
 )
 from grader.ros.installation.places import PREFIX
 from grader.ros.known.cmake_words import cmake_words
@@ -30,6 +32,8 @@ from grader.ros.python.values import Undetermined, Unknown
 
 _MANIFEST = "package.xml"
 _GENERATE = "rosidl_generate_interfaces"
+_INCLUDED = "target_include_directories"
+_GENERATOR = re.compile(r"\$<|>")
 _Options = Mapping[str, list[str]]
 _Groups = Sequence[tuple[str, list[str]]]  # arguments by the keyword before them
 
@@ -37,9 +41,9 @@ _Groups = Sequence[tuple[str, list[str]]]  # arguments by the keyword before the
 class Build:
     """What a build makes and installs, as far as the file was evaluated."""
 
-    def __init__(self, listing: PackageListing, values: Values, name: str) -> None:
-        """`name` is the one in package.xml."""
-        self.listing, self.values, self.name = listing, values, name
+    def __init__(self, listing: PackageListing, values: Values, name: str, text: str) -> None:
+        """`name` is the one in package.xml, `text` that of CMakeLists.txt."""
+        self.listing, self.values, self.name, self.text = listing, values, name, text
         self.targets: dict[str, str] = {}  # executable, library, interfaces or unknown
         self.made = CmakeTargets(listing)
         self.copies: dict[str, InstalledFile] = {}  # by the path below the prefix
@@ -49,6 +53,9 @@ class Build:
         self.interfaces: list[GeneratedInterfaces] = []
         self.stops: list[InstallError] = []
         self.later_stops: list[LaterStop] = []
+        self.found_packages: list[FoundPackage] = []
+        self._unclosed: list[UnclosedExpression] = []
+        self._exported: set[str] = set()  # targets
         self.unknown: list[Unknown] = []
         self.doubts: list[Unknown] = []
         self.last = START
@@ -69,6 +76,13 @@ class Build:
                 self.last,
             )
         self._name_programs()
+        unclosed: list[UnclosedExpression] = []
+        for expression in self._unclosed:
+            if expression.target in self._exported and expression.command == _INCLUDED:
+                reason = f"{expression.message}, so CMake cannot export {expression.target!r}"
+                self.stops.append(InstallError("", reason, expression.at))
+            else:
+                unclosed.append(expression)
         project = self.values.variables.get("PROJECT_NAME")
         first_stops = {stop.reason: stop for stop in reversed(self.later_stops)}
         return Installation(
@@ -86,6 +100,8 @@ class Build:
             files_at=self._package_at or self.last,
             packages=tuple(self.modules),
             interfaces=tuple(self.interfaces),
+            found_packages=tuple(self.found_packages),
+            unclosed=tuple(unclosed),
             targets=self.made.all(
                 {
                     written_path: self._source(written_path)
@@ -234,11 +250,15 @@ class Build:
             self.made.install(name)
         words = [text for text in texts[1:] if isinstance(text, str)]
         if {"IMPORTED", "ALIAS", "DIRECTORY"}.isdisjoint(words):
-            self._require_sources(words, command)
+            self.require_sources(words, command)
 
     def name_target(self, command: Command) -> None:
         """Add a target that tests have, or that is made by a command of its own."""
         name = self.values.first(command)
+        if command.name.startswith("ament_add_g") and not self.values.is_opaque:
+            texts = self.values.texts(command.arguments[1:])
+            words = [*takewhile(lambda text: text not in cmake_words().test_keywords, texts)]
+            self.require_sources([text for text in words if isinstance(text, str)], command)
         if isinstance(name, str):
             self.targets[name] = "executable" if self.values.uncertain is None else "unknown"
         else:
@@ -260,12 +280,29 @@ class Build:
                 given = self.values.uncertain or value
                 self.made.set_property(str(target), str(key), given)
 
-    def _require_sources(self, sources: Sequence[str], command: Command) -> None:
+    def require_sources(self, sources: Sequence[str], command: Command) -> None:
+        """Stop the build at a source that is not there."""
         for source in sources:
             path = self.inside(source) or ""
             is_file = source not in cmake_words().target_keywords and posixpath.splitext(path)[1]
             if is_file and self._has(path) is False:
                 self._stop_missing(command, path)
+
+    def require_closed(self, command: Command) -> None:
+        """Note a generator expression in a command of a target that is not closed."""
+        if self.values.uncertain is not None or not command.name.startswith("target_"):
+            return
+        opened: list[Argument] = []
+        for argument in command.arguments:
+            for piece in _GENERATOR.findall(argument.text):
+                if piece == "$<":
+                    opened.append(argument)
+                elif opened:
+                    opened.pop()
+        if opened:
+            target = str(self.values.first(command))
+            unclosed = UnclosedExpression(command.name, target, opened[0].text, opened[0].at)
+            self._unclosed.append(unclosed)
 
     def _stop_missing(self, command: Command, path: str) -> None:
         hint = self._guess(path, self.listing.files)
@@ -553,6 +590,8 @@ class Build:
         target = _folder_of_programs(groups)
         for name in groups[0][1]:
             known = self.targets.get(name)
+            if any(keyword == "EXPORT" for keyword, _ in groups):
+                self._exported.add(name)
             self.made.install(name)
             if known is None and not self.values.is_opaque:
                 self._stop_target(command, name)

@@ -12,6 +12,7 @@ from grader.base.names import near
 from grader.base.source import Source
 from grader.files.tree import Tree
 from grader.ros.installation.cmake.cmake_build import BUILD_COMMANDS, Build
+from grader.ros.installation.cmake.cmake_tests import check_tests
 from grader.ros.installation.cmake.cmake_values import (
     Text,
     Values,
@@ -27,7 +28,7 @@ from grader.ros.installation.cmake.language import (
     parse_cmake,
 )
 from grader.ros.installation.file_search import PackageListing
-from grader.ros.installation.installation import Installation
+from grader.ros.installation.installation import FoundPackage, Installation
 from grader.ros.known.cmake_words import cmake_words
 from grader.ros.known.released import is_released
 from grader.ros.known.releases import RELEASES
@@ -59,13 +60,14 @@ def read_cmake(
             source, SyntaxFault(source, str(fault), location_in(source, fault.at), fault.is_certain)
         )
     listing = PackageListing(tree, budget)
-    build = Build(listing, Values(listing.budget), name)
+    build = Build(listing, Values(listing.budget), name, text)
     every_command = [*all_commands(commands)]
     names = {command.name for command in every_command}
     build.may_have_other_targets = not names.isdisjoint(cmake_words().target_makers)
     try:
         with suppress(_Returns):
             _Evaluation(build).run(commands)
+        check_tests(build, commands)
     except OutOfBudget:
         build.give_up("the file is too long to evaluate", START)
     build.note_calls(every_command)
@@ -114,6 +116,7 @@ class _Evaluation:
             self.build.last = command.at
             self._require_provider(command)
             self._note_release(command)
+            self.build.require_closed(command)
             if command.name in _COMMANDS:
                 _COMMANDS[command.name](self, command)
             elif command.name in BUILD_COMMANDS:
@@ -344,6 +347,9 @@ class _Evaluation:
             hint = f"; did you mean {meant!r}?"
             self.build.stop(f"there is no package {name!r}", command.at, hint=hint)
             name = meant
+        is_certain = self.values.uncertain is None
+        looked_for = FoundPackage(name, command.at, "REQUIRED" in words, is_certain)
+        self.build.found_packages.append(looked_for)
         self.values.packages.add(name.lower())
         self.values.assign(f"{name}_FOUND", "1")
 

@@ -8,11 +8,13 @@ from itertools import pairwise
 from grader.ros.installation.cmake.cmake_values import ROOT, Text, joined
 from grader.ros.installation.file_search import PackageListing
 from grader.ros.installation.installation import CmakeComponent, CmakeTarget
+from grader.ros.known.cmake_words import cmake_words
 from grader.ros.python.parse import Position
 from grader.ros.python.values import Unknown
 
 _OF_FILE = ("PREFIX", "OUTPUT_NAME", "SUFFIX")
 _SCOPES = ("PUBLIC", "PRIVATE", "INTERFACE")
+_SHARED = "SHARED"
 _CPP = (".cpp", ".cc", ".cxx", ".c++", ".c")
 
 
@@ -106,11 +108,13 @@ class CmakeTargets:
         """Return the targets; `inside` has the path in the package of each source."""
         targets = []
         for name, made in self._made.items():
-            paths = []
+            paths, has_others = [], False
             for source in made.sources:
                 path = inside.get(source)
                 if path is not None and path in self._listing.files:
                     paths.append(path)
+                elif source not in cmake_words().target_keywords and source != "DIRECTORY":
+                    has_others = True
             targets.append(
                 CmakeTarget(
                     name=name,
@@ -123,6 +127,8 @@ class CmakeTargets:
                     is_installed=made.is_installed,
                     is_certain=made.is_certain,
                     program=self._program(name, made),
+                    has_other_sources=has_others,
+                    is_shared=_SHARED in made.sources,
                 )
             )
         return tuple(targets)

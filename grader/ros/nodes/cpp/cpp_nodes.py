@@ -37,6 +37,7 @@ from grader.ros.nodes.cpp.cpp_files import CompiledTarget, CppFiles, may_hide
 from grader.ros.nodes.cpp.cpp_frames import frames_in
 from grader.ros.nodes.cpp.cpp_message_content import CppContentReader
 from grader.ros.nodes.cpp.cpp_message_uses import cpp_field_uses
+from grader.ros.nodes.cpp.cpp_programs import program_faults
 from grader.ros.nodes.cpp.node_holders import Holder, NodeHolders, NodeKey
 from grader.ros.nodes.cpp.rclcpp_calls import (
     ACTIONS,
@@ -117,6 +118,7 @@ def read_cpp_nodes(package: Package) -> PackageNodes:
             programs += target.programs(package)
             doubts |= dict.fromkeys(target.doubts)
             faults |= dict.fromkeys((*target.faults(), *target.unregistered(package)))
+            faults |= dict.fromkeys(program_faults(compiled, starts_nodes=target.makes_nodes))
             loose_frames |= dict.fromkeys(target.loose_frames)
             field_uses |= dict.fromkeys(target.field_uses)
             synchronised |= dict.fromkeys(target.content.synchronised_types())
@@ -701,6 +703,11 @@ class _Target:
         yield from cpp_faults(
             self._unit, self._node_classes, is_program=is_program, is_read=is_read
         )
+
+    @property
+    def makes_nodes(self) -> bool:
+        """Whether functions of the target make nodes."""
+        return bool(self._created)
 
     def unregistered(self, package: Package) -> Iterator[CodeFault]:
         """Yield the components that CMakeLists.txt registers and no source does."""

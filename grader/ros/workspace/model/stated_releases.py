@@ -61,7 +61,7 @@ def stated_releases(tree: Tree) -> StatedReleases:
     """
     every = [*tree.files.values()]
     settings = [file for file in every if _is_container(file.name.lower())]
-    settings += tree.settings()
+    settings += [file for file in tree.settings() if file.name != ".gitmodules"]
     readmes = [file for file in every if file.name.lower().startswith("readme")]
     texts = [file for file in every if file.suffix in (".md", ".sh", ".bash")]
     levels: list[list[_Reader]] = [

@@ -107,6 +107,39 @@ class TextFiles:
             yield data.decode("utf-8", "replace")
 
     @cached_property
+    def _provisions(self) -> tuple[str, str]:
+        """What .repos files, .gitmodules and YAML for rosdep say, and what a README and images say.
+
+        Each is one text in small letters, in which - is written as _.
+        """
+        sources: list[str] = []
+        words: list[str] = []
+        files = [*self.folder.tree.files.values(), *self.folder.tree.settings()]
+        for file in files:
+            name = file.name.lower()
+            is_source = file.suffix in (".repos", ".rosinstall") or name == ".gitmodules"
+            is_source = is_source or ("rosdep" in name and name.endswith((".yaml", ".yml")))
+            is_word = name.startswith("readme") or "dockerfile" in name
+            is_word = is_word or file.suffix in (".md", ".rst", ".sh", ".bash")
+            if (not is_source and not is_word) or file.size > MAX_YAML:
+                continue
+            with suppress(InputError):
+                text = file.read(MAX_YAML).decode("utf-8", "replace")
+                self.folder.charge(1 + len(text) // _SEARCHED_A_PART)
+                (sources if is_source else words).append(text)
+        return _as_words(sources), _as_words(words)
+
+    def is_provided(self, name: str, *, in_words: bool = False) -> bool:
+        """Return whether a .repos file, .gitmodules or YAML for rosdep names a package.
+
+        With `in_words`, a README, a script or an image may name it as well.
+        """
+        sources, words = self._provisions
+        wanted = re.compile(rf"\b{re.escape(_as_words([name]))}\b")
+        self.folder.charge(1 + len(sources) // _SEARCHED_A_PART)
+        return bool(wanted.search(sources)) or (in_words and bool(wanted.search(words)))
+
+    @cached_property
     def python_texts(self) -> tuple[str, ...]:
         """The texts of the Python files."""
         sources: list[Source] = []
@@ -147,6 +180,11 @@ class TextFiles:
         if folder not in owner.tree.folders or posixpath.basename(folder) in _OWN_FOLDERS:
             return False
         return not any(path.startswith(f"{folder}/") for path in owner.tree.files)
+
+
+def _as_words(texts: Iterable[str]) -> str:
+    """Return texts as one, in which small letters and underscores stand for the others."""
+    return "\n".join(texts).lower().replace("-", "_")
 
 
 def _paths_ending(package: Package, endings: tuple[str, ...]) -> Sequence[str]:

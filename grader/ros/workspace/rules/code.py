@@ -14,11 +14,14 @@ from grader.ros.workspace.rules.rule_table import (
     CALLBACK_SLEEP,
     CALLBACK_WAIT,
     CODE_SYNTAX,
+    COMPONENT_CONSTRUCTOR,
     COMPONENT_MACRO,
     ENTITY_KEPT,
     GOAL_STATE,
     NAME_BINDING,
     NODE_SPINS,
+    PROGRAM_MAIN,
+    RCLCPP_INIT,
     RCLPY_INIT,
     ROTATION_SET,
     SERVICE_RESPONSE,
@@ -40,6 +43,9 @@ _RULES: Mapping[CodeRule, Rule] = {
     "no listener": BUFFER_LISTENER,
     "no rotation": ROTATION_SET,
     "not registered": COMPONENT_MACRO,
+    "no main": PROGRAM_MAIN,
+    "no rclcpp::init": RCLCPP_INIT,
+    "no constructor": COMPONENT_CONSTRUCTOR,
 }
 
 

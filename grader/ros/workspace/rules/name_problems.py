@@ -47,26 +47,50 @@ def _with_one_for_a_manifest(
 ) -> Iterator[Mismatch]:
     """Yield mismatches, of the packages that one package.xml lacks only the first, which has all.
 
-    Those of which it is certain that nothing else installs them are apart from the others.
+    Those of which it is certain that nothing else installs them are apart from the others, and so
+    are those that CMake needs.
     """
-    lacked: dict[tuple[object, bool], list[Mismatch]] = {}
-    every = [*mismatches]
+    lacked: dict[tuple[object, bool, bool], list[Mismatch]] = {}
+    every = [*_without_repeated_packages([*mismatches])]
     for mismatch in every:
         if mismatch.lacked:
-            key = (mismatch.related, mismatch.is_certain)
-            lacked.setdefault(key, []).append(mismatch)
+            lacked.setdefault(_group_of(mismatch), []).append(mismatch)
     for mismatch in every:
-        of_manifest = lacked.get((mismatch.related, mismatch.is_certain), [])
+        of_manifest = lacked.get(_group_of(mismatch), [])
         if not mismatch.lacked:
             yield mismatch
         elif mismatch is of_manifest[0]:
             yield mismatch._replace(message=_lacked_text(workspace, of_manifest))
 
 
+def _without_repeated_packages(mismatches: Sequence[Mismatch]) -> Iterator[Mismatch]:
+    """Yield mismatches without those that say of a package what another one says.
+
+    Of one that nothing has, that package.xml does not declare it; of a misspelt dependency that a
+    file uses, that rosdep does not know it.
+    """
+    absent = {mismatch.word for mismatch in mismatches if mismatch.rule.name == "package-exists"}
+    misspelt: set[str] = set()
+    for mismatch in mismatches:
+        if mismatch.rule.name == "dependency-declared":
+            misspelt |= {correction.new for correction in mismatch.corrections}
+    for mismatch in mismatches:
+        is_absent = mismatch.rule.name == "dependency-declared" and mismatch.word in absent
+        is_misspelt = mismatch.rule.name == "rosdep-key" and mismatch.word in misspelt
+        if not is_absent and not is_misspelt:
+            yield mismatch
+
+
+def _group_of(mismatch: Mismatch) -> tuple[object, bool, bool]:
+    """Return what the packages that are said together have in common."""
+    return mismatch.related, mismatch.is_certain, mismatch.is_built
+
+
 def _lacked_text(workspace: Workspace, mismatches: Sequence[Mismatch]) -> str:
     """Return which packages a package.xml does not declare, and the tags to add."""
     names = [mismatch.lacked for mismatch in mismatches]
-    tags = " ".join(f"<exec_depend>{name}</exec_depend>" for name in names)
+    tag = "depend" if mismatches[0].is_built else "exec_depend"
+    tags = " ".join(f"<{tag}>{name}</{tag}>" for name in names)
     used = "which is used here" if len(names) == 1 else "which its files use"
     if not mismatches[0].is_certain:
         used += ", and which only packages that it declares bring"

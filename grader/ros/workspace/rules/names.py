@@ -97,6 +97,7 @@ class Mismatch(NamedTuple):
     word: str = ""  # that is wrong, in the call or element at the location
     cause: str = ""  # what it has in common with others that one mistake makes
     lacked: str = ""  # the package that package.xml lacks, and is to be added
+    is_built: bool = False  # whether CMake needs that package, rather than a program that runs
 
     @property
     def family(self) -> AnyFamily:

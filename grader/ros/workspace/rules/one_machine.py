@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from grader.base.source import Location, Source
 from grader.base.text import counted, cut, quoted
 from grader.ros.known.ros_machine import ros_machine
+from grader.ros.launch.launch_model import Launch
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
 from grader.ros.workspace.rules.rule_table import (
@@ -29,15 +30,35 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
 
     A path in somebody's home folder is yielded once a file.
 
-    Paths in launch files are problems of these files.
+    Of a launch file it is one that a node gets as the value of a parameter: the files that it reads
+    are problems of this file.
     """
-    launch_files = {package.path(path) for package, path, _ in workspace.launches.files}
+    launch_files = set()
+    for package, path, launch in workspace.launches.files:
+        launch_files.add(package.path(path))
+        yield from _home_values(launch)
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, _TEXTS):
             if source.path not in launch_files:
                 yield Compared("machine")
                 yield from _home_paths(source)
     yield from _variables(workspace)
+
+
+def _home_values(launch: Launch) -> Iterator[Mismatch]:
+    """Yield the first value of a parameter in a launch file that is a path in a home folder."""
+    said = {reference.location for reference in launch.references}
+    for node in launch.nodes:
+        for given in node.parameters or ():
+            for value in given.values.values():
+                text = value.value if isinstance(value.value, str) else ""
+                is_home = _HOME.match(text) and not _PLACEHOLDERS.match(text)
+                if is_home and value.location.path == launch.source.path:
+                    if value.location not in said:
+                        shown = quoted(cut(text, _MAX_SHOWN))
+                        message = f"the path {shown} is of one machine"
+                        yield warning(HOME_PATH, message, value.location)
+                    return
 
 
 def _home_paths(source: Source) -> Iterator[Mismatch]:

@@ -81,7 +81,7 @@ def parameter_facts(workspace: Workspace) -> Iterator[Fact]:
     for path in _files_of_controllers(workspace):
         if isinstance(workspace.installed.yaml.get(path), YamlNode):
             yield Compared("parameters")
-    for tree in _parameter_trees(workspace):
+    for tree in parameter_trees(workspace):
         yield from _misplaced_keys(tree)
     for path, nodes in workspace.parameters.files.items():
         yield from _sections_of_others(workspace, path, nodes)
@@ -117,7 +117,7 @@ def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
         if not is_of_opencv and not workspace.folder.begins_with(path, LFS_POINTER):
             message = f"this is not YAML: {tree}"
             yield Mismatch(PARAMETER_FILE, message, tree.location, is_certain=is_given)
-    for parameters in _parameter_trees(workspace):
+    for parameters in parameter_trees(workspace):
         alias = first_alias(parameters.source)
         if alias is not None:
             name, at = alias
@@ -127,7 +127,7 @@ def _unreadable_files(workspace: Workspace) -> Iterator[Mismatch]:
             yield Mismatch(PARAMETER_FILE, message, at)
 
 
-def _parameter_trees(workspace: Workspace) -> Iterator[YamlNode]:
+def parameter_trees(workspace: Workspace) -> Iterator[YamlNode]:
     """Yield the parameter files that nodes or controllers get.
 
     What components get, to which a container gives its own files, is not evaluated.

@@ -21,12 +21,14 @@ from grader.ros.workspace.rules.footprint_values import footprint_facts
 from grader.ros.workspace.rules.frames import frame_facts
 from grader.ros.workspace.rules.gains import gain_facts
 from grader.ros.workspace.rules.gazebo import gazebo_facts
+from grader.ros.workspace.rules.headers import header_facts
 from grader.ros.workspace.rules.interfaces import interface_facts
 from grader.ros.workspace.rules.known_ends import known_end_facts
 from grader.ros.workspace.rules.known_parameters import known_parameter_facts
 from grader.ros.workspace.rules.launch_tables import launch_table_facts
 from grader.ros.workspace.rules.limit_values import limit_facts
 from grader.ros.workspace.rules.looked_up_transforms import lookup_facts
+from grader.ros.workspace.rules.mass_values import mass_facts
 from grader.ros.workspace.rules.meeting_ends import meeting_facts
 from grader.ros.workspace.rules.mimic_interfaces import mimic_facts
 from grader.ros.workspace.rules.missing_ends import missing_end_facts
@@ -42,9 +44,11 @@ from grader.ros.workspace.rules.names import (
 )
 from grader.ros.workspace.rules.namespaces import namespace_facts
 from grader.ros.workspace.rules.one_machine import machine_facts
+from grader.ros.workspace.rules.parameter_lists import list_facts
 from grader.ros.workspace.rules.parameters import parameter_facts
 from grader.ros.workspace.rules.plugin_classes import plugin_class_facts
 from grader.ros.workspace.rules.programs import program_facts
+from grader.ros.workspace.rules.provided_packages import provision_facts
 from grader.ros.workspace.rules.published_transforms import transform_facts
 from grader.ros.workspace.rules.rate_values import rate_facts
 from grader.ros.workspace.rules.received_messages import received_message_facts
@@ -98,6 +102,10 @@ _READERS = (
     received_message_facts,
     gain_facts,
     known_end_facts,
+    provision_facts,
+    list_facts,
+    header_facts,
+    mass_facts,
 )
 
 

@@ -28,7 +28,10 @@ Family = Literal[
 ]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 # The families that are added here have only warnings, and no rubric can ask for them.
-AnyFamily = Family | Literal["wiring", "machine", "moveit", "words", "messages", "effects"]
+AnyFamily = (
+    Family
+    | Literal["wiring", "machine", "moveit", "words", "messages", "effects", "keys", "builds"]
+)
 DefinedKind = Literal[
     "frame",
     "link",
@@ -75,6 +78,12 @@ _MOVES_NOTHING = _warning("REF026", "Controller that moves nothing")
 _NO_SUCH_PARAMETER = _warning("REF027", "Parameter that a well-known node does not have")
 _NO_EFFECT = _warning("REF028", "Parameter that has no effect")
 _UNCONNECTED = _warning("REF029", "Transform between frames that nothing connects")
+_BUILT_LATER = _error("REF030", "Package that a build does not find")
+_NO_PACKAGE = _error("REF031", "Package that does not exist")
+_NOWHERE = _warning("REF032", "Package that neither the workspace nor a release has")
+_NO_KEY = _warning("REF033", "Name that rosdep does not know")
+_UNKNOWN_KEY = Kind("REF034", "Name that may be no key of rosdep", severity="note", effect="other")
+_NOT_COMPILED = _error("REF035", "C++ file that does not compile")
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -289,6 +298,10 @@ NAME_RELEASE = Rule(
     _OTHER_RELEASE,
     "Packages, programs, controllers, plugins and topics are of the stated release.",
 )
+PARAMETER_LIST = _parameter(
+    "parameter-list",
+    sentence="A list in a parameter file has values of one type, and a key has a value.",
+)
 
 _argument = _rules_of("arguments", _NO_ARGUMENT, _SIMILAR)
 _LAUNCH_ARGUMENT = _argument(
@@ -373,6 +386,24 @@ DEPENDENCY_DECLARED = Rule(
     _SIMILAR,
     "package.xml declares the packages that the files of the package use.",
 )
+BUILD_ORDER = _rules_of("dependencies", _BUILT_LATER)(
+    "build-order",
+    sentence="package.xml declares the packages of the workspace that CMake needs.",
+)
+PACKAGE_EXISTS = Rule(
+    "package-exists",
+    "dependencies",
+    _NO_PACKAGE,
+    _NOWHERE,
+    "The packages that files name exist: in the workspace, or in a release of ROS 2.",
+)
+ROSDEP_KEY = Rule(
+    "rosdep-key",
+    "keys",
+    _NO_KEY,
+    _UNKNOWN_KEY,
+    "rosdep knows the dependencies in package.xml that the workspace does not have.",
+)
 
 _service = _rules_of("services", _NO_SERVICE, _SIMILAR)
 SERVICE_TYPE = _service(
@@ -440,6 +471,11 @@ ROTATION_SET = _code("rotation-set", sentence="A transform that is sent has a ro
 COMPONENT_MACRO = _code(
     "component-macro", sentence="A source file registers the component that CMakeLists.txt names."
 )
+PROGRAM_MAIN = _code("program-main", sentence="The sources of a C++ program have a main().")
+RCLCPP_INIT = _code("rclcpp-init", sentence="A C++ program makes its nodes after rclcpp::init().")
+COMPONENT_CONSTRUCTOR = _code(
+    "component-constructor", sentence="A component has a constructor that takes NodeOptions."
+)
 
 _value = _rules_of("values", _WRONG_VALUE, _OTHER_VALUE)
 _other_value = _rules_of("values", _OTHER_VALUE)
@@ -477,6 +513,12 @@ STATIC_POSE = _other_value(
 ROBOT_STANDS = _other_value(
     "robot-stands",
     sentence="A robot stands level on its wheels, and they drive it straight ahead.",
+)
+CENTRE_OF_MASS = _other_value(
+    "centre-of-mass", sentence="The centre of mass of a link is within its shapes."
+)
+INERTIA_AXIS = _other_value(
+    "inertia-axis", sentence="The inertia of a cylinder is that about its own axis."
 )
 MESH_UNIT = _other_value("mesh-unit", sentence="Meshes are in metres.")
 
@@ -582,6 +624,14 @@ GAIN_SET = Rule(
 )
 NAMES_COMPARED = Rule(
     "names-compared", "files", _UNCOMPARED, _UNCOMPARED, "All names of a workspace are compared."
+)
+
+_build = _rules_of("builds", _NOT_COMPILED)
+OWN_HEADER = _build(
+    "own-header", sentence="The headers of a package that a compiled file includes exist."
+)
+HEADER_INSTALLED = _build(
+    "header-installed", sentence="A build installs the headers that other packages include."
 )
 
 # What is wrong where a name of a kind is not defined.

@@ -1,0 +1,24 @@
+"""What people write for a key of rosdep: the file rosdep.toml."""
+
+from collections.abc import Mapping
+from functools import cache
+from typing import NamedTuple
+
+from grader.ros.known.typed_rows import read_file
+
+
+class RosdepWords(NamedTuple):
+    """Names that are no keys of rosdep, with the key of what they name."""
+
+    instead: Mapping[str, str]
+    elsewhere: Mapping[str, str]  # how package.xml says it
+
+
+@cache
+def rosdep_words() -> RosdepWords:
+    """Return what people write for a key of rosdep.
+
+    >>> rosdep_words().instead["pyserial"]
+    'python3-serial'
+    """
+    return read_file(RosdepWords, "rosdep")

@@ -1,0 +1,113 @@
+"""The centre of mass and the inertia of a link: whether they can be those of its shapes."""
+
+from collections.abc import Iterator
+from math import dist, hypot
+
+from grader.base.quantities import in_millimetres, point
+from grader.base.source import place
+from grader.base.text import quoted
+from grader.base.transforms import Vector
+from grader.ros.urdf.mass_properties import Tensor, solid_inertia, turned, with_volume
+from grader.ros.urdf.model import Collision, Cylinder, Inertial, Link, Mesh, Visual
+from grader.ros.urdf.shapes import PlacedShape
+from grader.ros.workspace.model.workspace import Workspace
+from grader.ros.workspace.rules.names import Fact, Mismatch, warning
+from grader.ros.workspace.rules.rule_table import CENTRE_OF_MASS, INERTIA_AXIS, Rule
+
+_AXES: tuple[Vector, ...] = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+_NAMES = "xyz"
+_MARGIN, _MARGIN_SHARE = 0.005, 0.1  # metres, and of the size of the shapes
+_EQUAL, _OTHER = 0.05, 0.2  # of the largest moment of the cylinder
+_OF_LINK = 20  # parts
+
+
+def mass_facts(workspace: Workspace) -> Iterator[Fact]:
+    """Yield centres of mass outside of the shapes, and inertias of a cylinder along another axis.
+
+    A link with a mesh is not compared: only its file says what it is.
+    """
+    said: set[tuple[Rule, str, int]] = set()  # of a macro, the first link
+    for robot in workspace.robots.known:
+        for link in robot.robot.links:
+            workspace.charge(_OF_LINK)
+            inertial = link.inertial
+            if inertial is None or inertial.mass <= 0.0 or inertial.location is None:
+                continue
+            for wrong in (*_centre_outside(link, inertial), *_other_axis(link, inertial)):
+                key = (wrong.rule, wrong.location.path, wrong.location.line)
+                if key not in said:
+                    said.add(key)
+                    yield wrong
+
+
+def _centre_outside(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
+    """Yield that the centre of mass is outside of the box around all shapes of a link."""
+    elements: list[Visual | Collision] = [*link.visuals, *link.collisions]
+    if any(isinstance(element.geometry, Mesh) for element in elements):
+        return
+    placed = [PlacedShape(shape, origin.placed_in()) for shape, origin in with_volume(elements)]
+    if not placed:
+        return
+    centre = inertial.origin.placed_in().translation
+    extents = [_extent(placed, axis) for axis in _AXES]
+    outside = []
+    for coordinate, (least, most) in zip(centre, extents, strict=True):
+        outside.append(max(least - coordinate, coordinate - most, 0.0))
+    size = hypot(*(most - least for least, most in extents))
+    if hypot(*outside) <= _MARGIN + _MARGIN_SHARE * size:
+        return
+    message = (
+        f"the centre of mass of {quoted(link.name)} is at {point(centre)} m, "
+        f"{in_millimetres(hypot(*outside))} outside of its shapes"
+    )
+    at = place(inertial.origin.location, "xyz") or place(inertial.location)
+    if at is not None:
+        yield warning(CENTRE_OF_MASS, message, at.resolve())
+
+
+def _extent(placed: list[PlacedShape], axis: Vector) -> tuple[float, float]:
+    extents = [shape.extent(axis) for shape in placed]
+    return min(least for least, _ in extents), max(most for _, most in extents)
+
+
+def _other_axis(link: Link, inertial: Inertial) -> Iterator[Mismatch]:
+    """Yield that an inertia is that of the cylinder of a link along another axis than it has."""
+    shapes = with_volume(link.collisions) or with_volume(link.visuals)
+    if len(shapes) != 1:
+        return
+    cylinder, origin = shapes[0]
+    if not isinstance(cylinder, Cylinder):
+        return
+    T_link_inertial = inertial.origin.placed_in()
+    rotation = (T_link_inertial.inverse() @ origin.placed_in()).rotation
+    across, _, _, _, _, along = solid_inertia(cylinder, inertial.mass)
+    candidates = [_about(number, along, across) for number in range(3)]
+    allowed = _EQUAL * max(along, across)
+    given = [
+        number
+        for number, candidate in enumerate(candidates)
+        if dist(inertial.inertia, candidate) <= allowed
+    ]
+    expected = turned(candidates[2], rotation)
+    if len(given) != 1 or dist(inertial.inertia, expected) <= _OTHER * max(along, across):
+        return
+    right = [n for n, each in enumerate(candidates) if dist(each, expected) <= allowed]
+    written = _NAMES[given[0]]
+    advice = "turn the <origin> of the <inertial>"
+    if len(right) == 1:
+        names = sorted((written, _NAMES[right[0]]))
+        advice = f"exchange i{names[0] * 2} and i{names[1] * 2}, or {advice}"
+    message = (
+        f"the inertia of {quoted(link.name)} is that of its cylinder along {written}, but the "
+        f"cylinder lies otherwise: {advice}"
+    )
+    at = place(inertial.location, None, "inertia")
+    if at is not None:
+        yield warning(INERTIA_AXIS, message, at.resolve())
+
+
+def _about(number: int, along: float, across: float) -> Tensor:
+    """Return the inertia of a cylinder along the axis of a number."""
+    moments = [across, across, across]
+    moments[number] = along
+    return (moments[0], 0.0, 0.0, moments[1], 0.0, moments[2])
