@@ -192,3 +192,13 @@ def test_headers_in_other_folders() -> None:
     files = {"part/include/hub/talker": header}
     [program] = nodes_of(f"{_HEAD}#include <hub/talker.hpp>\n{_SPIN}", **files).programs
     assert [endpoint.name for endpoint in program.nodes[0].endpoints] == ["heat"]
+
+
+def test_the_code_of_a_base_class_makes_no_node() -> None:
+    """The sources of rclcpp_lifecycle themselves define a class of nodes."""
+    text = (
+        "namespace rclcpp_lifecycle { class LifecycleNode : public Base { void start(); };"
+        f' void LifecycleNode::start() {{ rclcpp::create_publisher<{_BOOL}>(*this, "a", 1); }} }}'
+    )
+    [talker] = nodes_of(f"{_HEAD}{text}\n{_talker('')}\n{_SPIN}").nodes
+    assert talker.class_name == "Talker"

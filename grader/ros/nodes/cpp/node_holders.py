@@ -21,6 +21,7 @@ from grader.ros.cpp.declarations import (
 from grader.ros.cpp.objects import class_written, made_in
 from grader.ros.cpp.syntax import CppNode
 from grader.ros.cpp.unit import CppUnit, arguments_of, called_name, template_arguments
+from grader.ros.known.package_tables import cpp_table
 from grader.ros.python.budget import Budget
 
 _MAX_DEPTH = 10  # of expressions that are other expressions
@@ -145,7 +146,8 @@ class NodeHolders:
             return None
         if node.kind == "this":
             owner = self._unit.owner_of(function)
-            return owner if owner in self._classes else None
+            is_own = owner in self._classes and owner not in cpp_table().nodes
+            return owner if is_own else None
         if node.kind in _NAMES:
             return self._node_named(node, function, depth)
         if node.kind == "field_expression":
