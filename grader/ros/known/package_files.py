@@ -27,6 +27,7 @@ IndexedKey = Literal[
     "children",
     "controller",
     "ends_unless",
+    "launch_actions",
     "members",
     "plugins",
     "reads",

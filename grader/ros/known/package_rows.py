@@ -144,6 +144,7 @@ class PackageRow(NamedTuple):
     relays: bool = False  # what programs elsewhere publish and serve, with any type
     compares_time: bool = False  # of messages with its own clock
     holds_nodes: bool = False  # to which its programs give their parameter files
+    launch_actions: tuple[str, ...] = ()  # that it adds to launch files in XML and YAML
     launches_no_clock: bool = False  # whether nothing in its launch files publishes /clock
     members: tuple[str, ...] = ()  # of a metapackage: the dependencies in its package.xml
     plugins: tuple[str, ...] = ()  # classes that parameter files name
@@ -262,6 +263,13 @@ def plugin_classes() -> tuple[str, ...]:
 def names_of_read_files() -> frozenset[str]:
     """Return the parameters and launch arguments that name a file which is read."""
     return frozenset(name for _, row in _rows_with("reads") for name in row.reads)
+
+
+@cache
+def added_launch_actions() -> frozenset[str]:
+    """Return the actions that packages add to launch files in XML and YAML."""
+    rows = _rows_with("launch_actions")
+    return frozenset(name for _, row in rows for name in row.launch_actions)
 
 
 @cache

@@ -21,6 +21,7 @@ from grader.ros.config.yaml_nodes import (
     read_yaml,
     yaml_value,
 )
+from grader.ros.known.package_rows import added_launch_actions
 from grader.ros.launch.call_arguments import TYPED, check
 from grader.ros.launch.launch_classes import (
     COMPONENT,
@@ -415,7 +416,7 @@ def read_actions(parent: _Entity, findings: Findings) -> list[Value]:
 def _read_action(entity: _Entity, findings: Findings) -> Call:
     kind = entity.kind
     if kind not in _ACTIONS:
-        if kind in front_end("action"):
+        if kind in front_end("action") or kind in added_launch_actions():
             raise Undetermined(f"the action {kind} is not evaluated", entity.at)
         raise EvaluationFails(
             f"there is no action {kind!r}{did_you_mean(kind, _ACTIONS)}", entity.at
