@@ -78,6 +78,7 @@ LANGUAGES = {
 }
 DOCS = Path(__file__).resolve().parent
 WORKSPACES = DOCS.parent / "tests/workspace/public_workspaces.toml"
+NEWER_RULES = DOCS.parent / "tests/workspace/public_rules.toml"
 SAMPLE = DOCS.parent / "submissions/lab6/lidar-offset-in-visual/my_robot/urdf/my_robot.urdf"
 
 
@@ -174,6 +175,15 @@ def rules_in_public() -> Iterator[str]:
     found = {rule for _, rule in places}
     others = [f"`{name}`" for name in of_errors if name not in found]
     yield from ("", f"These rules found none: {enumerated(others)}.", "")
+    newer = tomllib.loads(NEWER_RULES.read_text(encoding="utf-8"))
+    count = newer["workspaces"]
+    yield from (f"Newer rules, also their warnings and notes, in {count} workspaces:", "")
+    yield from ("| rule | true | false |", "|---|---|---|")
+    for rule in newer["rule"]:
+        name = rule["name"]
+        link = "problems.md" if name.isupper() else f"problems.md#{name}"
+        yield f"| [`{name}`]({link}) | {rule['true']} | {rule['false']} |"
+    yield ""
     yield from ("| workspace | commit | errors |", "|---|---|---|")
     for workspace in workspaces:
         name, commit = workspace["repository"], workspace["commit"]

@@ -323,23 +323,31 @@ def _controllers(making: _Making) -> Iterator[GraphNode]:
     except NotDecided:
         return
     managers = [node for node in launch.nodes if node.executable == CONTROL_NODE and node.when]
-    named: list[tuple[StartedNode, StartedNode]] = []
-    for node in launch.nodes:
-        if node.executable in SPAWNERS and node.when is not False:
-            named += [(node, started) for started in controllers_of(node) or ()]
+    named = _spawned_nodes(launch)
     if named and not managers:
         name, at = _full_name(named[0][1], MANAGER), named[0][0].location
         yield GraphNode(name, "the controller manager", "program", at)
     for spawner, started in named:
+        name = started.node_name or ""
         manager = managers[0] if managers else started._replace(remaps=())
-        controller = defined.get(started.node_name or "")
-        remaps = (*spawned.get(started.node_name, ()), *(manager.remaps or ()))
-        node = started._replace(remaps=remaps if manager.remaps is not None else None)
+        remaps = None
+        if manager.remaps is not None:
+            remaps = (*spawned.get(name, ()), *manager.remaps)
+        node, gifts = started._replace(remaps=remaps), owners.get(name, [])
+        given = NodeParameters({}, node)
+        if gifts:
+            given = NodeParameters(gifts[0].values, node, gifts[0].unknown)
         inside = _full_name(started, MANAGER)
-        gifts = owners.get(started.node_name or "", [])
-        values = gifts[0].values if gifts else {}
-        given = NodeParameters(values, node, gifts[0].unknown if gifts else "")
-        yield _controller(making, given, controller, spawner, inside)
+        yield _controller(making, given, defined.get(name), spawner, inside)
+
+
+def _spawned_nodes(launch: Launch) -> list[tuple[StartedNode, StartedNode]]:
+    """Return the controllers that spawners start, each behind its spawner."""
+    named = []
+    for node in launch.nodes:
+        if node.executable in SPAWNERS and node.when is not False:
+            named += [(node, started) for started in controllers_of(node) or ()]
+    return named
 
 
 def _controller(
