@@ -440,6 +440,9 @@ FIELD_VALUE = _interface(
 
 _code = _rules_of("code", _NO_RUN, _MAY_WAIT)
 _slow_code = _rules_of("code", _MAY_WAIT)
+MODULE_INSTALLED = _code(
+    "module-installed", sentence="A build installs the modules of the package that a node imports."
+)
 CODE_SYNTAX = _code("code-syntax", sentence="The Python modules of nodes have no syntax errors.")
 NAME_BINDING = _code(
     "name-binding",
