@@ -166,7 +166,7 @@ WEIGHTS = {
     "ros.log": 3_800,
     "ros.mesh": 4_300,
     "ros.nodes": 58_800,  # calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions
-    "ros.package": 27_350,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
+    "ros.package": 27_900,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
     "ros.python": 28_950,  # the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing

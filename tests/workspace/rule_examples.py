@@ -30,7 +30,7 @@ _FOLDERS = {
     ".cpp": "src",
 }
 _OF_ROOT = ("setup.py", "package.xml", "CMakeLists.txt")
-_KEPT = ("scripts", "crate")  # folders that are part of the place of a file
+_KEPT = ("scripts", "crate", "tools")  # folders that are part of the place of a file
 _MANIFEST = """\
 <package format="3">
   <name>rover</name>
@@ -67,7 +67,8 @@ def files_of_example(example: Mapping[str, Any], side: str) -> ExampleFiles:
         files[_path_of(other)] = _framed(other, content.strip("\n"))[0]
     if not any(each.startswith("urdf/") for each in files):
         files["urdf/rover.urdf"] = '<robot name="rover"><link name="base_link"/></robot>\n'
-    programs = [PurePosixPath(each).stem for each in files if each.startswith(("rover/", "src/"))]
+    modules = [PurePosixPath(each) for each in files]
+    programs = [each.stem for each in modules if str(each.parent) in ("rover", "src")]
     if not any(each.startswith("launch/") for each in files):
         nodes = "\n".join(f"Node(package='rover', executable='{each}')," for each in programs)
         files["launch/rover.launch.py"] = _framed("rover.launch.py", nodes)[0]

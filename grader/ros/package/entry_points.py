@@ -5,7 +5,7 @@ They are the programs of a Python package.
 
 import ast
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -19,7 +19,14 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.package.package import Package
 from grader.ros.python.budget import PYTHON_LIMIT
 from grader.ros.python.constants import binds_unseen
-from grader.ros.python.parse import Code, SyntaxFault, bound_in, parse
+from grader.ros.python.parse import (
+    Code,
+    SyntaxFault,
+    bound_in,
+    location_in,
+    parse,
+    position_of,
+)
 
 _ENTRY = re.compile(
     r"\s*([^=\s]+)\s*=\s*(\w+(?:\.\w+)*)\s*(?::\s*(\w+)(?:\.\w+)*\s*)?(?:\[.*)?", re.ASCII
@@ -179,6 +186,57 @@ def module_path(package: Package, module: str) -> str | None:
     return next(
         (path for path in (f"{stem}/__init__.py", f"{stem}.py") if path in package.tree.files), None
     )
+
+
+class _MissingModule(NamedTuple):
+    """A module of a package that a node imports and no build installs."""
+
+    module: str  # as it is imported, with the name of what is imported from it
+    package: str  # of Python, which setup.py does not install
+    location: Location
+
+
+def modules_not_installed(package: Package) -> Iterator[_MissingModule]:
+    """Yield the modules of the package that an entry point imports and no build installs.
+
+    setup.py lists the packages of Python that it installs; a folder in one of them is another one.
+    Other modules may be those of other packages.
+    """
+    setup = package.installation
+    if setup is None or package.is_cmake or setup.unread or not setup.packages:
+        return
+    for path in dict.fromkeys(module_path(package, each.module) for each in entry_points(package)):
+        code = read_module(package, path) if path is not None else None
+        if path is None or code is None:
+            continue
+        for module, statement in _imported_modules(code, path.rpartition("/")[0]):
+            is_own = any(module.startswith(f"{name}.") for name in setup.packages)
+            needed = _package_of_module(package, module) if is_own else None
+            if needed is not None and needed not in setup.packages:
+                at = location_in(code.source, position_of(statement))
+                yield _MissingModule(module, needed, at)
+
+
+def _imported_modules(code: Code, folder: str) -> Iterator[tuple[str, ast.stmt]]:
+    """Yield the modules that the statements of a file import, without those in other statements."""
+    for statement in code.tree.body:
+        if isinstance(statement, ast.Import):
+            for name in statement.names:
+                yield name.name, statement
+        elif isinstance(statement, ast.ImportFrom):
+            parts = folder.split("/")[: 1 - statement.level or None] if statement.level else []
+            base = [*parts, *(statement.module or "").split(".")]
+            for name in statement.names:
+                yield ".".join(filter(None, [*base, name.name])), statement
+
+
+def _package_of_module(package: Package, module: str) -> str | None:
+    """Return the package of Python that holds a module, or a name in it; None without one."""
+    for name in (module, module.rpartition(".")[0]):
+        path = module_path(package, name) if name else None
+        if path is not None:
+            return path.rpartition("/")[0].replace("/", ".") or None
+    return None
 
 
 def _lacks_module(package: Package, module: str) -> bool:

@@ -3,7 +3,6 @@
 The nodes are those that a lifecycle manager looks after.
 """
 
-import ast
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import NamedTuple
@@ -18,11 +17,12 @@ from grader.ros.package.entry_points import (
     entry_fault,
     entry_points,
     module_path,
+    modules_not_installed,
     read_module,
 )
 from grader.ros.package.package import CMAKE, SETUP, Package
 from grader.ros.package.program_names import meant_program, program_names
-from grader.ros.python.parse import Code, bound_in, location_in, position_of
+from grader.ros.python.parse import bound_in
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import (
     Compared,
@@ -109,49 +109,14 @@ def _entry_points(workspace: Workspace, package: Package) -> Iterator[Fact]:
 
 
 def _modules_not_installed(package: Package) -> Iterator[Mismatch]:
-    """Yield the modules of the package that an entry point imports and no build installs.
-
-    setup.py lists the packages of Python that it installs; a folder in one of them is another one.
-    """
-    setup = package.installation
-    if setup is None or package.is_cmake or setup.unread or not setup.packages:
-        return
-    for path in dict.fromkeys(module_path(package, each.module) for each in entry_points(package)):
-        code = read_module(package, path) if path is not None else None
-        if path is None or code is None:
-            continue
-        for module, statement in _imported_modules(code, path.rpartition("/")[0]):
-            needed = _package_of_module(package, module)
-            if needed is not None and needed not in setup.packages:
-                at = location_in(code.source, position_of(statement))
-                message = (
-                    f"no build installs {needed!r}, so that this import fails: add it to packages "
-                    "in setup.py"
-                )
-                place = Location(package.path(SETUP), 1, 1)
-                yield Mismatch(MODULE_INSTALLED, message, at, place, word=module)
-
-
-def _imported_modules(code: Code, folder: str) -> Iterator[tuple[str, ast.stmt]]:
-    """Yield the modules that the statements of a file import, without those in other statements."""
-    for statement in code.tree.body:
-        if isinstance(statement, ast.Import):
-            for name in statement.names:
-                yield name.name, statement
-        elif isinstance(statement, ast.ImportFrom):
-            parts = folder.split("/")[: 1 - statement.level or None] if statement.level else []
-            base = [*parts, *(statement.module or "").split(".")]
-            for name in statement.names:
-                yield ".".join(filter(None, [*base, name.name])), statement
-
-
-def _package_of_module(package: Package, module: str) -> str | None:
-    """Return the package of Python that holds a module, or a name in it; None without one."""
-    for name in (module, module.rpartition(".")[0]):
-        path = module_path(package, name) if name else None
-        if path is not None:
-            return path.rpartition("/")[0].replace("/", ".") or None
-    return None
+    """Yield the modules of the package that an entry point imports and no build installs."""
+    for missing in modules_not_installed(package):
+        message = (
+            f"no build installs {missing.package!r}, so that this import fails: add it to packages "
+            "in setup.py"
+        )
+        place = Location(package.path(SETUP), 1, 1)
+        yield Mismatch(MODULE_INSTALLED, message, missing.location, place, word=missing.module)
 
 
 def _other_modules(package: Package) -> Iterator[Mismatch]:
