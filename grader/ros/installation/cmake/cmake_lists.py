@@ -11,8 +11,8 @@ from contextlib import suppress
 from grader.base.names import near
 from grader.base.source import Source
 from grader.files.tree import Tree
+from grader.ros.installation.cmake.ament_checks import check_tests
 from grader.ros.installation.cmake.cmake_build import BUILD_COMMANDS, Build
-from grader.ros.installation.cmake.cmake_tests import check_tests
 from grader.ros.installation.cmake.cmake_values import (
     Text,
     Values,
