@@ -37,6 +37,7 @@ FOLLOWED = {  # pages whose blocks belong together
 OTHER_FILES = {  # what only these pages presume, and what it is
     "grade-one-submission.md": {"arm.urdf": "rubrics/arm/arm.urdf"},
     "gradescope.md": {"my_lab.toml": "rubrics/arm/rubric.toml"},
+    "graph.md": {"rubrics/diffdrive": "rubrics/diffdrive"},
     "rubric-test.md": {"my_lab.toml": "rubrics/arm/rubric.toml"},
     "grade-a-class.md": {
         "my_lab.toml": "rubrics/lab6/rubric.toml",
@@ -246,6 +247,7 @@ def test_every_command_in_the_text_works(presumed: Path, tmp_path: Path) -> None
     for place in ("lab6", "Lab6/my_robot", "Lab6/Birch", "labs/lab6/my_robot"):
         shutil.copytree(ROOT / "rubrics/lab6/my_robot", folder / place)
     shutil.copytree(ROOT / "rubrics/lab6/my_robot", folder / "my_robot")
+    shutil.copytree(ROOT / "rubrics/diffdrive", folder / "rubrics/diffdrive")
     shutil.copy(ROOT / "rubrics/lab6/rubric.toml", folder / "my_lab.toml")
     (rover,) = (ROOT / "rubrics/rover").rglob("rover.urdf")
     shutil.copy(rover, folder)
