@@ -81,7 +81,9 @@ def test_the_dependencies_that_a_package_lacks_are_one_finding(tmp_path: Path) -
         "add <exec_depend>rviz2</exec_depend> <exec_depend>joy</exec_depend>"
     )
     assert messages[1].endswith("'rviz2', which is used here: add <exec_depend>rviz2</exec_depend>")
-    assert messages[2].endswith("did you mean 'joyy'?")
+    assert messages[2].endswith(
+        "'joy', which is used here; it declares 'joyy': did you mean 'joy'?"
+    )
 
 
 def test_an_environment_variable_is_said_once(tmp_path: Path) -> None:

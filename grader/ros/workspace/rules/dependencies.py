@@ -94,12 +94,7 @@ def _undeclared(
         meant = near(name, declared)
         if meant is not None and _is_there(package, name) and _is_there(package, meant):
             meant = None  # another package
-        misplaced = manifest.misplaced.get(name)
-        guess = ""
-        if misplaced is not None:
-            guess = f": <export> has it (line {misplaced.line}), where it has no effect"
-        elif meant is not None:
-            guess = f"; did you mean {meant!r}?"
+        guess = _guess(package, manifest, name, meant)
         bringer = brought.get(name) or (found_with.get(name) if use.is_built else None)
         message = f"package.xml of {package.name!r} does not declare {name!r}, which "
         if bringer is None:
@@ -112,6 +107,18 @@ def _undeclared(
         lacked = name if not guess else ""
         wrong = Mismatch(DEPENDENCY_DECLARED, message, at, start, bringer is None, either)
         yield wrong._replace(word=name, lacked=lacked, is_built=use.is_built)
+
+
+def _guess(package: Package, manifest: Manifest, name: str, meant: str | None) -> str:
+    """Return what package.xml has in place of a package that it does not declare."""
+    misplaced = manifest.misplaced.get(name)
+    if misplaced is not None:
+        return f": <export> has it (line {misplaced.line}), where it has no effect"
+    if meant is None:
+        return ""
+    if _is_there(package, name):  # then package.xml has the slip
+        return f"; it declares {meant!r}: did you mean {name!r}?"
+    return f"; did you mean {meant!r}?"
 
 
 def _brought_by(package: Package, declared: Collection[str]) -> dict[str, str]:
