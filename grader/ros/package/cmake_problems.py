@@ -23,6 +23,7 @@ _INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[\"<](\w+)/", re.MULTILINE)
 _OTHER_WAYS = re.compile(
     r"ament_auto|_INCLUDE_DIR|(?<!target_)link_libraries\(|target_link_libraries\(\s*\$"
 )
+_LINKED = re.compile(r"target_link_libraries\(\s*+([^\s()]++)")
 _OF_TESTS = re.compile(r"(^|/)tests?/|(^|/|_)test_|_test\.")
 
 
@@ -81,7 +82,8 @@ def _not_linked(package: Package, setup: Installation, target: CmakeTarget) -> I
     Neither ament_target_dependencies() names them nor what it names exports them.
     """
     exports = cmake_words().exports
-    if _OTHER_WAYS.search(setup.source.text):
+    text = setup.source.text  # what it links may be a package, as ${sensor_msgs_TARGETS}
+    if _OTHER_WAYS.search(text) or target.name in _LINKED.findall(text):
         return
     if not target.packages or not {*target.packages} <= exports.keys():
         return
