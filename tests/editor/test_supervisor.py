@@ -93,7 +93,7 @@ def test_keeps_what_it_found_before(lab6: Path) -> None:
 
 
 def test_reads_the_other_files(lab6: Path) -> None:
-    """A file that hangs from the start is left out, until it has changed on the disk."""
+    """A file that hangs from the start is not read until it has changed on the disk."""
     slow = lab6 / "my_robot/README.md"
     slow.write_text(_HANGS, encoding="utf-8")
 

@@ -558,7 +558,7 @@ def test_a_well_known_program_in_the_workspace_has_its_row() -> None:
 
 
 def test_tf_has_no_end() -> None:
-    """A node that publishes it by hand has its other topics only."""
+    """A node whose own code publishes it has its other topics only."""
     code = TALKER.replace("'answer'", "'/tf'")
     path = "demo/launch/demo.launch.py"
     text = launch_file(

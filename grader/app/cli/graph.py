@@ -37,8 +37,8 @@ def graph(
     It has the nodes that are started, their topics, services and actions with types and what is at
     the other end, and the transforms: what `ros2 node list`, `ros2 topic info` and `view_frames`
     show of a running system. Nothing is run. Findings of inspect stand at the ends that they
-    concern. What depends on a run, such as a condition, is dashed. /rosout, /parameter_events, /tf
-    and the services of parameters are left out. Exits as inspect.
+    concern. What depends on a run, such as a condition, is dashed. It does not show /rosout,
+    /parameter_events, /tf and the services of parameters. Exits as inspect.
 
     Examples:
 

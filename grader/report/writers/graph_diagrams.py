@@ -36,7 +36,7 @@ class _DiagramArrow(NamedTuple):
 class Diagram(NamedTuple):
     """What is drawn of a graph: nodes, names between them, and arrows.
 
-    What a program of another package publishes or serves and nothing asks for is left out.
+    What a program of another package publishes or serves and nothing asks for is not drawn.
     """
 
     nodes: tuple[tuple[int, GraphNode, str], ...]  # with their numbers and severities

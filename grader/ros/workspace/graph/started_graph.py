@@ -169,17 +169,15 @@ def _own_node(
         parameters += _different(given, defaults)
     except NotDecided:
         opens_more = _TOO_MUCH
-    return GraphNode(
-        _full_name(node, name),
-        node.name,
-        kind,
-        node.location,
-        _shown(ends),
-        _doubt_of(node),
-        opens_more,
-        tuple(parameters),
-        inside,
-    )
+    made = _graph_node(node, name, kind, inside)
+    shown, different = _shown(ends), tuple(parameters)
+    return made._replace(ends=shown, opens_more=opens_more, parameters=different)
+
+
+def _graph_node(node: StartedNode, name: str | None, kind: GraphNodeKind, inside: str) -> GraphNode:
+    """Return a started node under a name, without what it opens."""
+    full, at = _full_name(node, name), node.location
+    return GraphNode(full, node.name, kind, at, doubt=_doubt_of(node), inside=inside)
 
 
 def _shown(ends: Sequence[GraphEnd]) -> tuple[GraphEnd, ...]:
@@ -193,7 +191,7 @@ def _shown(ends: Sequence[GraphEnd]) -> tuple[GraphEnd, ...]:
 
 
 def _different(given: NodeParameters, defaults: Mapping[str | None, object]) -> list[GivenValue]:
-    """Return the values that differ from the defaults; those of files for all nodes are left out.
+    """Return the values that differ from the defaults, without those of files for all nodes.
 
     What is not declared under its name may be so under a computed one.
     """
@@ -237,17 +235,9 @@ def _known_node(
             ends += _bridged_images(named)
     except NotDecided:
         opens_more = _TOO_MUCH
-    return GraphNode(
-        _full_name(node, name),
-        node.name,
-        kind,
-        node.location,
-        _shown(ends),
-        _doubt_of(node),
-        opens_more,
-        tuple(parameters),
-        inside,
-    )
+    made = _graph_node(node, name, kind, inside)
+    shown, different = _shown(ends), tuple(parameters)
+    return made._replace(ends=shown, opens_more=opens_more, parameters=different)
 
 
 def _ends_for_rules(making: _Making, node: StartedNode) -> Iterator[GraphEnd]:
