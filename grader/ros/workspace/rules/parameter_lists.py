@@ -28,7 +28,8 @@ def list_facts(workspace: Workspace) -> Iterator[Fact]:
         for _, section in sections_in(tree):
             workspace.charge(1)
             for value in values_in(section):
-                workspace.charge(1 + len(value.node.items))
+                tables = [each.value for each in value.node.items if isinstance(each.value, dict)]
+                workspace.charge(1 + len(value.node.items) + sum(map(len, tables)))
                 yield from _refused_list(value)
                 yield from _without_value(value)
 
@@ -42,30 +43,40 @@ def _refused_list(value: YamlValue) -> Iterator[Mismatch]:
             message = f"{value.said}: rcl reads no lists in a list, and refuses the file: {words}"
             yield Mismatch(PARAMETER_LIST, message, following.location)
             return
-    kinds = [kind for item in items if (kind := _type_of(item)) is not None]
-    if len(kinds) < len(items):
+    entries = list[YamlNode]()  # rcl reads the values of mappings in a list as entries of it
+    for item in items:
+        entries += item.value.values() if isinstance(item.value, dict) else [item]
+    kinds = [kind for entry in entries if (kind := _type_of(entry)) is not None]
+    if len(kinds) < len(entries):
         return
-    for item, kind in zip(items, kinds, strict=True):
+    for entry, kind in zip(entries, kinds, strict=True):
         if kind is not kinds[0]:
-            yield _mixed(value, kinds[0], item, kind)
+            yield _mixed(value, kinds[0], entry, kind)
             return
 
 
 def _mixed(value: YamlValue, first: type[object], item: YamlNode, kind: type[object]) -> Mismatch:
     """Return that an entry of a list has another type than the first one."""
-    at = item.location
-    words = (
-        f"Sequence should be of same type. Value type {_RCL_TYPES[kind]!r} do not belong at "
-        f"line_num {at.line}"
-    )
+    at, words = item.location, _words_of(kind, item)
     advice = ""
     if {first, kind} == {int, float}:
         advice = "; write each number with a decimal point"
+    if any(isinstance(each.value, dict) for each in value.node.items):
+        message = f"{value.said}: rcl reads no mappings in a list, and refuses the file: {words}"
+        return Mismatch(PARAMETER_LIST, message, at)
     message = (
         f"{value.said}: the list begins with {_IN_WORDS[first]}, and {quoted(item.text or '')} is "
         f"none, so rcl refuses the file: {words}{advice}"
     )
     return Mismatch(PARAMETER_LIST, message, at)
+
+
+def _words_of(kind: type[object], node: YamlNode) -> str:
+    """Return what rcl says of a value of another type than the list has."""
+    return (
+        f"Sequence should be of same type. Value type {_RCL_TYPES[kind]!r} do not belong at "
+        f"line_num {node.location.line}"
+    )
 
 
 def _type_of(node: YamlNode) -> type[object] | None:
