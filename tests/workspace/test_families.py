@@ -937,7 +937,7 @@ CORRECT: list[tuple[str, list[Edit]]] = [
             (
                 "navigation.yaml",
                 "controller_plugins",
-                """maps: [{map: $(find-pkg-share cart_bringup)/worlds/hall.yaml, scale: 1}, package://cart_bringup/worlds/hall.yaml]
+                """maps: [{map: $(find-pkg-share cart_bringup)/worlds/hall.yaml}, package://cart_bringup/worlds/hall.yaml]
     text: $(file-content $(find-pkg-share cart_bringup)/worlds/hall.yaml)
     controller_plugins""",
             )

@@ -43,9 +43,7 @@ def _refused_list(value: YamlValue) -> Iterator[Mismatch]:
             message = f"{value.said}: rcl reads no lists in a list, and refuses the file: {words}"
             yield Mismatch(PARAMETER_LIST, message, following.location)
             return
-    entries = list[YamlNode]()  # rcl reads the values of mappings in a list as entries of it
-    for item in items:
-        entries += item.value.values() if isinstance(item.value, dict) else [item]
+    entries = [entry for item in items for entry in _entries_in(item)]
     kinds = [kind for entry in entries if (kind := _type_of(entry)) is not None]
     if len(kinds) < len(entries):
         return
@@ -55,9 +53,24 @@ def _refused_list(value: YamlValue) -> Iterator[Mismatch]:
             return
 
 
+def _entries_in(item: YamlNode) -> Iterator[YamlNode]:
+    """Yield what rcl reads as entries of a list: of a mapping all that follows its first key."""
+    if not isinstance(item.value, dict):
+        yield item
+        return
+    for number, (key, value) in enumerate(item.value.items()):
+        if number:
+            yield YamlNode(item.source, item.key_marks[key], key)
+        yield value
+
+
 def _mixed(value: YamlValue, first: type[object], item: YamlNode, kind: type[object]) -> Mismatch:
     """Return that an entry of a list has another type than the first one."""
-    at, words = item.location, _words_of(kind, item)
+    at = item.location
+    words = (
+        f"Sequence should be of same type. Value type {_RCL_TYPES[kind]!r} do not belong at "
+        f"line_num {at.line}"
+    )
     advice = ""
     if {first, kind} == {int, float}:
         advice = "; write each number with a decimal point"
@@ -69,14 +82,6 @@ def _mixed(value: YamlValue, first: type[object], item: YamlNode, kind: type[obj
         f"none, so rcl refuses the file: {words}{advice}"
     )
     return Mismatch(PARAMETER_LIST, message, at)
-
-
-def _words_of(kind: type[object], node: YamlNode) -> str:
-    """Return what rcl says of a value of another type than the list has."""
-    return (
-        f"Sequence should be of same type. Value type {_RCL_TYPES[kind]!r} do not belong at "
-        f"line_num {node.location.line}"
-    )
 
 
 def _type_of(node: YamlNode) -> type[object] | None:
