@@ -340,10 +340,37 @@ def test_click_names_a_link_and_number_leads_to_its_mistake(page: Any) -> None:
     page.locator("#space-canvas").click(position=place)
     about = page.locator("#space-about").inner_text()
     assert about.startswith("base_link at 0 0 0 m, rpy 0 0 0° in base_link")
-    page.locator(".space-pin", has_text="2").click()
+    page.locator(".space-pin", has_text="1").click()
     assert page.url.endswith("#criterion-lidar-frame")
     page.locator("#criterion-lidar-frame .pin").first.click()
     assert page.locator("#space-about").inner_text().startswith("lidar at 0.15 0 0.2 m")
+
+
+def test_names_of_links_are_shown(page: Any) -> None:
+    """The link under the pointer and the chosen one have their names, with Frames all that have room."""
+
+    def names() -> set[str]:
+        page.evaluate("() => RobotView.render()")
+        return {
+            element.text_content()
+            for element in page.locator(".space-name").all()
+            if element.get_attribute("visibility") == "visible"
+        }
+
+    page.locator("#space-reset").click()
+    page.mouse.move(0, 0)
+    assert names() == {"base_link"}
+    page.locator("#space-links").select_option("lidar")
+    assert names() == {"base_link", "lidar"}
+    page.locator("#space-frames").click()
+    assert {"lidar", "left_wheel", "base_link"} <= names()
+    page.locator("#space-frames").click()
+    page.locator("#space-reset").click()
+    box = page.locator("#space-canvas").bounding_box()
+    page.mouse.move(box["x"] + 0.36 * box["width"], box["y"] + 0.48 * box["height"])
+    page.evaluate("() => RobotView.select('lidar')")
+    assert names() == {"base_link", "lidar"}
+    page.locator("#space-reset").click()
 
 
 def test_two_fingers_zoom(browser: Any, tmp_path: Path) -> None:

@@ -44,6 +44,45 @@ def test_number_of_a_failure_leads_to_the_picture(page: Any) -> None:
     page.set_viewport_size({"width": 1280, "height": 900})
 
 
+SIZES = [(390, 844), (683, 768), (960, 1080), (1366, 768)]
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_the_first_screen_has_a_mistake_with_its_line(page: Any, width: int, height: int) -> None:
+    """The first mistake, what it costs and its line are on the screen, beside or below the robot; the drawings are last."""
+    page.set_viewport_size({"width": width, "height": height})
+    page.evaluate("() => scrollTo(0, 0)")
+    card = page.locator(".report .card").first
+    for part in (card.locator("h3"), card.locator(".points"), card.locator(".where").first):
+        box = part.bounding_box()
+        assert box["y"] + box["height"] <= height
+    canvas = page.locator("#space-canvas").bounding_box()
+    assert canvas["height"] <= 0.45 * height + 1
+    slider = page.locator("#space-joints input").first.bounding_box()
+    assert slider["y"] + slider["height"] <= height
+    if width < 992:
+        last = page.locator(".report .card").last.bounding_box()
+        assert page.locator(".views").bounding_box()["y"] > last["y"] + last["height"]
+    page.set_viewport_size({"width": 1280, "height": 900})
+
+
+def test_mistakes_are_numbered_by_cost(page: Any) -> None:
+    """Down the page, the numbers of the picture follow each other."""
+    numbers = [text.split()[-1] for text in page.locator(".report .card .pin").all_inner_texts()]
+    assert numbers == [str(number) for number in range(1, len(numbers) + 1)]
+    assert len(numbers) > 2
+
+
+@pytest.mark.parametrize(("width", "height"), SIZES)
+def test_what_is_touched_has_24_pixels(page: Any, width: int, height: int) -> None:
+    """Buttons, sliders, lists and numbers are at least 24 pixels high, as WCAG 2.2 asks (2.5.8)."""
+    page.set_viewport_size({"width": width, "height": height})
+    for target in page.locator("#robot button, #robot select, #robot input, .card .pin").all():
+        if target.is_visible():
+            assert target.bounding_box()["height"] >= 24
+    page.set_viewport_size({"width": 1280, "height": 900})
+
+
 @pytest.mark.usefixtures("shows_edits")
 def test_new_text_is_copied(open_page: Open, tmp_path: Path) -> None:
     """The button of a hint copies the new lines."""

@@ -121,6 +121,7 @@ def test_a_broken_file_is_shown_in_grey(
         assert page.evaluate(grey) == "grayscale(1)"
         card = page.locator("#view-broken article")
         assert "URDF002 error my_robot.urdf:24:4" in card.inner_text()
+        assert page.title() == "1 problem: my_robot"
         assert card.bounding_box()["y"] < page.locator("#space-canvas").bounding_box()["y"]
         assert greens(page) == pytest.approx(before)
         assert page.evaluate("() => document.documentElement.scrollWidth") == viewport["width"]

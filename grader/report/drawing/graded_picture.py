@@ -10,6 +10,7 @@ from grader.base.transforms import Transform
 from grader.lab.grading.report import Report, Result
 from grader.lab.rubric.criterion import Criterion
 from grader.lab.rubric.rubric import Rubric
+from grader.report.content import failures
 from grader.report.criteria import points_of
 from grader.report.drawing.picture import Body, Callout, Picture, Scene, scene_of
 from grader.ros.api import Configuration
@@ -34,7 +35,7 @@ def picture_of(report: Report) -> Picture | None:
     reference = None
     if solution is not None and reference_frame:
         reference = scene_of(solution, reference_frame, wheels)
-    lost = [result for result in report.results if _is_marked(result)]
+    lost = [entry.result for entry in failures(report) if _is_marked(entry.result)]
     by_link = _by_link(lost, robot, solution)
     callouts = []
     for number, (link, results) in enumerate(by_link.items(), 1):
@@ -109,7 +110,7 @@ def _is_marked(result: Result) -> bool:
 def _by_link(
     lost: Sequence[Result], robot: Configuration, solution: Configuration | None
 ) -> dict[str, list[Result]]:
-    """Return the criteria by the link that they are about, in the rubric's order.
+    """Return the criteria by the link that they are about, in the order of the mistakes.
 
     The key is "" for several links, or none.
     """

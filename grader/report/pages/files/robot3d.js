@@ -325,6 +325,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
     drawSolids();
     drawSigns();
     placePins();
+    placeNames();
   };
   let asked = 0;
   const redraw = () => {
@@ -361,6 +362,40 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
       const [right, down] = [x * canvas.clientWidth, y * canvas.clientHeight];
       element.setAttribute("transform", `translate(${right} ${down})`);
     });
+  };
+
+  // --- Names of links, at their frames ---
+  let pointed = ""; // the link under the pointer
+  const names = robot.links.map(({ name }) => {
+    const element = svg("text", { class: "space-name", "aria-hidden": "true" });
+    element.textContent = name;
+    find("pins").append(element);
+    return { name, element };
+  });
+  const LETTER = { width: 7, height: 14 }; // pixels
+  const placeNames = () => {
+    /** @type {{x: number, y: number, width: number}[]} */
+    const taken = [];
+    const first = (/** @type {string} */ name) => Number(name === selected || name === pointed);
+    const shown = names.filter(
+      ({ name }) => shows.frames || name === robot.frame || first(name) || !hasShapes,
+    );
+    names.forEach(({ element }) => element.setAttribute("visibility", "hidden"));
+    for (const { name, element } of shown.sort((a, b) => first(b.name) - first(a.name))) {
+      const T = pose(name);
+      const [right, down] = place([T[3], T[7], T[11]]) || [-1, -1];
+      const [x, y] = [right * canvas.clientWidth + 6, down * canvas.clientHeight - 6];
+      const width = name.length * LETTER.width;
+      const isFree = taken.every(
+        (other) =>
+          Math.abs(other.y - y) > LETTER.height || x > other.x + other.width || other.x > x + width,
+      );
+      if (right > 0 && isFree) {
+        taken.push({ x, y, width });
+        element.setAttribute("transform", `translate(${x} ${y})`);
+        element.setAttribute("visibility", "visible");
+      }
+    }
   };
 
   // --- What a link is ---
@@ -426,6 +461,16 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
   const pointers = new Map();
   let travelled = 0;
   const stage = /** @type {HTMLElement} */ (canvas.parentElement); // the pins are above the canvas
+  const linkUnder = (/** @type {PointerEvent} */ { clientX, clientY }) => {
+    const { left, top, width, height } = canvas.getBoundingClientRect();
+    return linkAt((clientX - left) / width, (clientY - top) / height);
+  };
+  const pointTo = (/** @type {string} */ link) => {
+    if (link !== pointed) {
+      pointed = link;
+      redraw();
+    }
+  };
   stage.addEventListener("pointerdown", (event) => {
     travelled = pointers.size ? Infinity : 0;
     pointers.set(event.pointerId, [event.clientX, event.clientY]);
@@ -433,6 +478,7 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
   stage.addEventListener("pointermove", (event) => {
     const before = pointers.get(event.pointerId);
     if (!before) {
+      pointTo(linkUnder(event));
       return;
     }
     const now = [event.clientX, event.clientY];
@@ -458,10 +504,10 @@ gl_FragColor = vec4(colour.rgb * light * colour.a, colour.a);
   });
   stage.addEventListener("pointerup", (event) => {
     if (pointers.delete(event.pointerId) && travelled < 4 && event.target === canvas) {
-      const { left, top, width, height } = canvas.getBoundingClientRect();
-      select(linkAt((event.clientX - left) / width, (event.clientY - top) / height));
+      select(linkUnder(event));
     }
   });
+  stage.addEventListener("pointerleave", () => pointTo(""));
   stage.addEventListener("pointercancel", (event) => pointers.delete(event.pointerId));
   stage.addEventListener("dragstart", (event) => event.preventDefault());
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());

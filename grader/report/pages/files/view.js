@@ -134,6 +134,11 @@
     for (const one of [main, head]) {
       one?.classList.toggle("stale", view.isStale);
     }
+    if (view.isStale) {
+      const count = find("view-broken").querySelectorAll(".card").length;
+      const name = head?.querySelector("h1")?.textContent;
+      document.title = `${count} ${count === 1 ? "problem" : "problems"}: ${name}`;
+    }
   };
   /** Show a part of another page. @param {string} id @param {Document} page */
   const take = (id, page) => {
