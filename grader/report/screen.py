@@ -27,14 +27,15 @@ def columns(terminal: int = _DEFAULT_WIDTH) -> int:
 class Screen(NamedTuple):
     """The terminal or file of a report.
 
-    It has its width in columns, its encoding, whether it shows colours, and the folder whose
-    files links lead to, if it has links.
+    It has its width in columns, its encoding, whether it shows colours, the folder whose
+    files links lead to, if it has links, and its rows, 0 if they are not known.
     """
 
     width: int
     encoding: str = "utf-8"
     is_terminal: bool = False
     folder: str = ""
+    rows: int = 0
 
 
 def draw(render: Callable[["Console"], None], screen: Screen | None = None) -> str:

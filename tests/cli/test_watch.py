@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -20,6 +21,7 @@ from grader.app.cli.streams import TERMINAL
 from grader.app.commands.repeating import changes, repeat_on_change
 from grader.app.grading import GradeRequest, GradeRun, grade_submission
 from grader.base.processor_time import CAN_LIMIT
+from grader.report.screen import Screen
 from grader.report.writing import Warn
 from tests.classroom.class_runs import shell_code, started
 from tests.command_line import HANG_TIMEOUT, ROOT, clean_environment, run
@@ -241,6 +243,64 @@ def test_a_pause_follows_the_time_of_a_look_alone(
     assert pauses == pytest.approx([pause] * 7)
     # A change is graded at the second look after it.
     assert rounds == [(first, 0), ("<robot name='1'/>", 2), ("<robot name='4'/>", 5)]
+
+
+SEVERAL = ROOT / "submissions/lab6/several-mistakes/my_robot/urdf/my_robot.urdf"
+CLEAR = "\x1b[H\x1b[2J"
+FIXED = ('xyz="0.15 0 0.2"', 'xyz="0.15 0 0.225"')
+
+
+@pytest.fixture
+def on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Make standard output a terminal of 80 columns and 24 rows."""
+    screen = Screen(80, is_terminal=True, rows=24)
+    for command in ("grade", "inspect"):
+        monkeypatch.setattr(
+            f"grader.app.cli.{command}.TERMINAL", TERMINAL._replace(screen=lambda: screen)
+        )
+
+
+def rows_of(output: str) -> list[str]:
+    """Return the rows that a terminal shows, without colours, after it is cleared once."""
+    before, _, text = output.partition(CLEAR)
+    assert (before, CLEAR in text) == ("", False)
+    return re.sub(r"\x1b\[[0-9;]*m", "", text).splitlines()
+
+
+@pytest.mark.usefixtures("on_a_terminal")
+def test_a_terminal_shows_the_first_mistake_and_what_changed(robot: Path, watch: Watch) -> None:
+    """In 24 rows the first mistake is whole, with its place, line and hint, and what changed; a file that is not there is said alone."""
+    put(SEVERAL, robot)
+    better = SEVERAL.read_text().replace(*FIXED, 1)
+    done = watch([robot], partial(put, better, robot), robot.unlink, partial(put, SEVERAL, robot))
+    first, second, gone, third = map(rows_of, done.out)
+    assert [len(rows) for rows in (first, second, third)] == [23, 23, 23]
+    rule = "-- 12:00:00 Ctrl-C ends "
+    assert all(rows[0] == rule.ljust(80, "-") for rows in (first, second, gone, third))
+    assert "✗ -8 points: lidar-frame 6, lidar-on-top 2  my_robot.urdf:39:15" in " ".join(first[2:6])
+    assert "  Check line 39: z of the joint origin of 'lidar'." in first
+    assert first[-1] == "43/70  IRP Lab 6: a wheeled base"
+    assert "✗ -7 points: right-wheel-forward 6, right-wheel-axis 1" in " ".join(second[2:6])
+    assert "  the sign of the roll of the joint origin of 'right_wheel'." in second
+    assert re.fullmatch(r"\.\.\. \d+ more rows without --watch, or with --verbose", second[-6])
+    assert second[-2:] == [
+        "43 -> 51 of 70 points (+8)",
+        "now passed: lidar-frame (+6) and lidar-on-top (+2)",
+    ]
+    assert (gone[1:], done.err[2]) == ([], f"grader: {robot} does not exist\n")
+    assert third[-2].startswith("51 -> 43 of 70 points")
+
+
+@pytest.mark.usefixtures("on_a_terminal")
+def test_verbose_shows_all_on_a_terminal(robot: Path, watch: Watch) -> None:
+    """What is asked for in full is not cut, nor what fits."""
+    put(SEVERAL, robot)
+    whole = rows_of(watch([robot, "--verbose"]).out[0])
+    assert len(whole) > 60
+    put(URDF, robot)
+    fitting = rows_of(watch([robot]).out[0])
+    assert len(fitting) < 23
+    assert not any("more rows" in row for row in (*whole, *fitting))
 
 
 @pytest.mark.slow

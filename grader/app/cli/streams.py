@@ -22,22 +22,23 @@ _LINE_SECONDS, _TERMINAL_SECONDS = 10.0, 0.1
 
 
 def screen(here: str | None = None) -> Screen:
-    """Return the width and encoding of standard output, and whether it is a terminal.
+    """Return the size and encoding of standard output, and whether it is a terminal.
 
     `here` is what comes before the paths of a report in the current folder, to which links may
     lead.
     """
     out = sys.stdout
     is_terminal = out is not None and out.isatty()
-    width = columns()
+    width, rows = columns(), 0
     if is_terminal:
         with suppress(OSError):
-            width = columns(os.get_terminal_size(out.fileno()).columns)
+            size = os.get_terminal_size(out.fileno())
+            width, rows = columns(size.columns), size.lines
     encoding = (out.encoding if out is not None else "") or "utf-8"
     is_forced = bool(os.environ.get("FORCE_HYPERLINK"))
     if here is None or not (is_forced or (is_terminal and _shows_links())):
-        return Screen(width, encoding, is_terminal)
-    return Screen(width, encoding, is_terminal, str(Path(here).resolve()))
+        return Screen(width, encoding, is_terminal, rows=rows)
+    return Screen(width, encoding, is_terminal, str(Path(here).resolve()), rows)
 
 
 def _shows_links() -> bool:

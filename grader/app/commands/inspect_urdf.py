@@ -4,8 +4,9 @@ And what is wrong in the packages around them.
 """
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from math import isfinite, nan
 from pathlib import Path
 from typing import NamedTuple
@@ -23,6 +24,7 @@ from grader.report.formats import InspectFormat, render_inspection
 from grader.report.inspection import InspectedRobot, Inspection, main_root
 from grader.report.invocation import Saves, read_arguments, read_saves
 from grader.report.repository import base_of, folder_of
+from grader.report.screen import Screen
 from grader.report.writing import Terminal, Warn
 from grader.ros.api import (
     Absent,
@@ -95,9 +97,9 @@ def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
     known = read_baseline(request.baseline) if request.baseline is not None else None
     if not request.watch:
         inspection = inspect_path(request, terminal.warn)
-        return _show_and_save(inspection, request, known, terminal)
+        return _show_and_save(inspection, request, known, terminal.screen(), terminal.print)
     # Late: few inspections are watched.
-    from grader.app.commands.repeating import refuse_watching, repeat_on_change, titled_with_time
+    from grader.app.commands.repeating import refuse_watching, repeat_on_change, show_round
 
     refuse_watching(request.path, request.output_format)
     is_first = True
@@ -108,10 +110,9 @@ def inspect_and_save(request: InspectRequest, terminal: Terminal) -> bool:
 
     def show(inspection: Inspection) -> None:
         nonlocal is_first
-        if not is_first:
-            terminal.print(titled_with_time("", terminal.screen()))
+        look = partial(show_round, terminal=terminal, is_first=is_first, is_whole=request.verbose)
         is_first = False
-        _show_and_save(inspection, request, known, terminal)
+        _show_and_save(inspection, request, known, terminal.screen(), look)
 
     own_paths = [file for _, file in saves]
     repeat_on_change([Path(request.path)], own_paths, terminal, INSPECT_SECONDS, work, show)
@@ -122,13 +123,13 @@ def _show_and_save(
     inspection: Inspection,
     request: InspectRequest,
     known: frozenset[str] | None,
-    terminal: Terminal,
+    screen: Screen,
+    show: Callable[[str], None],
 ) -> bool:
     """Show and save an inspection without what is known of a baseline.
 
     Return whether nothing else is certainly wrong.
     """
-    screen = terminal.screen()
     verbose = request.verbose
     texts = {}
     if request.write_baseline is not None:
@@ -138,7 +139,7 @@ def _show_and_save(
     for kind, file in request.saves:
         texts[file] = render_inspection(inspection, kind, verbose=verbose)
     robots = [Path(request.path, robot.path) for robot in inspection.robots]
-    terminal.print(render_inspection(inspection, request.output_format, screen, verbose=verbose))
+    show(render_inspection(inspection, request.output_format, screen, verbose=verbose))
     save_texts(texts, request.path, (*robots, *inspection.besides))
     return inspection.is_passed
 

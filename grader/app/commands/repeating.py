@@ -25,6 +25,9 @@ from grader.report.writing import Terminal
 _POLL = 0.2  # seconds between two looks, at least
 _SHARE = 10  # a look at many files is followed by a pause of this many times its own time
 _OF_FOLDER = 3  # numbers in the stamp of a folder; that of a file ends with the time of its change
+_CLEAR = "\x1b[H\x1b[2J"
+_ROWS_OF_WATCH, _LAST_ROWS = 2, 2  # the rule and the row of the cursor; of a report, the score
+_MIN_ROWS = 8  # of a report on any terminal
 _Stamps = dict[str, tuple[int, ...] | None]
 _Result = TypeVar("_Result")
 
@@ -68,6 +71,8 @@ def repeat_on_change(
             with limited_time(seconds):
                 result, read = work()
         except (InputError, MachineError, RubricError) as error:
+            if terminal.screen().is_terminal:
+                show_round("", terminal)
             for line in str(error).split("\n"):
                 terminal.warn(line)
             continue
@@ -90,10 +95,45 @@ def limited_time(seconds: float) -> Iterator[None]:
         lift_processor_time()
 
 
-def titled_with_time(text: str, screen: Screen) -> str:
-    """Return a text below a rule with the time."""
-    rule = f"-- {time.strftime('%H:%M:%S')} ".ljust(screen.width, "-")
-    return drawn_rows([Text(rule, "dim")], screen) + text
+def show_round(
+    text: str,
+    terminal: Terminal,
+    changed: Sequence[str] = (),
+    *,
+    is_first: bool = False,
+    is_whole: bool = False,
+) -> None:
+    """Show a report, then what changed, below a rule with the time but for the first report.
+
+    A terminal is cleared, and what does not fit is left out before the last rows of the report if
+    it need not be shown whole: the first mistake and what changed are on the screen.
+    """
+    screen = terminal.screen()
+    end = drawn_rows([Text(), *(Text(line, "bold") for line in changed)], screen) if changed else ""
+    if not screen.is_terminal:
+        terminal.print(("" if is_first else _rule("", screen)) + text + end)
+        return
+    if screen.rows and not is_whole:
+        text = _fitted(text, screen.rows - len(end.splitlines()) - _ROWS_OF_WATCH, screen)
+    terminal.print(_CLEAR + _rule("Ctrl-C ends ", screen) + text + end)
+
+
+def _rule(words: str, screen: Screen) -> str:
+    """Return a rule with the time."""
+    rule = f"-- {time.strftime('%H:%M:%S')} {words}".ljust(screen.width, "-")
+    return drawn_rows([Text(rule, "dim")], screen)
+
+
+def _fitted(text: str, room: int, screen: Screen) -> str:
+    """Return the first and last rows of a report, if it has more rows than there is room for."""
+    rows = text.splitlines(keepends=True)
+    excess = len(rows) - max(room, _MIN_ROWS) + 1
+    if excess <= 1:
+        return text
+    last = rows[-_LAST_ROWS:]
+    words = f"... {excess} more rows without --watch, or with --verbose"
+    first = rows[: len(rows) - _LAST_ROWS - excess]
+    return "".join([*first, drawn_rows([Text(words, "dim")], screen), *last])
 
 
 def drawn_rows(rows: list[Text], screen: Screen) -> str:

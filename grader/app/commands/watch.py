@@ -7,14 +7,7 @@ from collections.abc import Sequence
 from decimal import Decimal
 from pathlib import Path
 
-from rich.text import Text
-
-from grader.app.commands.repeating import (
-    drawn_rows,
-    refuse_watching,
-    repeat_on_change,
-    titled_with_time,
-)
+from grader.app.commands.repeating import refuse_watching, repeat_on_change, show_round
 from grader.app.grading import (
     MAX_NAMED_CRITERIA,
     GradeRequest,
@@ -36,6 +29,7 @@ from grader.report.writing import Terminal
 
 _CHANGES = {
     "passed": "now passed",
+    "given": "failed, but not deducted",
     "failed": "now failed",
     "skipped": "now skipped",
     "pending": "now needs manual grading",
@@ -98,13 +92,10 @@ def files_to_watch(path: str, rubric: str) -> list[Path]:
 
 
 def _show(report: Report, last: Report | None, terminal: Terminal, *, verbose: bool) -> None:
-    """Show a rule with the time below an earlier report, the whole report, then what changed."""
-    screen = terminal.screen()
-    text = render(report, Format.TERMINAL, screen=screen, verbose=verbose)
-    if last is not None:
-        lines = [Text(line, "bold") for line in comparison_lines(last, report)]
-        text = titled_with_time(text, screen) + drawn_rows([Text(), *lines], screen)
-    terminal.print(text)
+    """Show the report, then what changed since the last one."""
+    text = render(report, Format.TERMINAL, screen=terminal.screen(), verbose=verbose)
+    changed = comparison_lines(last, report) if last is not None else ()
+    show_round(text, terminal, changed, is_first=last is None, is_whole=verbose)
 
 
 def comparison_lines(before: Report, after: Report) -> list[str]:
@@ -127,8 +118,9 @@ def comparison_lines(before: Report, after: Report) -> list[str]:
 
 def _change(old: Result | None, new: Result) -> str:
     """Return how a criterion changed; empty if it did not."""
-    if old is None or old.outcome.status != new.outcome.status:
-        return _CHANGES[new.outcome.status]
+    status = new.outcome.status
+    if old is None or old.outcome.status != status:
+        return _CHANGES["given" if status == "failed" and new.points else status]
     is_other = old.points != new.points or (
         new.outcome.status != "passed" and old.outcome.message != new.outcome.message
     )
