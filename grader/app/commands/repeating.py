@@ -109,7 +109,9 @@ def show_round(
     it need not be shown whole: the first mistake and what changed are on the screen.
     """
     screen = terminal.screen()
-    end = drawn_rows([Text(), *(Text(line, "bold") for line in changed)], screen) if changed else ""
+    end = (
+        _drawn_rows([Text(), *(Text(line, "bold") for line in changed)], screen) if changed else ""
+    )
     if not screen.is_terminal:
         terminal.print(("" if is_first else _rule("", screen)) + text + end)
         return
@@ -121,7 +123,7 @@ def show_round(
 def _rule(words: str, screen: Screen) -> str:
     """Return a rule with the time."""
     rule = f"-- {time.strftime('%H:%M:%S')} {words}".ljust(screen.width, "-")
-    return drawn_rows([Text(rule, "dim")], screen)
+    return _drawn_rows([Text(rule, "dim")], screen)
 
 
 def _fitted(text: str, room: int, screen: Screen) -> str:
@@ -133,10 +135,10 @@ def _fitted(text: str, room: int, screen: Screen) -> str:
     last = rows[-_LAST_ROWS:]
     words = f"... {excess} more rows without --watch, or with --verbose"
     first = rows[: len(rows) - _LAST_ROWS - excess]
-    return "".join([*first, drawn_rows([Text(words, "dim")], screen), *last])
+    return "".join([*first, _drawn_rows([Text(words, "dim")], screen), *last])
 
 
-def drawn_rows(rows: list[Text], screen: Screen) -> str:
+def _drawn_rows(rows: list[Text], screen: Screen) -> str:
     """Return rows of text as the screen shows them."""
 
     def print_rows(console: Console) -> None:
