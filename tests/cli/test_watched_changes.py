@@ -51,7 +51,9 @@ def test_score_passes_and_failures() -> None:
 def test_a_failure_that_costs_nothing_is_no_new_failure() -> None:
     """It fails because of another one: it was skipped before, and gets its points."""
     before = changed(SHORT, base_box=with_status("skipped"))
-    after = changed(SHORT, base_box=lambda one: with_status("failed")(one)._replace(carried=True))
+    after = changed(
+        SHORT, base_box=lambda one: with_status("failed")(one)._replace(carried="lidar-frame")
+    )
     assert comparison_lines(before, after) == [
         "62 -> 64 of 70 points (+2)",
         "failed, but not deducted: base-box (+2)",

@@ -16,9 +16,7 @@ from grader.lab.checks.installed_files import INSTALLING, files_of_kind, require
 from grader.lab.checks.outcome import Outcome, failed, judged, passed
 from grader.lab.checks.started_nodes import Fault, Wanted, find_faults
 from grader.lab.submission.submission import Submission
-from grader.ros.installation.places import (
-    is_launch_named,
-)
+from grader.ros.installation.places import is_launch_named, where_written
 from grader.ros.package.file_places import FilePlace, find_places
 from grader.ros.package.package import CMAKE, SETUP, Package
 
@@ -138,7 +136,7 @@ def node_runs(
     )
     faults = find_faults(submission, evaluated, choices, wanted) if any(wanted) else []
     failure = _fail_certainly(package, evaluated, choices, faults)
-    failure = failure or _stop_at_files(package, places, built=built)
+    failure = failure or _stop_at_files(package, evaluated, places, built=built)
     if failure is not None:
         return failure
     if built or not any(place.is_in_misnamed(package) for place in places):
@@ -207,7 +205,9 @@ def _fail_missing(
     return judged(False, what, tuple(started), tuple(nodes), at=at, detail=f"{detail}{reason}")
 
 
-def _stop_at_files(package: Package, places: Sequence[FilePlace], *, built: bool) -> Outcome | None:
+def _stop_at_files(
+    package: Package, launch: "Launch", places: Sequence[FilePlace], *, built: bool
+) -> Outcome | None:
     """Return the failure of a launch file that stops at a file that it reads.
 
     None if it does not.
@@ -215,7 +215,7 @@ def _stop_at_files(package: Package, places: Sequence[FilePlace], *, built: bool
     if built and (
         wrong := [place for place in places if place.state == "wrong" and place.stops_launch]
     ):
-        return _fail_places(package, wrong)._replace(cause="stops")
+        return _fail_places(package, launch, wrong)._replace(cause="stops")
     return next(filter(None, (_warning_that_stops(package, place) for place in places)), None)
 
 
@@ -293,7 +293,7 @@ def _look_for_files(
         places = [place.with_parts(package) for place in places]
     wrong = _in_state(places, "wrong")
     if wrong:
-        return _fail_places(package, wrong)
+        return _fail_places(package, launch, wrong)
     if not started:
         return passed("the launch file looks for no file in a wrong place")
     return _judge_files(package, launch, name, places, needs_robot=needs_robot)
@@ -425,7 +425,7 @@ def _pass_places(places: Sequence[FilePlace]) -> Outcome:
     return passed(f"a build installs {enumerated(texts)}, where the launch file looks")
 
 
-def _fail_places(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
+def _fail_places(package: Package, launch: "Launch", wrong: Sequence[FilePlace]) -> Outcome:
     message = "; ".join(dict.fromkeys(place.text for place in wrong))
     is_local = any(place.is_local for place in wrong)
     if is_local:
@@ -437,9 +437,10 @@ def _fail_places(package: Package, wrong: Sequence[FilePlace]) -> Outcome:
         wrong[0].file,
         wrong[0].mistake or (_ON_ONE_MACHINE if is_local else _NOT_INSTALLED),
     )
-    return failed(
-        message, first.location, problem=wrong[0].problem, mistake=mistake, cause=wrong[0].cause
-    )
+    at = first.location
+    if wrong[0].is_local and at.path == launch.source.path:
+        at = where_written(launch.source, first.path or "") or at
+    return failed(message, at, problem=wrong[0].problem, mistake=mistake, cause=wrong[0].cause)
 
 
 def _no_files(launch: "Launch") -> NotDecided | MissingElement:

@@ -625,7 +625,10 @@ def _adding(file: PythonFile, codes: Sequence[str], what: str) -> Iterator[Propo
         for code in codes:
             names |= file.names_in(code)
         cause = f"a missing part of `{'data_files' if what == SETUP else _DESCRIPTION}`"
-        yield change([edit, *file.with_imports(sorted(names))], cause, what)
+        if imports := file.with_imports(sorted(names)):
+            missing = in_backticks(sorted(names & USUAL_NAMES.keys() - file.bound))
+            cause = f"{cause}, and the import of {missing}"
+        yield change([edit, *imports], cause, what)
 
 
 def _codes_of_entry(file: PythonFile, item: ast.expr) -> set[str]:

@@ -5,6 +5,8 @@ import re
 from pathlib import PurePosixPath
 from typing import Literal
 
+from grader.base.source import Location, Source
+
 # Paths below these are compared as strings.
 PREFIX = "/<prefix>"  # the folder that a build installs to
 ROS = "/opt/ros/"  # the folder that ROS 2 is installed to
@@ -94,6 +96,17 @@ def launch_stem(name: str) -> str:
 def one_machine_only(path: str) -> str:
     """Return the message about a path that is hard-coded for one machine."""
     return f"the path {path.replace(HOME, '~')} exists on one machine only"
+
+
+def where_written(source: Source, path: str) -> Location | None:
+    """Return where a file has a path in quotes, or its beginning; None if it does not."""
+    while path.count("/") > 1:
+        for quote in "\"'":
+            start = source.text.find(f"{quote}{path}")
+            if start >= 0:
+                return source.at(start + 1)
+        path = path.rpartition("/")[0]
+    return None
 
 
 def is_of_one_machine(path: str) -> bool:

@@ -10,7 +10,7 @@ from grader.base.problems import Problem
 from grader.base.source import Location
 from grader.base.text import counted
 from grader.ros.installation import package_problems as kinds
-from grader.ros.installation.places import is_of_one_machine
+from grader.ros.installation.places import is_of_one_machine, where_written
 from grader.ros.known.releases import releases_with
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.found_problems import (
@@ -73,13 +73,7 @@ def _where_written(launch: Launch, at: Location) -> Location | None:
     source = launch.source
     named = [reference.path or "" for reference in launch.references if reference.location == at]
     path = next(filter(is_of_one_machine, named), "")
-    while at.path == source.path and path.count("/") > 1:
-        for quote in "\"'":
-            start = source.text.find(f"{quote}{path}")
-            if start >= 0:
-                return source.at(start + 1)
-        path = path.rpartition("/")[0]
-    return None
+    return where_written(source, path) if at.path == source.path else None
 
 
 def _uninstalled_launch_files(workspace: Workspace) -> Iterator[Problem]:
