@@ -16,7 +16,7 @@ from grader.lab.checks.installed_files import INSTALLING, files_of_kind, require
 from grader.lab.checks.outcome import Outcome, failed, judged, passed
 from grader.lab.checks.started_nodes import Fault, Wanted, find_faults
 from grader.lab.submission.submission import Submission
-from grader.ros.installation.places import is_launch_named, where_written
+from grader.ros.installation.places import is_launch_named
 from grader.ros.package.file_places import FilePlace, find_places
 from grader.ros.package.package import CMAKE, SETUP, Package
 
@@ -433,13 +433,8 @@ def _fail_places(package: Package, launch: "Launch", wrong: Sequence[FilePlace])
             f"; use get_package_share_directory({package.name!r}), which returns the installed "
             "folder"
         )
-    first, mistake = (
-        wrong[0].file,
-        wrong[0].mistake or (_ON_ONE_MACHINE if is_local else _NOT_INSTALLED),
-    )
-    at = first.location
-    if wrong[0].is_local and at.path == launch.source.path:
-        at = where_written(launch.source, first.path or "") or at
+    mistake = wrong[0].mistake or (_ON_ONE_MACHINE if is_local else _NOT_INSTALLED)
+    at = wrong[0].location_in(launch.source)
     return failed(message, at, problem=wrong[0].problem, mistake=mistake, cause=wrong[0].cause)
 
 

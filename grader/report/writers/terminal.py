@@ -8,6 +8,7 @@ of a submission is never interpreted as markup or control codes.
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
+from textwrap import shorten
 from typing import TYPE_CHECKING, get_args
 
 from rich.console import Console
@@ -68,6 +69,7 @@ _LOOKS: Mapping[Role, str] = {
 }
 _DIFF_STYLES = {"-": "red", "+": "green"}
 _MAX_WHOLE = 5  # mistakes in full
+_MANY, _MAX_HINTS = 5, 2  # criteria; of more, so many hints in full
 _MAX_ROWS, _HEIGHT_OF_END = 18, 2  # of a report of one mistake; its last lines
 _MAX_NAMES, _MAX_PROBLEMS, _MAX_FILES = 3, 3, 2
 
@@ -87,7 +89,8 @@ def render_terminal(report: Report, console: Console, *, verbose: bool = False) 
 def _show_brief(report: Report, sections: ReportSections, page: Page) -> None:
     """Add the short report, without its last lines.
 
-    While a student has something to fix, what comes later is a line each, without empty rows.
+    While a student has something to fix in the robot, what comes later is a line each, without
+    empty rows.
     """
     is_unfinished = bool(sections.mistakes or sections.unbuilt) and not report.student
     is_short = is_unfinished and len(sections.mistakes) == 1
@@ -97,14 +100,12 @@ def _show_brief(report: Report, sections: ReportSections, page: Page) -> None:
         page.title(sections.unbuilt_title)
     for line in sections.unbuilt_lines:
         page.inset(line.text)
-    found_line = content.found_line(sections.pending) if is_unfinished else ""
-    if is_unfinished and not found_line:
+    is_early = is_unfinished and _is_robot_wrong(sections)
+    found_line = content.found_line(sections.pending) if is_early else ""
+    if is_early and not found_line:
         _show_pending(report, sections.pending, page)
-    if sections.carried:
-        page.leave_row()
-    for line in sections.carried:
-        page.line(line.text, _LOOKS[line.role])
-    if is_unfinished:
+    _show_carried(sections.carried, page)
+    if is_early:
         _show_later(report, found_line, sections.missing, page)
     else:
         _show_missing(sections.missing, page)
@@ -117,6 +118,20 @@ def _show_brief(report: Report, sections: ReportSections, page: Page) -> None:
     page.leave_row()
     if is_short:
         page.close_up(_MAX_ROWS - _HEIGHT_OF_END)
+
+
+def _show_carried(carried: Sequence[Line], page: Page) -> None:
+    """Add what fails and costs nothing."""
+    if carried:
+        page.leave_row()
+    for line in carried:
+        page.line(line.text, _LOOKS[line.role])
+
+
+def _is_robot_wrong(sections: ReportSections) -> bool:
+    """Return whether a mistake is in the robot, or a part of it is missing."""
+    wrong = (*sections.mistakes, *sections.unbuilt)
+    return any(entry.result.criterion.check.subject in ("urdf", "robot") for entry in wrong)
 
 
 def _show_remarks(section: Section, page: Page) -> None:
@@ -170,9 +185,13 @@ def _show_start(report: Report, page: Page) -> None:
 
 def _show_mistakes(mistakes: Sequence[Entry], report: Report, page: Page) -> None:
     """Add the first mistakes in full, and the costs and places of the rest."""
-    for entry in mistakes[:_MAX_WHOLE]:
+    are_many = sum(len(entry.results) for entry in mistakes) > _MANY
+    for number, entry in enumerate(mistakes[:_MAX_WHOLE]):
         page.leave_row()
-        _show_entry(entry, report, page, _brief_blocks(entry))
+        blocks = _brief_blocks(entry)
+        if are_many and number >= _MAX_HINTS:
+            blocks = _with_cut_hints(blocks, page.console.width - INDENT)
+        _show_entry(entry, report, page, blocks)
     rest = mistakes[_MAX_WHOLE:]
     if rest:
         them = "it" if len(rest) == 1 else "them"
@@ -195,6 +214,16 @@ def _brief_blocks(entry: Entry) -> Iterator[Block]:
                 pass
             case Answer() if is_failure(entry.result):
                 pass
+            case _:
+                yield part
+
+
+def _with_cut_hints(blocks: Iterable[Block], width: int) -> Iterator[Block]:
+    """Yield blocks with hints of one line."""
+    for part in blocks:
+        match part:
+            case Line("hint" | "feedback", text):
+                yield part._replace(text=shorten(text, width, placeholder=" ..."))
             case _:
                 yield part
 

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from grader.base.errors import InputError, MissingElement
 from grader.base.names import closest, is_misspelling
+from grader.base.source import Location, Source
 from grader.base.text import enumerated
 from grader.files.reading import URDF_LIMIT
 from grader.ros.installation.places import (
@@ -17,6 +18,7 @@ from grader.ros.installation.places import (
     is_of_one_machine,
     one_machine_only,
     share_parts,
+    where_written,
 )
 from grader.ros.package.installed_files import Lookup, look_up
 from grader.ros.package.package import Package
@@ -60,6 +62,13 @@ class FilePlace(NamedTuple):
     def is_local(self) -> bool:
         """Whether the path exists on one machine only."""
         return self.file.path is not None and is_of_one_machine(self.file.path)
+
+    def location_in(self, source: Source) -> Location:
+        """Return where a path of one machine is written, or else where the file is used."""
+        at = self.file.location
+        if self.is_local and at.path == source.path:
+            return where_written(source, self.file.path or "") or at
+        return at
 
     @property
     def problem(self) -> str:
