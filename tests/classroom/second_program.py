@@ -58,7 +58,7 @@ def cells_of(
 ) -> dict[str, str]:
     """Return the cells of a student in `grades.csv` by column, without those that are empty."""
     given = newest(marks, student["id"])
-    final = given.pop("total", "")
+    final = given.pop("grade", "") or given.pop("total", "")
     own_deadline = given.pop("deadline", "")
     cells = {
         "id": student["id"],

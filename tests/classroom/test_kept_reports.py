@@ -74,7 +74,7 @@ def test_only_what_changed_is_written(top: Path, searches: list[str]) -> None:
     before = pages(top)
     del searches[:]
     assert written(before, pages(top)) == set()
-    grader("mark", "ash", "total", "50", "--gradebook", top / "g", "--by", "Kim")
+    grader("mark", "ash", "grade", "50", "--gradebook", top / "g", "--by", "Kim")
     marked = pages(top)
     assert written(before, marked) == {"ash"}
     assert b"Final mark: 50 points, given by Kim" in marked["ash"][0]

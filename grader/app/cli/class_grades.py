@@ -62,7 +62,7 @@ def export(
 ) -> int:
     """Export the grades for a spreadsheet, an LMS or a browser.
 
-    A grade is the final mark of `grader mark STUDENT total`, else the sum of automatic points and
+    A grade is the final mark of `grader mark STUDENT grade`, else the sum of automatic points and
     manual marks minus the late penalty. For Canvas, Moodle, Blackboard and Brightspace, give the
     file that the LMS exported with --into. Only the grade cells (and Moodle's feedback) change.
     Rows without a grade are omitted, so that the import overwrites no other grade. The maximum in

@@ -71,7 +71,7 @@ def offer_marked(context: typer.Context, incomplete: str) -> list[str]:
     """Return the criteria of the gradebook's rubric, and what else can be marked."""
     files = sorted((_gradebook(context) / "rubric").glob("*.toml"))
     criteria = [name for file in files for name in _ids_in(file, "criterion")]
-    return _starting(incomplete, [*criteria, "total", "deadline"])
+    return _starting(incomplete, [*criteria, "grade", "deadline"])
 
 
 def _starting(incomplete: str, words: Iterable[str]) -> list[str]:

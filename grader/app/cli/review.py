@@ -37,7 +37,7 @@ def mark(
     criterion: Annotated[
         str,
         typer.Argument(
-            metavar="CRITERION|total|deadline", help=_CRITERION, autocompletion=offer_marked
+            metavar="CRITERION|grade|deadline", help=_CRITERION, autocompletion=offer_marked
         ),
     ] = "",
     points: Annotated[str, typer.Argument(metavar="[POINTS|TIME|excused|-]", help=_POINTS)] = "",
@@ -52,7 +52,7 @@ def mark(
 ) -> str:
     """Give a mark for a criterion or a submission, or another deadline.
 
-    Use it for criteria that need manual grading, or to override a check. `total` gives a final
+    Use it for criteria that need manual grading, or to override a check. `grade` gives a final
     mark, which is the whole grade, also without a submission; `excused` in place of its points
     means that the student needs no grade. A comment without POINTS changes no points. The mark is
     appended to the file of --by in the folder marks/ of the gradebook: people may edit these files,
@@ -64,11 +64,11 @@ def mark(
 
       grader mark alice lidar-frame -
 
-      grader mark carol total excused --comment "ill"
+      grader mark carol grade excused --comment "ill"
 
       grader mark alice deadline 2026-11-25
 
-      grader mark --missing total 0
+      grader mark --missing grade 0
 
       grader mark --import marks.csv
     """

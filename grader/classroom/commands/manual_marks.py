@@ -33,10 +33,11 @@ from grader.classroom.marks.marks import (
     Mark,
     append_marks,
     mark_file,
+    marked_name,
 )
 from grader.classroom.tables import SIZE_LIMIT
 from grader.files.reading import read_capped
-from grader.lab.rubric.criterion import DEADLINE, TOTAL
+from grader.lab.rubric.criterion import DEADLINE, GRADE
 from grader.report.writing import Warn
 
 _EMPTY = dict.fromkeys((*COLUMNS, SURPLUS), "")
@@ -67,8 +68,8 @@ def mark_missing(gradebook: Path, row: Cells, warn: Warn) -> str:
 
     Raises InputError.
     """
-    if row["criterion"] != TOTAL or row["points"] in ("", WITHDRAWN):
-        raise InputError(f"write it as --missing {TOTAL} POINTS")
+    if marked_name(row["criterion"]) != GRADE or row["points"] in ("", WITHDRAWN):
+        raise InputError(f"write it as --missing {GRADE} POINTS")
     book = Gradebook(gradebook)
     reader = _mark_import(book)
     grades = list(book)

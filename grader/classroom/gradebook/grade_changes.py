@@ -13,7 +13,7 @@ from grader.classroom.marks import gradebook_folder as names
 from grader.classroom.marks.marks import EXCUSED
 from grader.classroom.results.results import Results, Run, RunGrade, StoredResult
 from grader.classroom.roster.typed_names import number_in
-from grader.lab.rubric.criterion import TOTAL
+from grader.lab.rubric.criterion import GRADE
 
 
 class _PointsChange(NamedTuple):
@@ -166,7 +166,7 @@ def _points_changes(
     old: StoredResult, new: StoredResult, first: RunGrade, last: RunGrade
 ) -> Iterator[_PointsChange]:
     marked = {**first.marks, **last.marks}
-    marked.pop(TOTAL, None)
+    marked.pop(GRADE, None)
     for name in dict.fromkeys((*old.results, *new.results, *marked)):
         before, after = _counted_points(old, first, name), _counted_points(new, last, name)
         if before != after:

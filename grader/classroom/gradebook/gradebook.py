@@ -34,7 +34,7 @@ from grader.classroom.tables import SIZE_LIMIT, CellValue
 from grader.files.reading import read_capped
 from grader.lab.checks.outcome import Outcome, Status
 from grader.lab.grading.report import ManualComment, ManualMark, Report, without_gifts
-from grader.lab.rubric.criterion import DEADLINE, GRADE, TOTAL, Criterion
+from grader.lab.rubric.criterion import DEADLINE, GRADE, Criterion
 from grader.lab.rubric.rubric import load_rubric
 from grader.lab.submission.submission import Opening, Submission
 from grader.ros.api import Absent, Unreadable
@@ -151,7 +151,7 @@ class Gradebook:
             if one.manual_mark is not None
         }
         if grade.final is not None and grade.has_final:
-            marks[TOTAL] = grade.final.value
+            marks[GRADE] = grade.final.value
         if grade.obstacle is Reason.PENDING:
             pending = format_points(grade.pending)
         return RunGrade(
@@ -246,7 +246,7 @@ class Gradebook:
         return SharedResult(self._rows[name], Outcome(status, words, off), carried=carried)
 
     def _grade(self, key: str, stored: StoredResult | None) -> StudentGrade:
-        whole = (key, TOTAL)
+        whole = (key, GRADE)
         student, final = (
             self.student(key, stored),
             self.marks.counting.get(whole) or self.marks.comments.get(whole),
@@ -269,7 +269,7 @@ class Gradebook:
             known.add(Reason.OUTDATED)
         report, older = self.with_marks(self.report(stored), stored)
         if final is not None and _is_older(final, stored):
-            older = (*older, TOTAL)
+            older = (*older, GRADE)
         late = self._lateness(student, stored, report)
         if final is not None and final.value:
             late = Lateness(late.days, reason=late.reason)
@@ -347,7 +347,7 @@ def points_of(book: Gradebook, grade: StudentGrade) -> dict[str, str]:
     points = dict.fromkeys((row.id for row in book.rubric.criteria), "")
     if grade.stored is not None and not grade.is_excused:
         points |= {one.criterion.id: one.cell for one in grade.results}
-    return {**points, TOTAL: grade.total_text}
+    return {**points, GRADE: grade.total_text}
 
 
 def _table_row(book: Gradebook, grade: StudentGrade, is_exported: bool) -> list[CellValue]:
@@ -359,7 +359,7 @@ def _table_row(book: Gradebook, grade: StudentGrade, is_exported: bool) -> list[
         if not grade.is_excused:
             numbers = [grade.score, grade.report.max_score, grade.pending, late.days, late.points]
     row: list[CellValue] = [student.key, student.name, student.section, grade.status]
-    for name in (TOTAL, *(criterion.id for criterion in book.rubric.criteria)):
+    for name in (GRADE, *(criterion.id for criterion in book.rubric.criteria)):
         row.append(Decimal(points[name]) if points[name] else None)
     row += [*numbers, grade.why_open, student.email, digest]
     if is_exported:

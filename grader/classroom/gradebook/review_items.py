@@ -12,7 +12,7 @@ from grader.classroom.gradebook.gradebook import Gradebook
 from grader.classroom.marks.marks import Key, Mark
 from grader.classroom.results.results import StoredResult, digest_of
 from grader.classroom.roster.roster import Student, plain
-from grader.lab.rubric.criterion import TOTAL, Criterion
+from grader.lab.rubric.criterion import GRADE, Criterion
 
 UNMARKED, OLDER = "unmarked", "older"
 STATES = {
@@ -152,7 +152,7 @@ def review_items(
     rows = {row.id: row for row in book.rubric.criteria if row.adjustment is None}
     groups: defaultdict[Place, list[ReviewStudent]] = defaultdict(list)
     for stored in sorted(results, key=lambda stored: numbers[stored.student]):
-        if (stored.student, TOTAL) in counting and not with_final:
+        if (stored.student, GRADE) in counting and not with_final:
             continue
         answers = answers_of_files[stored.root, stored.paths]
         student = book.student(stored.student, stored)

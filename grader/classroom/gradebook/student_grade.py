@@ -132,7 +132,7 @@ class StudentGrade:
     >>> missing = StudentGrade(Student("ann"), None, nothing)
     >>> missing.status, missing.published, missing.why_open
     ('missing', None, 'nothing was submitted')
-    >>> mark = Mark(time="", by="Kim", student="ann", criterion="total", value="12.5")
+    >>> mark = Mark(time="", by="Kim", student="ann", criterion="grade", value="12.5")
     >>> replace(missing, final=mark).published
     Decimal('12.5')
     """

@@ -22,6 +22,7 @@ from grader.classroom.marks.marks import (
     Marks,
     collect,
     mark_in,
+    marked_name,
     maxima,
     read_rows,
 )
@@ -33,7 +34,7 @@ from grader.classroom.roster.typed_names import (
     known,
     number_in,
 )
-from grader.lab.rubric.criterion import DEADLINE, GRADE, TOTAL
+from grader.lab.rubric.criterion import DEADLINE, GRADE
 from grader.lab.rubric.rubric import Rubric
 
 _EXPORTED = re.compile("(d[0-9a-f]{16})(d[0-9a-f]{16})")
@@ -89,11 +90,11 @@ class MarkImport(NamedTuple):
     def marks_in(self, row: Cells, place: str = "") -> Iterator[Mark]:
         """Yield the marks in a row, without a time; raises InputError."""
         for cells in self._changed(row) if "exported" in row else self._expanded(row):
-            key = student, criterion = cells["student"], cells["criterion"]
-            if criterion not in (TOTAL, DEADLINE):
+            key = student, criterion = cells["student"], marked_name(cells["criterion"])
+            if criterion not in (GRADE, DEADLINE):
                 if student not in self.digests:
                     raise InputError(
-                        f"{student} has submitted nothing that could be marked: `{TOTAL}` "
+                        f"{student} has submitted nothing that could be marked: `{GRADE}` "
                         "is a final mark"
                     )
                 criterion_of(self.rubric, criterion)
@@ -138,8 +139,7 @@ class MarkImport(NamedTuple):
         student = known("student", row["id"], {one.key: one for one in self.students})
         now = self.points[student]
         *criteria, total = now
-        columns = {name: GRADE if name == TOTAL else name for name in now}
-        given = {name: row.get(columns[name], text) for name, text in now.items()}
+        given = {name: row.get(name, text) for name, text in now.items()}
         for names, hashed in ((criteria, exported[1]), ([total], exported[2])):
             changed = [name for name in names if _plain(given[name]) != _plain(now[name])]
             if not changed or _hash_of(given, names) == hashed:
@@ -152,8 +152,7 @@ class MarkImport(NamedTuple):
             for name in changed:
                 if not given[name]:
                     raise InputError(
-                        f"{columns[name]} was {now[name]} and is empty: write `-` to withdraw a "
-                        "mark"
+                        f"{name} was {now[name]} and is empty: write `-` to withdraw a mark"
                     )
                 mark = self.marks.counting.get((student, name))
                 comment = mark.comment if mark is not None else ""

@@ -38,11 +38,11 @@ from grader.classroom.roster.lateness import read_time
 from grader.classroom.roster.typed_names import NotCountedError, known, number_in, read_points
 from grader.classroom.tables import SIZE_LIMIT, Table, TableRow, protected, read_table, unprotected
 from grader.files.reading import read_capped, sha256_of
-from grader.lab.rubric.criterion import DEADLINE, TOTAL
+from grader.lab.rubric.criterion import DEADLINE, GRADE, TOTAL
 from grader.lab.rubric.keys import MAX_POINTS
 from grader.lab.rubric.rubric import Rubric
 
-EXCUSED = "excused"  # in place of points, for TOTAL
+EXCUSED = "excused"  # in place of points, for GRADE
 COLUMNS = ("time", "by", "student", "criterion", "points", "comment", "submission")
 Cells = Mapping[str, str]  # of a row, by column
 _Rows = list[tuple[str, Cells]]  # the place of each row, file and line, and its cells
@@ -61,7 +61,7 @@ Key = tuple[str, str]  # a student and a criterion
 
 
 class Mark(NamedTuple):
-    """A row: what a grader gave for a criterion or for TOTAL, or a student's DEADLINE."""
+    """A row: what a grader gave for a criterion or for GRADE, or a student's DEADLINE."""
 
     time: str  # in UTC, or empty
     by: str
@@ -140,7 +140,8 @@ def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
     most, keys = maxima(rubric), dict.fromkeys(students)
 
     def read(cells: Cells, place: str) -> list[Mark]:
-        key = known("student", cells["student"], keys), known("criterion", cells["criterion"], most)
+        criterion = known("criterion", marked_name(cells["criterion"]), most)
+        key = known("student", cells["student"], keys), criterion
         return [mark_in(cells, key, most[key[1]], place)]
 
     mistakes: list[str] = []
@@ -186,8 +187,13 @@ def _rows_in_folder(folder: Path, mistakes: list[str]) -> Iterator[tuple[str, Ce
             mistakes.append(str(error))
 
 
+def marked_name(text: str) -> str:
+    """Return what a mark is for: a criterion, GRADE or DEADLINE."""
+    return GRADE if text.strip().casefold() == TOTAL else text
+
+
 def maxima(rubric: Rubric) -> dict[str, Decimal]:
-    """Return the most points for each criterion and TOTAL.
+    """Return the most points for each criterion and GRADE.
 
     Marks of an adjusted criterion never count: any is valid.
     """
@@ -197,7 +203,7 @@ def maxima(rubric: Rubric) -> dict[str, Decimal]:
     }
     return {
         **most,
-        TOTAL: sum((row.points for row in rubric.criteria), Decimal(0)),
+        GRADE: sum((row.points for row in rubric.criteria), Decimal(0)),
         DEADLINE: Decimal(0),
     }
 
@@ -212,7 +218,7 @@ def mark_in(cells: Cells, key: Key, most: Decimal, place: str) -> Mark:
         )
     if submission and not _DIGEST.fullmatch(submission):
         raise InputError(f"{quoted(submission)} is not the digest of a submission")
-    if value.casefold() == EXCUSED and key[1] == TOTAL:
+    if value.casefold() == EXCUSED and key[1] == GRADE:
         value = EXCUSED
     elif value not in ("", WITHDRAWN) and key[1] == DEADLINE:
         read_time(value)

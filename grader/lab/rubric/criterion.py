@@ -12,8 +12,8 @@ from grader.base.text import counted_points, format_points
 from grader.lab.checks.check import Check
 from grader.lab.checks.outcome import WRONG, Outcome
 
-TOTAL = "total"  # in place of a criterion's id, in manual marks: the whole submission
-GRADE = "grade"  # the column of a table for that
+GRADE = "grade"  # in place of a criterion's id, in manual marks and tables: the whole submission
+TOTAL = "total"  # another word for that, in manual marks
 DEADLINE = "deadline"  # likewise: a deadline of the student
 
 
