@@ -12,6 +12,7 @@ from grader.app.cli.completion import offer_rubrics
 from grader.app.cli.options import AnswersOption, FormatOption, RubricOption
 from grader.app.cli.streams import TERMINAL, warn
 from grader.app.commands import rubrics
+from grader.base.errors import InputError
 from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC, load_named
 from grader.report.formats import OutputFormat
 from grader.report.writing import write_stdout
@@ -229,7 +230,10 @@ def bundle(
     platform: Annotated[
         Literal["gradescope"], typer.Argument(metavar="PLATFORM", help="The platform: gradescope.")
     ],
-    output: Annotated[Path, typer.Argument(metavar="OUT.zip", help="The file to write.")],
+    file: Annotated[
+        Path | None, typer.Argument(metavar="[OUT.zip]", help="The file to write.")
+    ] = None,
+    output: Annotated[Path | None, typer.Option(metavar="FILE", help="The file to write.")] = None,
     rubric: RubricOption = DEFAULT_RUBRIC,
 ) -> str:
     """Write an autograder zip for Gradescope.
@@ -238,8 +242,11 @@ def bundle(
 
     Examples:
 
-      grader bundle gradescope autograder.zip
+      grader bundle gradescope --output autograder.zip
 
-      grader bundle gradescope autograder.zip --rubric my_lab.toml
+      grader bundle gradescope --output autograder.zip --rubric my_lab.toml
     """
-    return rubrics.bundle(platform, output, rubric)
+    given = [path for path in (file, output) if path is not None]
+    if len(given) != 1:
+        raise InputError("name the file to write once: --output autograder.zip")
+    return rubrics.bundle(platform, given[0], rubric)
