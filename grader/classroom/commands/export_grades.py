@@ -11,7 +11,15 @@ from tempfile import TemporaryDirectory
 from zipfile import is_zipfile
 
 from grader.base.errors import GraderError, InputError
-from grader.base.text import counted, enumerated, format_points, named, printable_path
+from grader.base.text import (
+    counted,
+    enumerated,
+    format_points,
+    named,
+    people_text,
+    printable,
+    printable_path,
+)
 from grader.classroom.gradebook.gradebook import Gradebook, grade_table
 from grader.classroom.gradebook.student_grade import Reason, StudentGrade
 from grader.classroom.lms.feedback import (
@@ -155,6 +163,13 @@ def _exported(request: ExportRequest, book: Gradebook, terminal: Terminal) -> Fi
     filled = fill(read_capped(request.into, SIZE_LIMIT, advice=""), grades, form, options)
     for line in filled.lines:
         terminal.warn(line)
+    zeros = [
+        named(grade.student.key, grade.student.name)
+        for grade in book
+        if _is_open_zero(grade, request) and not grade.total
+    ]
+    if zeros:
+        terminal.warn(printable(f"0 points, because of --pending-as-zero: {people_text(zeros)}"))
     return filled
 
 
@@ -165,10 +180,14 @@ def _class_grade(
 
     Points that need manual grading count as zero with --pending-as-zero.
     """
-    is_zero = request.pending_as_zero and grade.obstacle is Reason.PENDING
-    total = grade.total if is_zero else grade.published
+    total = grade.total if _is_open_zero(grade, request) else grade.published
     comment = _comment(book, grade, total) if has_comment and total is not None else ""
     return PublishedGrade(grade.student, total, grade.is_excused, grade.why_open, comment)
+
+
+def _is_open_zero(grade: StudentGrade, request: ExportRequest) -> bool:
+    """Return whether points that need manual grading count as zero."""
+    return request.pending_as_zero and grade.obstacle is Reason.PENDING
 
 
 def _comment(book: Gradebook, grade: StudentGrade, total: Decimal) -> str:

@@ -31,6 +31,7 @@ class Reason(StrEnum):
     DAMAGED = "its result is damaged: run `grader batch` again"
     UNCLEAR = "it is unclear which submission counts"
     MISSING = "nothing was submitted"
+    NO_ROBOT = "has no robot and no package: not in the mean until it has a mark"
     SEVERAL = "several robots fit: check that the correct one was graded"
     GONE = "no longer in the class folder"
     OUTDATED = "graded with another rubric or version: run `grader batch` again"
@@ -176,6 +177,13 @@ class StudentGrade:
         return mark is not None and bool(mark.time) and not mark.submission
 
     @property
+    def is_without_robot(self) -> bool:
+        """Whether the submission has nothing that is graded automatically, and has no mark."""
+        if self.stored is None or not self.stored.no_robot or self.has_final:
+            return False
+        return all(one.manual_mark is None for one in self.results)
+
+    @property
     def is_gone(self) -> bool:
         """Whether the newest run did not find the submission."""
         return Reason.GONE in self.known
@@ -261,6 +269,8 @@ class StudentGrade:
         reason = self.stored.reason if self.stored is not None else ""
         reasons = self._reasons(reason)
         details = dict.fromkeys((Reason.FAILED, Reason.UNREADABLE, Reason.SEVERAL), reason)
+        if self.stored is not None:
+            details[Reason.NO_ROBOT] = self.stored.no_robot
         details[Reason.OLDER_MARKS] = ", ".join(self.older)
         if self.final is not None:
             details[Reason.EARLY_MARK] = (
@@ -277,6 +287,8 @@ class StudentGrade:
             reasons.add(Reason.UNREADABLE)
         if self.status == "graded" and reason:
             reasons.add(Reason.SEVERAL)
+        if self.is_without_robot:
+            reasons.add(Reason.NO_ROBOT)
         if self.stored is None and reasons.isdisjoint((Reason.UNCLEAR, Reason.DAMAGED)):
             reasons.add(Reason.MISSING)
         if self.has_final:
@@ -318,7 +330,10 @@ class StudentGrade:
     def is_counted(self) -> bool:
         """Whether the grade is in the figures of the class.
 
-        Also one that is open, if something of it is decided.
+        Also one that is open, if something of it is decided. One without a robot is not, until it
+        has a mark.
         """
+        if self.is_without_robot:
+            return False
         is_graded = self.status == "graded" and not self.is_gone and not self.is_undecided
         return self.student.is_on_roster and (is_graded or self.published is not None)

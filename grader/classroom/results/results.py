@@ -58,6 +58,7 @@ class StoredResult(NamedTuple):
         str, str
     ] = {}  # by criterion: students with the same answer have the same key, empty without one
     no_documents: str = ""  # why its documents were not read
+    no_robot: str = ""  # what it has in place of the robot and the package that are graded
     timeout: float = 0  # the limit of processor time that it reached, in seconds
     texts: Mapping[str, str] = {}  # those of Word and PDF files by path, in a new result only
     written: Mapping[str, str] = {}  # the answers by criterion, in a new result only

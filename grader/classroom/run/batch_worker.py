@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from grader.base.errors import InputError, MachineError, OutOfTime
 from grader.base.processor_time import limit_processor_time
-from grader.base.text import cut
+from grader.base.text import MAX_NAMED, cut, enumerated
 from grader.classroom.intake.class_files import digest_of_unread, open_class_submission
 from grader.classroom.results.equal_work import forms_of, hashes_of
 from grader.classroom.results.results import StoredCriterion, StoredResult, Verdict, digest_of
@@ -129,6 +129,8 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
         return result._replace(verdict="errored", reason=fault)
     is_handed_out = bool(report.another_robot)  # by the course, so that it is no equal work
     unread = _why_unreadable(submission)
+    if not unread:
+        result = result._replace(no_robot=_in_place_of_robot(report))
     verdict: Verdict = "unreadable" if unread else "graded"
     texts = submission.documents.converted
     result = result._replace(verdict=verdict, reason=unread or submission.several, texts=texts)
@@ -218,8 +220,7 @@ def _why_unreadable(submission: Submission) -> str:
     """
     if isinstance(submission.urdf, Unreadable):
         return submission.urdf.reason
-    is_absent = isinstance(submission.urdf, Absent) and not submission.urdf.blank
-    if not is_absent or submission.packages:
+    if not _has_nothing_to_grade(submission):
         return ""
     tree, closed = submission.tree, submission.tree.unopened
     if closed:
@@ -230,6 +231,22 @@ def _why_unreadable(submission: Submission) -> str:
         because = str(tree.ignored[0]) if tree.ignored else f"{next(iter(tree.files))} is empty"
         return f"nothing to grade was found: {because}"
     return ""
+
+
+def _has_nothing_to_grade(submission: Submission) -> bool:
+    is_absent = isinstance(submission.urdf, Absent) and not submission.urdf.blank
+    return is_absent and not submission.packages
+
+
+def _in_place_of_robot(report: Report) -> str:
+    """Return the files of a submission without the robot and the package that are graded.
+
+    Empty for another submission.
+    """
+    subjects = {one.criterion.check.subject for one in report.results}
+    if subjects.isdisjoint(("urdf", "robot")) or not _has_nothing_to_grade(report.submission):
+        return ""
+    return enumerated([*report.submission.tree.files], MAX_NAMED) or "no file"
 
 
 @lru_cache(maxsize=4)
