@@ -102,7 +102,7 @@ def export(request: ExportRequest, terminal: Terminal) -> tuple[bytes, ExitCode]
         (why, named(one.student.key, one.student.name), detail)
         for one in book
         for why, detail in one.concerns.items()
-        if why in _DOUBTS
+        if why in _DOUBTS or (why is Reason.DAMAGED and request.into is None)
     ]
     for line in by_reason(doubts):
         terminal.warn(line)

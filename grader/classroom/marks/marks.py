@@ -140,8 +140,8 @@ def read_marks(folder: Path, students: Iterable[str], rubric: Rubric) -> Marks:
     most, keys = maxima(rubric), dict.fromkeys(students)
 
     def read(cells: Cells, place: str) -> list[Mark]:
-        criterion = known("criterion", marked_name(cells["criterion"]), most)
-        key = known("student", cells["student"], keys), criterion
+        student = known("student", cells["student"], keys)
+        key = student, known("criterion", marked_name(cells["criterion"]), most)
         return [mark_in(cells, key, most[key[1]], place)]
 
     mistakes: list[str] = []

@@ -29,7 +29,7 @@ from grader.classroom.marks.marks import (
     mark_file,
 )
 from grader.classroom.tables import protected, unprotected
-from grader.lab.rubric.criterion import DEADLINE, TOTAL
+from grader.lab.rubric.criterion import DEADLINE, GRADE
 from tests.classroom.marks import STUDENTS, read, said
 from tests.command_line import HANG_TIMEOUT
 from tests.samples import ROOT
@@ -61,7 +61,7 @@ def mark(draw: st.DrawFn) -> Mark:
         draw(st.sampled_from(STUDENTS)),
         draw(POINTS | st.sampled_from((EXCUSED, WITHDRAWN, "", DUE))),
     )
-    criterion = {EXCUSED: TOTAL, DUE: DEADLINE}.get(value, "essay")
+    criterion = {EXCUSED: GRADE, DUE: DEADLINE}.get(value, "essay")
     drawn = Mark(
         draw(TIMES),
         draw(TEXT),

@@ -27,12 +27,12 @@ GIVEN = {
     "own.csv": "student,criterion,points\n-x,total,4\n",
 }
 CRITERIA = tuple(row.id for row in LAB.criteria)
-NONE = {**dict.fromkeys(CRITERIA, ""), "total": ""}
+NONE = {**dict.fromkeys(CRITERIA, ""), "grade": ""}
 POINTS = {
-    "anna": {**NONE, "essay": "3", "picture": "1", "total": "6.5"},
+    "anna": {**NONE, "essay": "3", "picture": "1", "grade": "6.5"},
     "ben": {**NONE, "box": "2"},
     "0012": NONE,
-    "-x": {**NONE, "total": "4"},
+    "-x": {**NONE, "grade": "4"},
 }
 
 
