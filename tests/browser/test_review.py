@@ -95,6 +95,25 @@ def rest(page: "Page") -> None:
     page.wait_for_load_state("networkidle")
 
 
+def test_a_damaged_pdf_does_not_keep_the_keys(tmp_path: Path, open_pages: Open) -> None:
+    """A viewer that takes the focus, as that of Chromium does for a PDF that it cannot show, gives it back."""
+    birch = tmp_path / "class" / "birch"
+    write_submission(birch)
+    (birch / "screen.png").unlink()
+    (birch / "screen.pdf").write_bytes(b"%PDF-1.4\n1 0 obj\n<<")
+    book = graded_in(tmp_path, "id\nbirch\n")
+    with running(book) as review:
+        page = open_pages(f"{review.url}2").page
+        for details in page.locator("details.document:not([open])").all():
+            details.evaluate("details => { details.open = true; }")
+        assert page.locator("iframe").count() == 1
+        page.mouse.move(0, 0)
+        page.locator("iframe").evaluate("frame => frame.focus()")
+        page.wait_for_function("() => !(document.activeElement instanceof HTMLIFrameElement)")
+        press(page, "1 Enter", "end")
+        page.close()
+
+
 def test_ten_items_by_keys_alone(review: Review, open_page: Open, book: Path) -> None:
     """All are in the file: typed points, all, half, none, comments, back, another mark, a withdrawn one."""
     page = open_page(f"{review.url}1").page

@@ -188,6 +188,17 @@
     }
   }
 
+  let before = document.body, isTabbed = false;  // the last element with the focus, and whether Tab was pressed last
+
+  /** Take the focus back from a document that took it when it was shown, as the viewer does for a damaged PDF. */
+  function takeBack() {
+    const frame = document.activeElement;
+    if (!(frame instanceof HTMLIFrameElement) || frame.matches(":hover") || isTabbed) return;
+    frame.blur();
+    window.focus();
+    before.focus({ preventScroll: true });
+  }
+
   function toggle(selector) {
     const details = document.querySelector(selector);
     if (!details) return;
@@ -308,6 +319,9 @@
   }
 
   document.addEventListener("keydown", onKey);
+  document.addEventListener("keydown", ({ key }) => { isTabbed = key === "Tab"; }, true);
+  document.addEventListener("focusin", ({ target }) => { if (!(target instanceof HTMLIFrameElement)) before = target; });
+  addEventListener("blur", () => setTimeout(takeBack));
   addEventListener("popstate", () => location.reload());
   find("find").addEventListener("input", listPeople);
   start();
