@@ -3,14 +3,16 @@
 import re
 import shlex
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 from typer.main import get_command
 
 from grader.app.cli.app import COMMANDS, make_app
+from grader.app.cli.usage import commands_here
 from grader.ros.workspace.rules.rule_table import FAMILIES
-from tests.command_line import ROOT, run
+from tests.command_line import ROOT, run, run_with_input
 from tests.corpus.cases import read_corpus
 
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")])
@@ -128,3 +130,38 @@ def test_messages_name_commands_that_exist() -> None:
         for name in re.findall(r"`grader ([a-z]+)", case.expected.get("stderr", ""))
     }
     assert {"batch", "grade", "rubric"} <= named <= set(COMMANDS)
+
+
+@pytest.mark.parametrize(
+    ("files", "words", "commands"),
+    [
+        (["package.xml", "my_robot.urdf"], "a package", "inspect grade view graph"),
+        (["src/my_robot/package.xml"], "a workspace", "inspect grade view graph"),
+        (["my robot.urdf"], "my robot.urdf", "inspect grade view graph"),
+        (["class.toml", "results.jsonl"], "a gradebook", "stats review export"),
+        (["notes.txt"], "", ""),
+    ],
+)
+def test_without_arguments_it_says_what_can_be_done_here(
+    files: list[str], words: str, commands: str, tmp_path: Path
+) -> None:
+    """Below the help are the commands for what is in the folder, each of which can be typed."""
+    for name in files:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("")
+    done = run_with_input((), b"", folder=tmp_path)
+    text = done.stderr.decode()
+    assert (done.returncode, done.stdout) == (2, b"")
+    assert text.startswith("Usage: grader [OPTIONS] COMMAND")
+    _, title, rows = text.partition(f"\nIn this folder ({words}):\n")
+    assert bool(title) == bool(words)
+    lines = [re.split("  +", row.strip())[0] for row in rows.splitlines()]
+    assert [line.split()[1] for line in lines] == commands.split()
+    for line in lines:
+        parse(line)
+    assert max(map(len, text.splitlines())) <= 80
+
+
+def test_a_folder_that_is_gone_has_no_commands(tmp_path: Path) -> None:
+    """The help is whole all the same."""
+    assert commands_here(tmp_path / "gone") == ""

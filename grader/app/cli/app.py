@@ -6,6 +6,7 @@ from collections.abc import Collection, Sequence
 from contextlib import nullcontext, redirect_stderr, suppress
 from importlib import import_module
 from io import StringIO
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -174,6 +175,10 @@ def _other_error(error: Exception, arguments: Sequence[str]) -> ExitCode:
         context is not None and message == context.get_help()
     ):  # a group of commands without arguments
         print(message, file=sys.stderr)
+        if not arguments:
+            from grader.app.cli.usage import commands_here
+
+            print(commands_here(Path.cwd()), end="", file=sys.stderr)
     else:
         from grader.app.cli.usage import usage_message  # late: most command lines are correct
 

@@ -3,11 +3,12 @@
 import os
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from grader.base.errors import NotThereError
 from grader.base.names import closest
-from grader.base.text import enumerated, shell_quoted
+from grader.base.text import enumerated, printable, shell_quoted
 from grader.files.limits import ROBOT_ENDINGS
 from grader.lab.rubric.rubric import load_rubric, shipped_rubrics
 from grader.lab.rubric.rubric_files import DEFAULT_RUBRIC
@@ -43,6 +44,43 @@ _DASHES = "\u2010\u2011\u2012\u2013\u2014\u2212-"  # in place of hyphens, as wor
 _QUOTES = "\u2018\u2019\u201c\u201d'\""
 _OUTPUTS = ("--output", "--out", "-o")
 _MAX_COMMANDS = 3  # that are named
+
+
+_IN_GRADEBOOK = {
+    "grader stats": "the grades and the mistakes of the class",
+    "grader review": "what needs manual grading, in the browser",
+    "grader export csv": "the grades for a spreadsheet",
+}
+_IN_WORKSPACE = {
+    "grader inspect": "what is wrong in its robots and other files",
+    "grader grade --rubric lab6": "the points of a lab, and what to fix first",
+    "grader view": "the robot in the browser, again after each change",
+    "grader graph": "the nodes and topics of its launch files",
+}
+
+
+def commands_here(folder: Path) -> str:
+    """Return what can be done in a folder with a package, a robot or a gradebook, in lines.
+
+    Empty for another folder.
+    """
+    try:
+        names = [entry.name for entry in sorted(folder.iterdir(), key=lambda entry: entry.name)]
+    except OSError:
+        return ""
+    robots = [name for name in names if name.endswith(ROBOT_ENDINGS)]
+    commands = _IN_WORKSPACE
+    if {"class.toml", "results.jsonl"} <= {*names}:
+        what, commands = "a gradebook", _IN_GRADEBOOK
+    elif {"package.xml", "src"} & {*names}:
+        what = "a package" if "package.xml" in names else "a workspace"
+    elif robots:
+        what = robots[0]
+    else:
+        return ""
+    width = max(map(len, commands)) + 2
+    rows = [f"  {command.ljust(width)}{about}" for command, about in commands.items()]
+    return "\n".join(["", f"In this folder ({printable(what)}):", *rows, ""])
 
 
 class _CommandLine(NamedTuple):
