@@ -82,10 +82,23 @@ _TINY = (
     '<mimic joint="j1" multiplier="4.9894e-217"/></joint></robot>'
 )
 
+# A title that ends within a number, and a radius that the check of collisions does not take.
+_LONG_TITLE = (
+    '<robot name="ash"><link name="l5"><visual>'
+    '<origin xyz="-1.34071 -0.52713 2.70275" rpy="0 -1.50812 1.73022"/>'
+    '<geometry><cylinder radius="0.68672" length="0.005"/></geometry></visual></link></robot>'
+)
+_NEGATIVE_RADIUS = (
+    '<robot name="ash"><link name="l1"><visual><geometry><sphere radius="-0.2"/></geometry></visual>'
+    '<collision><geometry><sphere radius="-0.2"/></geometry></collision></link></robot>'
+)
+
 
 @examples(8)
 @given(text=urdfs())
 @example(text=_TINY)
+@example(text=_LONG_TITLE)
+@example(text=_NEGATIVE_RADIUS)
 def test_a_random_reference_gets_full_marks(text: str) -> None:
     """Every rubric loads without a warning and gives its reference all points; it tests each link's frame and joint."""
     with TemporaryDirectory() as name:

@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain, cycle, islice
 from pathlib import Path
+from textwrap import shorten
 from typing import Any, NamedTuple
 
 from grader.base.errors import InputError, MissingElement, NotDecided
@@ -230,10 +231,18 @@ def _tried(subjects: _Subjects, fact: Fact) -> _DraftCriterion | Omission:
             carried = tuple(
                 carried_fact for carried_fact in one.carried if _holds(subjects, one, carried_fact)
             )
-            title = cut(one.title or outcome.message, _MAX_TITLE)
+            title = _cut_title(one.title or outcome.message)
             return _DraftCriterion(one._replace(carried=carried), capitalised(title))
         reasons.append(outcome.mistake if outcome.status == "pending" else outcome.message)
     return Omission(fact.words, reasons[0])
+
+
+def _cut_title(text: str) -> str:
+    """Return a title that is not too long, without a part of a number or word."""
+    words = shorten(text, _MAX_TITLE, placeholder=" ...")
+    return (
+        words if len(text) > _MAX_TITLE and len(words) > _MAX_TITLE // 2 else cut(text, _MAX_TITLE)
+    )
 
 
 def _holds(subjects: _Subjects, fact: Fact, carried: CarriedFact) -> bool:
@@ -241,7 +250,7 @@ def _holds(subjects: _Subjects, fact: Fact, carried: CarriedFact) -> bool:
     try:
         instead = fact._replace(check=carried.check, arguments=carried.arguments)
         return _outcome(subjects, instead).status == "passed"
-    except (MissingElement, NotDecided, UnknownShape):
+    except (MissingElement, NotDecided, UnknownShape, WrongValue):
         return False
 
 
