@@ -1,7 +1,8 @@
 """The names that an editor offers at a place where one is written."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 from lsprotocol import types as lsp
@@ -9,10 +10,13 @@ from lsprotocol import types as lsp
 from grader.app.editor.look import Look
 from grader.app.editor.parameter_keys import parameter_key
 from grader.app.editor.places import TextPlace
+from grader.base.errors import InputError
+from grader.files.reading import read_capped
 from grader.files.tree import overlaid
 
 _MAX_BEFORE = 2_000  # characters, in which it is searched what is asked for
 _MAX_OFFERED = 500
+_MAX_SAVED = 1024 * 1024  # bytes of a file
 _PACKAGE = r"(?P<owner>[\w.-]+)"
 _QUOTE = "[\"']"
 
@@ -51,6 +55,8 @@ _YAML = (".yaml", ".yml")
 _PYTHON = (".py",)
 _JOINT_TYPE = re.compile(rf"{_attribute('joint', 'type')}\w*\Z")
 _LIST_BEFORE = rf"(?:\s*:\s*\[?|\s*:\s*(?:\n\s*-[^\n]*)*\n\s*-|[^\n]*\[[^\]\n]*[\[,])\s*{_QUOTE}?"
+_SHARE = rf"(?:get_package_share_directory|FindPackageShare)\s*\(\s*{_QUOTE}{_PACKAGE}{_QUOTE}\s*\)"
+_NAMED_SHARE = re.compile(rf"\b(?P<share>\w+)\s*=\s*{_SHARE}")
 _CONTEXTS: Sequence[_Context] = (
     _context(
         _XML, r"\$\(find(?:-pkg-share)?\s+" + _PACKAGE + r"\)/(?=[^\"'<>]*\Z)[^\"'<>]*?", "file"
@@ -80,9 +86,20 @@ _CONTEXTS: Sequence[_Context] = (
     ),
     _context(
         _PYTHON,
-        rf"(?:get_package_share_directory|FindPackageShare)\s*\(\s*{_QUOTE}{_PACKAGE}{_QUOTE}"
-        rf"\s*\)+\s*,\s*{_QUOTE}launch{_QUOTE}\s*,\s*{_QUOTE}",
-        "launch file",
+        rf"executable\s*=\s*{_QUOTE}spawner(?:\.py)?{_QUOTE}[^()\[]*arguments\s*=\s*\["
+        rf"(?:\s*{_QUOTE}[\w./-]*{_QUOTE}\s*,)*\s*{_QUOTE}",
+        "controller",
+    ),
+    _context(
+        _PYTHON,
+        rf"{_SHARE}\s*\)*\s*,\s*(?P<folders>(?:{_QUOTE}[\w./-]*{_QUOTE}\s*,\s*)*){_QUOTE}",
+        "file",
+    ),
+    _context(
+        _PYTHON,
+        r"(?:PathJoinSubstitution\s*\(\s*\[|os\.path\.join\s*\()\s*(?P<share>\w+)\s*,\s*"
+        rf"(?P<folders>(?:{_QUOTE}[\w./-]*{_QUOTE}\s*,\s*)*){_QUOTE}",
+        "file",
     ),
     _context(
         _PYTHON,
@@ -99,26 +116,63 @@ _CONTEXTS: Sequence[_Context] = (
 
 def completions(look: Look, place: TextPlace) -> list[lsp.CompletionItem]:
     """Return the names that may be written at a place."""
-    before = place.lines.text_before(place.line, place.column)[-_MAX_BEFORE:]
-    if place.path.endswith(_ROBOT) and _JOINT_TYPE.search(before):
-        member = lsp.CompletionItemKind.EnumMember
-        types = _JOINT_TYPES.items()
-        return [lsp.CompletionItem(name, kind=member, detail=text) for name, text in types]
+    whole = place.lines.text_before(place.line, place.column)
+    before = whole[-_MAX_BEFORE:]
+    if place.path.endswith(_ROBOT):
+        if _JOINT_TYPE.search(before):
+            return _items_with_details(_JOINT_TYPES.items(), lsp.CompletionItemKind.EnumMember)
+        elements = look.names.elements_behind(whole)
+        if elements:
+            return _items_with_details(elements, lsp.CompletionItemKind.Property)
     for context in _CONTEXTS:
         match = context.before.search(before) if place.path.endswith(context.endings) else None
         if match is not None:
-            owner = match.groupdict().get("owner") or ""
-            names: list[str] = []
-            for kind in context.kinds:
-                names += look.names.offered(kind, owner)
-            return _items(names, context.kinds[0])
+            return _offered(look, place, context, match.groupdict())
     if place.path.endswith(_YAML):
         *above, line = before.split("\n")
         key = parameter_key(above, line)
         if key is not None and re.fullmatch(r" *[\w.]*", line):
-            whole = _without_line(look, place)
-            return _items(whole.names.parameters_below(key.node, key.prefix), "parameter")
+            readable = _without_line(look, place)
+            return _items(readable.names.parameters_below(key.node, key.prefix), "parameter")
     return []
+
+
+def _offered(
+    look: Look, place: TextPlace, context: _Context, given: Mapping[str, str | None]
+) -> list[lsp.CompletionItem]:
+    """Return the names that a context offers, below the folders that are written before."""
+    owner = given.get("owner") or ""
+    if share := given.get("share"):
+        shares = _NAMED_SHARE.finditer(place.lines.text)
+        owner = next((each["owner"] for each in shares if each["share"] == share), "")
+        if not owner:
+            return []
+    names: list[str] = []
+    for kind in context.kinds:
+        names += _readable(look, place).names.offered(kind, owner)
+    folders = re.findall(rf"{_QUOTE}([^\"']*){_QUOTE}", given.get("folders") or "")
+    below = "".join(f"{folder.strip('/')}/" for folder in folders)
+    names = [name.removeprefix(below) for name in names if name.startswith(below)]
+    return _items(names, context.kinds[0])
+
+
+def _readable(look: Look, place: TextPlace) -> Look:
+    """Return a look at the files that reads the file that is typed.
+
+    They are the files as they are; where the file has an error, also without the line that is
+    typed, or as it is saved: the one that loads the robot, or has most names.
+    """
+    wrong = {each.location.path for each in look.findings if each.severity == "error"}
+    if place.path not in wrong:
+        return look
+    looks = [look, _without_line(look, place)]
+    with suppress(InputError):
+        saved = read_capped(place.root / place.path, _MAX_SAVED)
+        looks.append(look.again(overlaid(look.tree, {place.path: saved})))
+    return max(
+        looks,
+        key=lambda one: (place.path in one.robots, len(one.names.defined_in(place.path))),
+    )
 
 
 def _without_line(look: Look, place: TextPlace) -> Look:
@@ -127,6 +181,12 @@ def _without_line(look: Look, place: TextPlace) -> Look:
     lines[place.line - 1] = ""
     data = "\n".join(lines).encode("utf-8", "surrogatepass")
     return look.again(overlaid(look.tree, {place.path: data}))
+
+
+def _items_with_details(
+    names: Iterable[tuple[str, str]], kind: lsp.CompletionItemKind
+) -> list[lsp.CompletionItem]:
+    return [lsp.CompletionItem(name, kind=kind, detail=text) for name, text in names]
 
 
 def _items(names: Iterable[str], kind: str) -> list[lsp.CompletionItem]:

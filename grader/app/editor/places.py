@@ -41,6 +41,20 @@ def references(look: Look, place: TextPlace) -> list[lsp.Location]:
     return _located(look, place, are_defined=False)
 
 
+def highlights(look: Look, place: TextPlace) -> list[lsp.DocumentHighlight]:
+    """Return where the name at a place is written in its file."""
+    name = look.names.at(*place.triple)
+    ranges = place.ranges(look)
+    marked: dict[tuple[int, int], lsp.DocumentHighlight] = {}
+    for other in look.names.same(name) if name is not None else ():
+        if other.location.path == place.path:
+            is_defined = other.role == "definition"
+            kind = lsp.DocumentHighlightKind.Write if is_defined else lsp.DocumentHighlightKind.Read
+            at = ranges.range(other.location)
+            marked.setdefault((at.start.line, at.start.character), lsp.DocumentHighlight(at, kind))
+    return [mark for _, mark in sorted(marked.items())]
+
+
 def _located(look: Look, place: TextPlace, *, are_defined: bool) -> list[lsp.Location]:
     name = look.names.at(*place.triple)
     ranges = place.ranges(look)

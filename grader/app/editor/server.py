@@ -17,7 +17,15 @@ from pygls.lsp.server import LanguageServer
 from pygls.uris import from_fs_path, to_fs_path
 
 from grader import __version__
-from grader.app.editor import completions, describing, fixes, places, renaming, symbols
+from grader.app.editor import (
+    completions,
+    describing,
+    fixes,
+    places,
+    renaming,
+    signatures,
+    symbols,
+)
 from grader.app.editor.diagnostics import SOURCE, diagnostics_of
 from grader.app.editor.edited_files import EditedFiles
 from grader.app.editor.look import Look
@@ -41,11 +49,14 @@ _ANSWERS: Mapping[str, Callable[[Look, places.TextPlace], Any]] = {
     lsp.TEXT_DOCUMENT_HOVER: describing.hover,
     lsp.TEXT_DOCUMENT_DEFINITION: places.definitions,
     lsp.TEXT_DOCUMENT_REFERENCES: places.references,
+    lsp.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT: places.highlights,
     lsp.TEXT_DOCUMENT_COMPLETION: completions.completions,
+    lsp.TEXT_DOCUMENT_SIGNATURE_HELP: signatures.signature,
     lsp.TEXT_DOCUMENT_PREPARE_RENAME: renaming.prepared,
 }
 _OPTIONS = {
-    lsp.TEXT_DOCUMENT_COMPLETION: lsp.CompletionOptions(trigger_characters=[*"\"'/({[. "]),
+    lsp.TEXT_DOCUMENT_COMPLETION: lsp.CompletionOptions(trigger_characters=[*"\"'/({[. <"]),
+    lsp.TEXT_DOCUMENT_SIGNATURE_HELP: lsp.SignatureHelpOptions(trigger_characters=[" ", '"']),
 }
 
 

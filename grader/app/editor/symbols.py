@@ -1,5 +1,7 @@
 """The names that files define, as editors list them."""
 
+from collections.abc import Sequence
+
 from lsprotocol import types as lsp
 
 from grader.app.editor.look import Look
@@ -7,6 +9,7 @@ from grader.app.editor.places import TextPlace
 from grader.app.editor.session import EditorSession, SupersededError
 from grader.app.editor.text_ranges import TextRanges
 from grader.base.errors import GraderError
+from grader.ros.api import Configuration
 
 _KINDS = {
     "frame": lsp.SymbolKind.Object,
@@ -23,16 +26,39 @@ _MOST = 500
 
 
 def in_document(look: Look, place: TextPlace) -> list[lsp.DocumentSymbol]:
-    """Return the names that a file defines, in the order of the file."""
+    """Return the names that a file defines, in the order of the file.
+
+    Those of a robot are a tree: below a link the joints that it is the parent of, below a joint its
+    child.
+    """
     ranges = place.ranges(look)
     symbols = []
     for each in look.names.defined_in(place.path):
         at = ranges.range(each.location)
         kind = _KINDS.get(each.kind, lsp.SymbolKind.Constant)
         symbols.append(lsp.DocumentSymbol(each.name, kind, at, at, detail=each.kind))
-    return sorted(
-        symbols, key=lambda symbol: (symbol.range.start.line, symbol.range.start.character)
-    )
+    symbols.sort(key=lambda symbol: (symbol.range.start.line, symbol.range.start.character))
+    robot = look.robots.get(place.path)
+    return _as_tree(symbols, robot) if robot is not None and robot.roots else symbols
+
+
+def _as_tree(
+    symbols: Sequence[lsp.DocumentSymbol], robot: Configuration
+) -> list[lsp.DocumentSymbol]:
+    """Return symbols of which those of a robot are below each other."""
+    links = {symbol.name: symbol for symbol in symbols if symbol.detail == "link"}
+    joints = {symbol.name: symbol for symbol in symbols if symbol.detail == "joint"}
+    nested = set[int]()
+    for joint in robot.robot.joints:
+        parent, child = links.get(joint.parent), links.get(joint.child)
+        between = joints.get(joint.name)
+        if parent is None or between is None or child is None:
+            continue
+        between.detail = f"{joint.type} joint"
+        for above, below in ((parent, between), (between, child)):
+            above.children = [*(above.children or ()), below]
+            nested.add(id(below))
+    return [symbol for symbol in symbols if id(symbol) not in nested]
 
 
 def in_workspace(session: EditorSession, query: str) -> list[lsp.SymbolInformation]:

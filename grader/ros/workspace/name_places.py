@@ -4,6 +4,8 @@ from collections.abc import Collection
 from functools import cached_property
 
 from grader.ros.workspace.index.all_names import WorkspaceNames
+from grader.ros.workspace.index.offered_elements import offered_elements
+from grader.ros.workspace.index.offered_macros import parameters_of_macro
 from grader.ros.workspace.index.offered_names import offered_names
 from grader.ros.workspace.index.offered_parameters import parameter_text, parameters_below
 from grader.ros.workspace.index.written_names import WrittenName
@@ -63,6 +65,14 @@ class NamePlaces:
     def offered(self, kind: str, owner: str) -> list[str]:
         """Return the names of a kind that may be written, as `offered_names` does."""
         return offered_names(self._opened.workspace, kind, owner)
+
+    def elements_behind(self, text: str) -> list[tuple[str, str]]:
+        """Return the elements or attributes that may follow a text, as `offered_elements` does."""
+        return [*offered_elements(text)]
+
+    def parameters_of_macro(self, name: str) -> list[tuple[str, list[str]]]:
+        """Return the file and the parameters of each macro, as `parameters_of_macro` does."""
+        return [*parameters_of_macro(self._opened, name)]
 
     def parameters_below(self, section: str, prefix: str) -> list[str]:
         """Return the keys that a section of parameters may have, as `parameters_below` does."""

@@ -1,0 +1,141 @@
+"""What an editor gets while a file is typed and cannot be read: completion, signatures, and what is in a file."""
+
+import shutil
+from collections.abc import Callable, Iterator
+
+import pytest
+from lsprotocol import types as lsp
+
+from grader.ros.workspace.index.offered_elements import offered_elements
+from tests.command_line import ROOT
+from tests.editor.client import Act, Editor, shared_editor
+
+pytestmark = pytest.mark.slow
+Run = Callable[[Act], None]
+_LAB6 = "my_robot/urdf/my_robot.urdf"
+_XACRO = "diffdrive_robot/urdf/diffdrive.urdf.xacro"
+_LAUNCH = "diffdrive_robot/launch/diffdrive.launch.py"
+_HERE = "|"  # where the cursor is
+_SPAWNER = 'executable="spawner", arguments=['
+_JOIN = 'PathJoinSubstitution([share, "config", "'
+
+
+@pytest.fixture(scope="module")
+def labs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Run]]:
+    """Return what runs in an editor of each of two labs."""
+    top = tmp_path_factory.mktemp("labs")
+    lab6 = shutil.copytree(ROOT / "rubrics/lab6", top / "lab")
+    diffdrive = shutil.copytree(ROOT / "rubrics/diffdrive", top / "ws")
+    with shared_editor(lab6) as in_lab6, shared_editor(diffdrive) as in_diffdrive:
+        yield {_LAB6: in_lab6, _XACRO: in_diffdrive, _LAUNCH: in_diffdrive}
+
+
+@pytest.mark.parametrize(
+    ("path", "old", "typed", "offered"),
+    [
+        (_LAB6, '<child link="lidar" />', '<child link="|', {"lidar", "base_link"}),
+        (_LAB6, "</robot>", '<joint name="arm" type="fixed">\n<parent link="|', {"lidar"}),
+        (_LAB6, "</robot>", "<|", {"link", "joint", "material"}),
+        (_LAB6, "</robot>", '<link name="arm">\n  <vis|', {"visual", "inertial"}),
+        (_LAB6, "</robot>", '<joint name="arm" |', {"type"}),
+        (_XACRO, '<xacro:macro name="wheel" params="side y">', "{}<|", {"link", "joint"}),
+        (_LAUNCH, f'{_SPAWNER}"joint_state_broadcaster"', f'{_SPAWNER}"|', {"diff_drive_controller"}),
+        (_LAUNCH, f'{_JOIN}controllers.yaml"])', f"{_JOIN}|", {"controllers.yaml"}),
+    ],
+)  # fmt: skip
+def test_completes_while_a_tag_or_call_is_typed(
+    labs: dict[str, Run], path: str, old: str, typed: str, offered: set[str]
+) -> None:
+    """The rest of the file stays as it is, so that it can no longer be read."""
+
+    async def act(one: Editor) -> None:
+        await one.open(path)
+        text = one.text(path)
+        assert text.count(old) >= 1
+        before, _, after = text.partition(old)
+        start, _, end = typed.format(old).partition(_HERE)
+        await one.type(path, f"{before}{start}{end}\n{after}")
+        rows = f"{before}{start}".split("\n")
+        asked = lsp.CompletionParams(one.document(path), lsp.Position(len(rows) - 1, len(rows[-1])))
+        items = await one.client.text_document_completion_async(asked)
+        assert isinstance(items, list | tuple)
+        assert offered <= {item.label for item in items}
+
+    labs[path](act)
+
+
+def test_attributes_that_are_written_are_not_offered() -> None:
+    """Nothing is offered in a value, in text or in an element that a URDF does not have."""
+    names = [name for name, _ in offered_elements('<robot><link><visual><origin rpy="0 0 0" ')]
+    assert names == ["xyz", "quat_xyzw"]
+    [box] = offered_elements("<robot><box ")
+    assert box == ("size", "x y z in m, needed")
+    for text in (
+        '<origin rpy="',
+        "<robot>text ",
+        "<gazebo ",
+        "<robot><gazebo><",
+        "<",
+        "</",
+        "<a/><!-- <link><",
+    ):
+        assert [*offered_elements(text)] == []
+    after = '<robot><!-- <link> --><link name="a"><visual/></link><xacro:if value="1"><'
+    assert {"link", "joint"} <= {name for name, _ in offered_elements(after)}
+
+
+def test_shows_the_parameters_of_a_macro(labs: dict[str, Run]) -> None:
+    """The one whose value is typed is marked; other tags have none."""
+
+    async def act(one: Editor) -> None:
+        await one.open(_XACRO)
+        text = one.text(_XACRO)
+        for typed, active in (('<xacro:wheel side="left" y=', 1), ("<xacro:wheel ", None)):
+            await one.type(_XACRO, text.replace("</robot>", typed))
+            row = text.split("\n").index("</robot>")
+            at = lsp.Position(row, len(typed))
+            asked = lsp.SignatureHelpParams(one.document(_XACRO), at)
+            help_of = await one.client.text_document_signature_help_async(asked)
+            assert help_of is not None
+            [signature] = help_of.signatures
+            assert (signature.label, signature.documentation) == ("xacro:wheel side y", _XACRO)
+            assert signature.active_parameter == active
+        nowhere = lsp.SignatureHelpParams(one.document(_XACRO), lsp.Position(0, 0))
+        assert await one.client.text_document_signature_help_async(nowhere) is None
+
+    labs[_XACRO](act)
+
+
+def test_lists_a_robot_as_a_tree(labs: dict[str, Run]) -> None:
+    """Below a link are its joints, below a joint its child."""
+
+    async def act(one: Editor) -> None:
+        asked = lsp.DocumentSymbolParams(one.document(_LAB6))
+        symbols = await one.client.text_document_document_symbol_async(asked)
+        assert symbols is not None
+        [root] = [symbol for symbol in symbols if symbol.name == "base_footprint"]
+        assert isinstance(root, lsp.DocumentSymbol)
+        [joint] = root.children or ()
+        [base] = joint.children or ()
+        assert (joint.detail, base.name) == ("fixed joint", "base_link")
+        below = {
+            each.name: [child.name for child in each.children or ()] for each in base.children or ()
+        }
+        assert below["base_lidar_joint"] == ["lidar"]
+        assert {symbol.name for symbol in symbols}.isdisjoint({"lidar", "base_link"})
+
+    labs[_LAB6](act)
+
+
+def test_marks_a_name_in_its_file(labs: dict[str, Run]) -> None:
+    """The definition is marked as written, the uses as read."""
+
+    async def act(one: Editor) -> None:
+        at = one.position(_LAB6, '<link name="lidar">', inside=13)
+        asked = lsp.DocumentHighlightParams(one.document(_LAB6), at)
+        marks = await one.client.text_document_document_highlight_async(asked)
+        assert marks is not None
+        kinds = [mark.kind for mark in marks]
+        assert kinds == [lsp.DocumentHighlightKind.Write, lsp.DocumentHighlightKind.Read]
+
+    labs[_LAB6](act)
