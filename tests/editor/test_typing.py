@@ -33,7 +33,7 @@ def labs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Run]]:
 @pytest.mark.parametrize(
     ("path", "old", "typed", "offered"),
     [
-        (_LAB6, '<child link="lidar" />', '<child link="|', {"lidar", "base_link"}),
+        (_LAB6, '<child link="lidar"/>', '<child link="|', {"lidar", "base_link"}),
         (_LAB6, "</robot>", '<joint name="arm" type="fixed">\n<parent link="|', {"lidar"}),
         (_LAB6, "</robot>", "<|", {"link", "joint", "material"}),
         (_LAB6, "</robot>", '<link name="arm">\n  <vis|', {"visual", "inertial"}),

@@ -148,31 +148,29 @@ def _offered(
         if not owner:
             return []
     names: list[str] = []
-    for kind in context.kinds:
-        names += _readable(look, place).names.offered(kind, owner)
+    for one in _looks(look, place):
+        some = [name for kind in context.kinds for name in one.names.offered(kind, owner)]
+        names = max(names, some, key=len)
     folders = re.findall(rf"{_QUOTE}([^\"']*){_QUOTE}", given.get("folders") or "")
     below = "".join(f"{folder.strip('/')}/" for folder in folders)
     names = [name.removeprefix(below) for name in names if name.startswith(below)]
     return _items(names, context.kinds[0])
 
 
-def _readable(look: Look, place: TextPlace) -> Look:
-    """Return a look at the files that reads the file that is typed.
+def _looks(look: Look, place: TextPlace) -> list[Look]:
+    """Return looks at the files that may read the file that is typed.
 
-    They are the files as they are; where the file has an error, also without the line that is
-    typed, or as it is saved: the one that loads the robot, or has most names.
+    They are the files as they are; where this one has an error, also without the line that is
+    typed, and as it is saved.
     """
     wrong = {each.location.path for each in look.findings if each.severity == "error"}
     if place.path not in wrong:
-        return look
+        return [look]
     looks = [look, _without_line(look, place)]
     with suppress(InputError):
         saved = read_capped(place.root / place.path, _MAX_SAVED)
         looks.append(look.again(overlaid(look.tree, {place.path: saved})))
-    return max(
-        looks,
-        key=lambda one: (place.path in one.robots, len(one.names.defined_in(place.path))),
-    )
+    return looks
 
 
 def _without_line(look: Look, place: TextPlace) -> Look:

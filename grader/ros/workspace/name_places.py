@@ -5,10 +5,10 @@ from functools import cached_property
 
 from grader.ros.workspace.index.all_names import WorkspaceNames
 from grader.ros.workspace.index.offered_elements import offered_elements
-from grader.ros.workspace.index.offered_macros import parameters_of_macro
 from grader.ros.workspace.index.offered_names import offered_names
 from grader.ros.workspace.index.offered_parameters import parameter_text, parameters_below
 from grader.ros.workspace.index.written_names import WrittenName
+from grader.ros.workspace.offered_macros import parameters_of_macro
 from grader.ros.workspace.opened import OpenedWorkspace
 
 
