@@ -70,8 +70,13 @@ def test_languages() -> None:
     assert set.union(*languages.values()) <= endings()
     assert {".xml", ".yaml", ".yml", ".py", ".cpp", ".hpp", ".h"} <= endings()
     assert '"**/CMakeLists.txt"' in CODE
-    started = {event.removeprefix("onLanguage:") for event in MANIFEST["activationEvents"]}
-    assert started == {"xml", "workspaceContains:**/package.xml"}
+
+
+def test_it_starts_where_a_package_or_a_robot_is() -> None:
+    """It does not start in a folder with other XML files."""
+    patterns = ("**/package.xml", "**/*.urdf", "**/*.xacro")
+    started = {f"workspaceContains:{pattern}" for pattern in patterns}
+    assert {*MANIFEST["activationEvents"]} == started
 
 
 def test_commands_of_the_grader() -> None:
@@ -87,25 +92,27 @@ def test_commands_of_the_grader() -> None:
 @pytest.mark.exhaustive
 @NEEDS_PACKAGE
 def test_the_package() -> None:
-    """It has the compiled code, all packages that this needs with their licences, the licence, and no sources."""
+    """It has the code in one file, the licences of the packages in it, its own licence, an icon, and no sources."""
     with zipfile.ZipFile(Path(PACKED or "")) as archive:
         files = {name: archive.read(name) for name in archive.namelist()}
     assert json.loads(files["extension/package.json"]) == MANIFEST
     assert f"extension/{Path(MANIFEST['main']).as_posix()}" in files
     assert files["extension/LICENSE.txt"] == (ROOT / "LICENSE").read_bytes()
     needed = {name for name, package in LOCK["packages"].items() if name and not package.get("dev")}
-    assert len(needed) >= 5
-    for name in needed:
-        assert (
-            json.loads(files[f"extension/{name}/package.json"])["version"]
-            == LOCK["packages"][name]["version"]
-        )
-        beside = [file for file in files if file.startswith(f"extension/{name}/")]
-        assert any(re.search("(?i)/licen[cs]e", file) for file in beside), name
+    licences = files["extension/dist/licences.txt"].decode()
+    bundled = re.findall(r"(?m)^(?:@[\w-]+/)?[a-z][\w.-]+ \d+\.\d+\.\d+$", licences)
+    assert len(bundled) >= 5
+    versions = {
+        f"{name.rpartition('node_modules/')[2]} {LOCK['packages'][name]['version']}"
+        for name in needed
+    }
+    assert {*bundled} <= versions
+    icon = files[f"extension/{MANIFEST['icon']}"]
+    assert (icon[:4], icon[16:24]) == (b"\x89PNG", b"\0\0\0\x80" * 2)
+    assert len(files) == 8
     assert not any(
-        re.search(r"/src/|\.ts$|\.map$|package-lock|tsconfig", file)
+        re.search(r"/src/|\.ts$|\.map$|\.mjs$|package-lock|tsconfig|node_modules", file)
         for file in files
-        if "/node_modules/" not in file
     )
     tree = ET.fromstring(files["extension.vsixmanifest"])
     [identity] = [element for element in tree.iter() if element.tag.endswith("}Identity")]
@@ -117,10 +124,13 @@ def test_the_package() -> None:
 
 @pytest.fixture(scope="module")
 def compiled(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return the code of the package."""
+    """Return the code without the packages that it needs, in place of which Node gets stubs."""
     target = tmp_path_factory.mktemp("extension")
-    with zipfile.ZipFile(PACKED or "") as archive:
-        return Path(archive.extract(f"extension/{Path(MANIFEST['main']).as_posix()}", target))
+    compiler = EXTENSION / "node_modules/.bin/tsc"
+    subprocess.run(
+        [compiler, "--project", EXTENSION, "--outDir", target], check=True, timeout=HANG_TIMEOUT
+    )
+    return target / "extension.js"
 
 
 def activate(compiled: Path, situation: dict[str, Any]) -> dict[str, Any]:
