@@ -1,7 +1,9 @@
 """What an editor gets while a file is typed and cannot be read: completion, signatures, and what is in a file."""
 
+import asyncio
 import shutil
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 from lsprotocol import types as lsp
@@ -125,6 +127,57 @@ def test_lists_a_robot_as_a_tree(labs: dict[str, Run]) -> None:
         assert {symbol.name for symbol in symbols}.isdisjoint({"lidar", "base_link"})
 
     labs[_LAB6](act)
+
+
+def test_a_folder_that_is_removed_has_no_problems(tmp_path: Path) -> None:
+    """What was shown of it is gone, and it is looked at anew when it is opened again."""
+    root = shutil.copytree(ROOT / "submissions/diffdrive/spawner-misspelt", tmp_path / "ws")
+    folder = lsp.WorkspaceFolder(root.as_uri(), root.name)
+
+    async def change(one: Editor, *, is_open: bool) -> None:
+        added, removed = ([folder], []) if is_open else ([], [folder])
+        event = lsp.WorkspaceFoldersChangeEvent(added, removed)
+        one.client.workspace_did_change_workspace_folders(
+            lsp.DidChangeWorkspaceFoldersParams(event)
+        )
+
+    async def act(one: Editor) -> None:
+        before = one.found()
+        assert before
+        await change(one, is_open=False)
+        await change(one, is_open=True)
+        await one.looked()
+        assert one.found() == before
+        await change(one, is_open=False)
+        for _ in range(100):
+            if not one.found():
+                break
+            await asyncio.sleep(0.1)
+        assert one.found() == []
+
+    with shared_editor(root) as run:
+        run(act)
+
+
+def test_hover_has_the_pose_in_the_robots_of_the_file(tmp_path: Path) -> None:
+    """Another robot of the folder with the same link is left out."""
+    root = shutil.copytree(ROOT / "rubrics/lab6/my_robot", tmp_path / "my_robot")
+    text = (root / "urdf/my_robot.urdf").read_text()
+    (root / "urdf/other.urdf").write_text(text.replace('xyz="0.15 0 0.225"', 'xyz="0.15 0 0.5"'))
+
+    async def act(one: Editor) -> None:
+        for name in ("my_robot", "other"):
+            path = f"urdf/{name}.urdf"
+            at = one.position(path, '<link name="lidar">', inside=13)
+            asked = lsp.HoverParams(one.document(path), at)
+            hover = await one.client.text_document_hover_async(asked)
+            assert hover is not None
+            assert isinstance(hover.contents, lsp.MarkupContent)
+            assert hover.contents.value.count("pose in") == 1
+            assert f"{name}.urdf" in hover.contents.value.replace("\\", "")
+
+    with shared_editor(root) as run:
+        run(act)
 
 
 def test_marks_a_name_in_its_file(labs: dict[str, Run]) -> None:

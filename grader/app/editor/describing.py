@@ -1,6 +1,6 @@
 """What an editor shows when the pointer rests on a name."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from lsprotocol import types as lsp
 
@@ -32,7 +32,10 @@ def hover(look: Look, place: TextPlace) -> lsp.Hover | None:
     uses = {same_name.location for same_name in same if same_name.role == "use"}
     used = counted(len(uses), "time")
     rows = [f"**{name.kind}** {_code(name.name)}: {_plain(where)}; used {used}"]
-    rows += _of_robots(look, name.kind, name.name)
+    owners = {
+        place_of_name.owner for place_of_name in same if place_of_name.location.path == place.path
+    }
+    rows += _of_robots(look, name.kind, name.name, owners)
     rows += (f"value: {_code(value)}" for value in look.names.values(name)[:_MAX_NAMED])
     if name.kind == "parameter":
         rows += _parameter_rows(look, place)
@@ -68,10 +71,16 @@ def _plain(text: str) -> str:
     return escape(printable(text))
 
 
-def _of_robots(look: Look, kind: str, name: str) -> Iterator[str]:
-    """Yield the pose of a link and what a joint does, in each robot that has it."""
+def _of_robots(look: Look, kind: str, name: str, owners: Collection[str]) -> Iterator[str]:
+    """Yield the pose of a link and what a joint does, in each robot that has it.
+
+    Where the file belongs to some robots, only in these.
+    """
+    are_known = any(path in owners for path in look.robots)
     for path, robot in look.robots.items():
         model = robot.robot
+        if are_known and path not in owners:
+            continue
         if kind in ("link", "frame") and model.has_link(name):
             yield f"{_pose(robot, name)} ({_plain(path)})"
         if kind == "joint" and model.has_joint(name):

@@ -81,6 +81,18 @@ class _GraderServer(LanguageServer):
             if path is not None:
                 self.session_in(Path(os.path.realpath(path)))
 
+    def close_folder(self, uri: str) -> None:
+        """End the session of a folder of the editor, and show nothing of it any more."""
+        path = to_fs_path(uri)
+        root = Path(os.path.realpath(path)) if path is not None else None
+        if root is None or self.sessions.pop(root, None) is None:
+            return
+        waiting = self._refreshing.pop(root, None)
+        if waiting is not None:
+            waiting.cancel()
+        self._publish(root, {})
+        del self._published[root]
+
     def session_in(self, root: Path) -> EditorSession:
         """Return the session of a folder, which is started if there is none."""
         if root not in self.sessions:
@@ -227,6 +239,7 @@ def _make_server(rubric: str, limits: ReadingLimits, skipped: Skipped) -> _Grade
         skipped: The texts that take too long to read, by the paths of their files.
     """
     server = _GraderServer(rubric, limits, skipped)
+    _follow_folders(server)
     _follow_texts(server)
     _answer_about_places(server)
     _offer_changes(server)
@@ -235,17 +248,6 @@ def _make_server(rubric: str, limits: ReadingLimits, skipped: Skipped) -> _Grade
 
 def _follow_texts(server: _GraderServer) -> None:
     """Let a server follow what is typed and saved."""
-
-    @server.feature(lsp.INITIALIZED)
-    def initialized(ls: _GraderServer, _: lsp.InitializedParams) -> None:
-        ls.open_folders()
-        watched = ls.client_capabilities.workspace
-        files = watched.did_change_watched_files if watched is not None else None
-        if files is not None and files.dynamic_registration:
-            options = {"watchers": [{"globPattern": "**/*"}]}
-            method = lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES
-            registration = lsp.Registration("watched-files", method, options)
-            ls.client_register_capability(lsp.RegistrationParams([registration]))
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)
     def opened(ls: _GraderServer, params: lsp.DidOpenTextDocumentParams) -> None:
@@ -271,8 +273,25 @@ def _follow_texts(server: _GraderServer) -> None:
         for uri in {change.uri for change in params.changes}:
             ls.change(uri, lambda files, _: files.read_again())
 
+
+def _follow_folders(server: _GraderServer) -> None:
+    """Let a server follow which folders are open."""
+
+    @server.feature(lsp.INITIALIZED)
+    def initialized(ls: _GraderServer, _: lsp.InitializedParams) -> None:
+        ls.open_folders()
+        watched = ls.client_capabilities.workspace
+        files = watched.did_change_watched_files if watched is not None else None
+        if files is not None and files.dynamic_registration:
+            options = {"watchers": [{"globPattern": "**/*"}]}
+            method = lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES
+            registration = lsp.Registration("watched-files", method, options)
+            ls.client_register_capability(lsp.RegistrationParams([registration]))
+
     @server.feature(lsp.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
-    def folders_changed(ls: _GraderServer, _: lsp.DidChangeWorkspaceFoldersParams) -> None:
+    def folders_changed(ls: _GraderServer, params: lsp.DidChangeWorkspaceFoldersParams) -> None:
+        for folder in params.event.removed:
+            ls.close_folder(folder.uri)
         ls.open_folders()
 
 
