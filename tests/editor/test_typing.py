@@ -180,6 +180,24 @@ def test_hover_has_the_pose_in_the_robots_of_the_file(tmp_path: Path) -> None:
         run(act)
 
 
+def test_answers_with_an_error_in_another_line(labs: dict[str, Run]) -> None:
+    """The error is in another line; what is in its own line is not guessed."""
+
+    async def act(one: Editor) -> None:
+        await one.open(_LAUNCH)
+        text = one.text(_LAUNCH)
+        at = one.position(_LAUNCH, 'LaunchConfiguration("drive")', inside=23)
+        document = one.document(_LAUNCH)
+        await one.type(_LAUNCH, text.replace('executable="rviz2",', 'executable="rviz2,', 1))
+        found = await one.client.text_document_definition_async(lsp.DefinitionParams(document, at))
+        assert isinstance(found, list | tuple)
+        assert [each.range.start.line for each in found if isinstance(each, lsp.Location)] == [
+            one.position(_LAUNCH, 'DeclareLaunchArgument("drive"').line
+        ]
+
+    labs[_LAUNCH](act)
+
+
 def test_marks_a_name_in_its_file(labs: dict[str, Run]) -> None:
     """The definition is marked as written, the uses as read."""
 

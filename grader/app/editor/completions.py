@@ -9,7 +9,7 @@ from lsprotocol import types as lsp
 
 from grader.app.editor.look import Look
 from grader.app.editor.parameter_keys import parameter_key
-from grader.app.editor.places import TextPlace
+from grader.app.editor.places import TextPlace, without_lines
 from grader.base.errors import InputError
 from grader.files.reading import read_capped
 from grader.files.tree import overlaid
@@ -132,7 +132,7 @@ def completions(look: Look, place: TextPlace) -> list[lsp.CompletionItem]:
         *above, line = before.split("\n")
         key = parameter_key(above, line)
         if key is not None and re.fullmatch(r" *[\w.]*", line):
-            readable = _without_line(look, place)
+            readable = without_lines(look, place, [place.line])
             return _items(readable.names.parameters_below(key.node, key.prefix), "parameter")
     return []
 
@@ -166,19 +166,11 @@ def _looks(look: Look, place: TextPlace) -> list[Look]:
     wrong = {each.location.path for each in look.findings if each.severity == "error"}
     if place.path not in wrong:
         return [look]
-    looks = [look, _without_line(look, place)]
+    looks = [look, without_lines(look, place, [place.line])]
     with suppress(InputError):
         saved = read_capped(place.root / place.path, _MAX_SAVED)
         looks.append(look.again(overlaid(look.tree, {place.path: saved})))
     return looks
-
-
-def _without_line(look: Look, place: TextPlace) -> Look:
-    """Return a look at the files without a line: while a key is typed, its file is no YAML."""
-    lines = place.lines.text.split("\n")
-    lines[place.line - 1] = ""
-    data = "\n".join(lines).encode("utf-8", "surrogatepass")
-    return look.again(overlaid(look.tree, {place.path: data}))
 
 
 def _items_with_details(

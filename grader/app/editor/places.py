@@ -1,12 +1,17 @@
 """Where a name is defined, and where it is used."""
 
+from collections.abc import Callable, Collection
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from lsprotocol import types as lsp
 
 from grader.app.editor.look import Look
 from grader.app.editor.text_ranges import Lines, TextRanges
+from grader.files.tree import overlaid
+
+_MAX_ERRORS = 3
+_T = TypeVar("_T")
 
 
 class TextPlace(NamedTuple):
@@ -29,6 +34,32 @@ class TextPlace(NamedTuple):
     def ranges(self, look: Look) -> TextRanges:
         """Return the ranges in the files of a look."""
         return TextRanges(look, self.root)
+
+
+def without_lines(look: Look, place: TextPlace, numbers: Collection[int]) -> Look:
+    """Return a look at the files where some lines of the file of a place are empty."""
+    lines = place.lines.text.split("\n")
+    for number in numbers:
+        lines[number - 1] = ""
+    data = "\n".join(lines).encode("utf-8", "surrogatepass")
+    return look.again(overlaid(look.tree, {place.path: data}))
+
+
+def also_where_broken(answer: Callable[[Look, TextPlace], _T]) -> Callable[[Look, TextPlace], _T]:
+    """Return what answers also where an error in another line keeps the file from being read."""
+
+    def answer_anyway(look: Look, place: TextPlace) -> _T:
+        given = answer(look, place)
+        errors = {
+            finding.location.line
+            for finding in look.findings
+            if finding.severity == "error" and finding.location.path == place.path
+        } - {place.line}
+        if given or not errors or len(errors) > _MAX_ERRORS:
+            return given
+        return answer(without_lines(look, place, errors), place)
+
+    return answer_anyway
 
 
 def definitions(look: Look, place: TextPlace) -> list[lsp.Location]:

@@ -46,10 +46,10 @@ _Diagnostics = Mapping[str, list[lsp.Diagnostic]]
 
 # What is asked about one place of a file, with what answers it.
 _ANSWERS: Mapping[str, Callable[[Look, places.TextPlace], Any]] = {
-    lsp.TEXT_DOCUMENT_HOVER: describing.hover,
-    lsp.TEXT_DOCUMENT_DEFINITION: places.definitions,
-    lsp.TEXT_DOCUMENT_REFERENCES: places.references,
-    lsp.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT: places.highlights,
+    lsp.TEXT_DOCUMENT_HOVER: places.also_where_broken(describing.hover),
+    lsp.TEXT_DOCUMENT_DEFINITION: places.also_where_broken(places.definitions),
+    lsp.TEXT_DOCUMENT_REFERENCES: places.also_where_broken(places.references),
+    lsp.TEXT_DOCUMENT_DOCUMENT_HIGHLIGHT: places.also_where_broken(places.highlights),
     lsp.TEXT_DOCUMENT_COMPLETION: completions.completions,
     lsp.TEXT_DOCUMENT_SIGNATURE_HELP: signatures.signature,
     lsp.TEXT_DOCUMENT_PREPARE_RENAME: renaming.prepared,
