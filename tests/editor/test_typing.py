@@ -129,6 +129,25 @@ def test_lists_a_robot_as_a_tree(labs: dict[str, Run]) -> None:
     labs[_LAB6](act)
 
 
+def test_problems_are_shown_while_one_types(tmp_path: Path) -> None:
+    """A look that is due ends although keys follow each other faster than a look begins."""
+    root = shutil.copytree(ROOT / "rubrics/lab6", tmp_path / "lab")
+
+    async def act(one: Editor) -> None:
+        await one.open(_LAB6)
+        text = one.text(_LAB6).replace('<child link="lidar"/>', '<child link="lidr"/>')
+        for number in range(100):
+            one.type_on(_LAB6, f"{text}<!-- {number} -->\n")
+            await asyncio.sleep(0.05)
+            if one.found():
+                break
+        assert number < 99
+        assert "URDF" in one.found()[0]
+
+    with shared_editor(root) as run:
+        run(act)
+
+
 def test_a_folder_that_is_removed_has_no_problems(tmp_path: Path) -> None:
     """What was shown of it is gone, and it is looked at anew when it is opened again."""
     root = shutil.copytree(ROOT / "submissions/diffdrive/spawner-misspelt", tmp_path / "ws")

@@ -3,6 +3,7 @@
 import asyncio
 import gc
 import logging
+import math
 import os
 import sys
 import time
@@ -39,6 +40,7 @@ from grader.base.text import counted
 from grader.files.limits import ROBOT_ENDINGS
 
 _PAUSE = 0.1  # seconds after a key before the files are looked at
+_LONGEST = 1.0  # seconds that one may type without being shown what is wrong
 _MANIFEST = "package.xml"
 _T = TypeVar("_T")
 _Diagnostics = Mapping[str, list[lsp.Diagnostic]]
@@ -71,6 +73,8 @@ class _GraderServer(LanguageServer):
         self.sessions: dict[Path, EditorSession] = {}
         self._pool = ThreadPoolExecutor(max_workers=2)
         self._refreshing: dict[Path, asyncio.Task[None]] = {}
+        self._changed: dict[Path, float] = {}  # when what is not shown yet began to change
+        self._unseen: set[Path] = set()  # what has changed while a look ends anyway
         self._published: dict[Path, set[str]] = {}
         self._complaint = ""
 
@@ -132,20 +136,41 @@ class _GraderServer(LanguageServer):
             self.refresh(session.files.root)
 
     def refresh(self, root: Path) -> None:
-        """Look at the files of a folder again soon, in place of what is waiting."""
+        """Look at the files of a folder again soon, in place of what is waiting.
+
+        A look that is due ends before.
+        """
+        self._changed.setdefault(root, time.monotonic())
         waiting = self._refreshing.get(root)
-        if waiting is not None:
+        if waiting is not None and not waiting.done():
+            if self._is_due(root):
+                self._unseen.add(root)
+                return
             waiting.cancel()
         self._refreshing[root] = asyncio.ensure_future(self._refresh(root))
 
+    def _is_due(self, root: Path) -> bool:
+        """Return whether one has typed for long without being shown what is wrong."""
+        return time.monotonic() - self._changed.get(root, math.inf) > _LONGEST
+
     async def _refresh(self, root: Path) -> None:
-        session = self.sessions[root]
         await asyncio.sleep(_PAUSE)
+        await self._look_at(root)
+        if root in self._unseen:
+            self._unseen.discard(root)
+            self._refreshing.pop(root, None)
+            self.refresh(root)
+
+    async def _look_at(self, root: Path) -> None:
+        """Look at the files of a folder, and show what is wrong."""
+        session = self.sessions[root]
         start = time.monotonic()
         try:
-            look = await self.in_thread(session.look)
+            is_due = self._is_due(root)
+            look = await self.in_thread(lambda: session.look(ends_anyway=is_due))
             diagnostics = await self.in_thread(partial(diagnostics_of, look, root))
             self._publish(root, diagnostics)
+            self._changed.pop(root, None)
             self.protocol.notify(LOOKED)
             self._complain(session.complaint)
             graded = await self.in_thread(lambda: look.graded.mistakes)
