@@ -401,7 +401,7 @@ def test_an_unknown_action_is_said() -> None:
     assert graph.unread[0].reason.startswith("the program of a node is not evaluated")
 
 
-@pytest.mark.parametrize("name", ["opened_by_code", "read", "spawned_controllers", "edges_in"])
+@pytest.mark.parametrize("name", ["opened_by_code", "read", "spawned_controllers", "transforms_in"])
 def test_what_takes_too_much_work_is_left_open(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     """The rest of the graph is there."""
 
@@ -421,7 +421,7 @@ def test_what_takes_too_much_work_is_left_open(monkeypatch: pytest.MonkeyPatch, 
     assert (talker.opens_more != "") is (name in ("opened_by_code", "read"))
     assert ("more work" in turtle.opens_more) is (name == "read")
     assert ("/drive" in labels(graph)) is (name != "spawned_controllers")
-    assert (graph.transforms == ()) is (name == "edges_in")
+    assert (graph.transforms == ()) is (name == "transforms_in")
 
 
 def test_ends_of_other_types_and_qualities_do_not_connect() -> None:

@@ -47,6 +47,9 @@ class VaryingEnd(NamedTuple):
         return RELEASES.index(self.since) <= number <= RELEASES.index(self.until)
 
 
+OnlyMore = Literal["", "subscriptions", "publishers"]
+
+
 class OpenedEnds(NamedTuple):
     """What a program, a component or a controller opens: names with types.
 
@@ -65,6 +68,7 @@ class OpenedEnds(NamedTuple):
     action_clients: Mapping[str, str] = {}
     varying: tuple[VaryingEnd, ...] = ()
     opens_more: str = ""  # why it may open more
+    opens_only: OnlyMore = ""  # what all of this is; empty where it may be anything
     is_manual: bool = False  # whether a person starts it in a terminal of its own
     is_process: bool = False  # whether it is no node, or ends by itself
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from grader.base.errors import NotDecided
 from grader.base.source import Location
-from grader.ros.known.end_rows import nodes_of_launch_file, opened_ends
+from grader.ros.known.end_rows import OnlyMore, nodes_of_launch_file, opened_ends
 from grader.ros.known.package_rows import controller_row, program_row
 from grader.ros.known.parameter_rows import row_for
 from grader.ros.known.releases import Release
@@ -27,6 +27,7 @@ from grader.ros.workspace.graph.launch_graph import (
     Unread,
     has_more_connections,
 )
+from grader.ros.workspace.graph.launched_transforms import transforms_in
 from grader.ros.workspace.graph.node_ends import ends_of
 from grader.ros.workspace.graph.opened_by_programs import ends_of_row, release_of, shown_type
 from grader.ros.workspace.graph.plugin_nodes import plugin_nodes
@@ -36,7 +37,6 @@ from grader.ros.workspace.graph.started_controllers import (
     defined_controllers,
     spawned_controllers,
 )
-from grader.ros.workspace.graph.transform_edges import edges_in
 from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
 from grader.ros.workspace.model.workspace import Workspace
 
@@ -216,8 +216,9 @@ def _known_node(
     ends: list[GraphEnd] = []
     parameters: list[GivenValue] = []
     opens_more = f"what {node.name} opens is not known"
+    only: OnlyMore = ""
     if row is not None:
-        opens_more = row.opens_more
+        opens_more, only = row.opens_more, row.opens_only
     try:
         given = making.workspace.parameters.read(making.package, node, name or "")
         if row is not None:
@@ -234,10 +235,9 @@ def _known_node(
         if node.executable == _IMAGE_BRIDGE:
             ends += _bridged_images(named)
     except NotDecided:
-        opens_more = _TOO_MUCH
-    made = _graph_node(node, name, kind, inside)
-    shown, different = _shown(ends), tuple(parameters)
-    return made._replace(ends=shown, opens_more=opens_more, parameters=different)
+        opens_more, only = _TOO_MUCH, ""
+    made = _graph_node(node, name, kind, inside)._replace(opens_more=opens_more, opens_only=only)
+    return made._replace(ends=_shown(ends), parameters=tuple(parameters))
 
 
 def _ends_for_rules(making: _Making, node: StartedNode) -> Iterator[GraphEnd]:
@@ -359,12 +359,13 @@ def _controller(
     row = opened_ends(controller_row(kind).package or package, cls)
     ends: Sequence[GraphEnd] = ()
     opens_more = f"what {kind} opens is not known"
+    only: OnlyMore = ""
     if row is not None:
         located = node._replace(location=controller.location)
         ends = _shown([*ends_of_row(row, located, given, making.release)])
-        opens_more = row.opens_more
-    at = controller.location
-    return GraphNode(name, kind, "controller", at, tuple(ends), doubt, opens_more, (), inside)
+        opens_more, only = row.opens_more, row.opens_only
+    at, shown = controller.location, tuple(ends)
+    return GraphNode(name, kind, "controller", at, shown, doubt, opens_more, (), inside, only)
 
 
 def _included_programs(making: _Making, processes: list[EndedProcess]) -> Iterator[GraphNode]:
@@ -404,17 +405,10 @@ def _transforms(making: _Making) -> Iterator[GraphTransform]:
     """Yield the transforms whose frames are known, each once."""
     first: dict[tuple[str, str, str], GraphTransform] = {}
     try:
-        for edge in edges_in(making.workspace, making.number):
-            if edge.is_known and edge.parent != edge.child:
-                transform = GraphTransform(
-                    edge.parent,
-                    edge.child,
-                    edge.by,
-                    edge.location,
-                    edge.is_static,
-                    edge.is_certain,
-                )
-                first.setdefault((edge.parent, edge.child, edge.by), transform)
+        for transform in transforms_in(making.workspace, making.number):
+            if transform.parent and transform.child and transform.parent != transform.child:
+                key = (transform.parent, transform.child, transform.by)
+                first.setdefault(key, transform)
     except NotDecided:
         return
     yield from first.values()
