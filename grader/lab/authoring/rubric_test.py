@@ -61,6 +61,13 @@ _OF_ROBOT = (".urdf", ".xacro")
 _MESHES = (".stl", ".dae", ".obj")
 
 
+# The families of names on which checks of what is launched depend.
+_CONNECTING: Mapping[str, tuple[Family, ...]] = {
+    "connects": ("topics",),
+    "topic_has_type": ("topics",),
+    "reaches": ("services",),
+    "publishes_transform": ("frames",),
+}
 # Documents, pictures, and the tests of a package.
 _NO_PART_OF_LAB = re.compile(
     r"(?i)(^|/)(tests?|docs?)/|(^|/)(license|readme|changelog|contributing)[^/]*$|\.(md|pdf|docx|png|jpe?g|gif|svg)$"
@@ -195,22 +202,21 @@ class Trial:
 
     def _name_changes(self, source: Source, label: str) -> Iterable[MutantEdit]:
         """Return the changes of names and values in a file, if a criterion compares them."""
-        is_compared = any(
-            criterion.check.name in ("names_agree", "parameter_is") for criterion in self.tested
-        )
-        if is_compared:
+        is_value_asked = any(criterion.check.name == "parameter_is" for criterion in self.tested)
+        if self._families or is_value_asked:
             names = name_changes(source, label, self._names, self._families)
             return chain(names, node_changes(self.reference, source, label, self._families))
         return ()
 
     @cached_property
     def _families(self) -> tuple[Family, ...]:
-        """The families of names that have to agree."""
-        return tuple(
-            criterion.arguments["of"]
-            for criterion in self.tested
-            if criterion.check.name == "names_agree"
-        )
+        """The families of names that have to agree, or by which something connects."""
+        families: dict[Family, None] = {}
+        for criterion in self.tested:
+            if criterion.check.name == "names_agree":
+                families[criterion.arguments["of"]] = None
+            families.update(dict.fromkeys(_CONNECTING.get(criterion.check.name, ())))
+        return tuple(families)
 
     @cached_property
     def _names(self) -> list[tuple[Fact, Edit]]:

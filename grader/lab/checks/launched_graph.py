@@ -50,8 +50,8 @@ def connects(
     their names and their number.
 
     A node passes on what it receives in all that it publishes: what its code does with it is not
-    examined. Requests to services and actions pass it on as well. What publishes the first topic,
-    and reads the last one, need not be started. RViz passes nothing on.
+    examined. Goals of actions pass it on as well; a way through a service needs manual grading. It
+    does not matter what publishes the first topic, and reads the last one. RViz passes nothing on.
 
     Args:
         from: The topic where the way begins.

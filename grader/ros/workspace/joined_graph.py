@@ -4,6 +4,7 @@ from collections.abc import Collection, Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
+from grader.ros.launch.launch_model import StartedNode
 from grader.ros.nodes.node_facts import EndpointKind
 from grader.ros.workspace.graph.launch_graph import (
     Connection,
@@ -14,7 +15,11 @@ from grader.ros.workspace.graph.launch_graph import (
     Unread,
     connections_in,
 )
-from grader.ros.workspace.graph.launched_transforms import transforms_in, unread_transforms
+from grader.ros.workspace.graph.launched_transforms import (
+    is_for_transforms,
+    transforms_in,
+    unread_transforms,
+)
 from grader.ros.workspace.graph.message_ways import (
     MessageWay,
     find_way,
@@ -83,6 +88,10 @@ class JoinedGraph(NamedTuple):
         for workspace, number in self.launches:
             transforms += transforms_in(workspace, number, self.unrun)
         return transforms
+
+    def is_for_transforms(self, node: StartedNode) -> bool:
+        """Return whether a node is started for the transforms that it publishes."""
+        return any(is_for_transforms(workspace, node) for workspace, _ in self.launches)
 
     def unread_transforms(self) -> Iterator[Unread]:
         """Yield what may publish transforms that are not known."""

@@ -6,8 +6,9 @@ A node of own code is read with what it gives to a broadcaster, so that each fra
 from collections.abc import Collection, Iterator
 
 from grader.ros.known.end_rows import opened_ends
-from grader.ros.known.package_rows import package_row
+from grader.ros.known.package_rows import package_row, transforms_of
 from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.package.static_transforms import STATIC_PUBLISHER
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
 from grader.ros.workspace.graph.code_ends import transforms_sent
 from grader.ros.workspace.graph.launch_graph import (
@@ -35,8 +36,9 @@ def transforms_in(
     cannot run. Raises NotDecided.
     """
     _, launch = workspace.launches.roots[number]
+    not_started = {node.location for node in launch.nodes if node.when is False}
     for edge in edges_in(workspace, number):
-        if edge.source != "code":
+        if edge.source != "code" and edge.location not in not_started:
             yield GraphTransform(
                 edge.parent, edge.child, edge.by, edge.location, edge.is_static, edge.is_certain
             )
@@ -57,6 +59,15 @@ def _launched_nodes(launch: Launch, without: Collection[str]) -> list[StartedNod
         if component.node is not None and component.when is not False:
             nodes.append(component.node)
     return [node for node in nodes if node.name not in without]
+
+
+def is_for_transforms(workspace: Workspace, node: StartedNode) -> bool:
+    """Return whether a program is known to publish transforms, or does nothing else."""
+    program = (node.package, node.executable)
+    if program == STATIC_PUBLISHER or transforms_of("/".join(program)):
+        return True
+    own_nodes = workspace.code.nodes_of(node)
+    return bool(own_nodes) and not any(facts.endpoints for facts in own_nodes)
 
 
 def unread_transforms(

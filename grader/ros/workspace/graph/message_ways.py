@@ -1,7 +1,7 @@
 """How messages find a way from a topic to another one through the nodes of a graph.
 
 What a node receives goes on in all that it sends: what its code does with it is not examined. The
-requests of clients carry it on as well, to the servers of services and actions.
+goals of actions carry it on as well; whether requests of services do is not known.
 """
 
 from collections.abc import Collection, Iterator, Sequence
@@ -161,11 +161,14 @@ class _WaySearch:
         """Yield the nodes that get what a node sends, each with why that is not certain."""
         node = self._nodes[number]
         for end in self._ends[number]:
-            if end.kind in _SENDING:
+            doubt = why_end_is_open(node, end)
+            if end.kind == "client":
+                doubt = doubt or f"what {node.label} asks of {end.name} is not known"
+            if end.kind in _SENDING and not (doubt and self._is_certain):
                 for placed in self._named(OPPOSITES[end.kind], end.name):
                     offered, asked = (end, placed.end) if end.is_offered else (placed.end, end)
                     if self._carries(placed.node) and not fault_between(offered, asked):
-                        yield placed.node, why_end_is_open(node, end) or self._doubt_of(placed)
+                        yield placed.node, doubt or self._doubt_of(placed)
         if not self._is_certain:
             if _may_send_more(node):
                 others = [other for other, ends in enumerate(self._ends) if ends]
