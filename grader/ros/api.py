@@ -89,6 +89,8 @@ if TYPE_CHECKING:
     from grader.ros.workspace.joined_graph import JoinedGraph as JoinedGraph
     from grader.ros.workspace.joined_graph import PlacedEnd as PlacedEnd
     from grader.ros.workspace.joined_graph import join_launches as join_launches
+    from grader.ros.workspace.launch_graphs import launch_files as launch_files
+    from grader.ros.workspace.launch_graphs import launch_graph as launch_graph
     from grader.ros.workspace.name_places import NamePlaces as NamePlaces
     from grader.ros.workspace.opened import OpenedWorkspace as OpenedWorkspace
     from grader.ros.workspace.opening import STANDARD_INPUT as STANDARD_INPUT
@@ -123,6 +125,7 @@ else:
         "connections_in unconnected_ends",
         "workspace.graph.manual_ends": "manual_ends",
         "workspace.joined_graph": "JoinedGraph PlacedEnd join_launches",
+        "workspace.launch_graphs": "launch_files launch_graph",
         "workspace.name_places": "NamePlaces",
         "workspace.opened": "OpenedWorkspace",
         "workspace.opening": "STANDARD_INPUT open_workspace",

@@ -9,7 +9,7 @@ from grader.report.drawing.graph_layout import Curve, DrawnBox, lay_out
 from grader.report.inspection import problem_counts
 from grader.report.pages.inspection_page import problem_card
 from grader.report.pages.shell import Assets, render_page
-from grader.report.pages.viewing import ProblemCard
+from grader.report.pages.viewing import GRAPH_SCRIPT, SOURCES, STYLES, GraphViewing, ProblemCard
 from grader.report.shown_graph import ShownGraph, transform_tree
 from grader.report.writers.graph_diagrams import Diagram, diagram_of
 from grader.ros.api import GraphEnd, GraphNode, GraphTransform
@@ -80,8 +80,8 @@ class _FrameRow(NamedTuple):
     words: str
 
 
-def graph_html(shown: ShownGraph) -> str:
-    """Return a graph as an HTML page."""
+def graph_html(shown: ShownGraph, viewing: GraphViewing | None = None) -> str:
+    """Return a graph as an HTML page; that of `grader view` with `viewing`."""
     graph = shown.graph
     counts = [counted(len(graph.nodes), "node"), counted(len(shown.connections), "connection")]
     drawing = _draw(diagram_of(shown))
@@ -95,9 +95,18 @@ def graph_html(shown: ShownGraph) -> str:
         "nodes": [*_cards(shown)],
         "frames": [*_frames(graph.transforms)],
         "lists": [*_lists(shown)],
+        "viewing": viewing,
     }
     assets = Assets(styles="text.css student.css graph.css", scripts="graph.js")
-    return render_page("graph.html", values, {}, assets)
+    if viewing is None:
+        return render_page("graph.html", values, {}, assets)
+    assets = assets._replace(
+        styles=f"{assets.styles} {STYLES}",
+        scripts=f"{assets.scripts} {GRAPH_SCRIPT}",
+        sources=SOURCES,
+    )
+    data = {"view": {"number": viewing.number, "address": viewing.address}}
+    return render_page("graph.html", values, data, assets)
 
 
 def _lists(shown: ShownGraph) -> Iterator[tuple[str, list[tuple[str, str]]]]:
