@@ -56,7 +56,7 @@ class ViewedRobot:
     render: Callable[[Viewing], str]
 
 
-class ViewedGraphs(NamedTuple):
+class _ViewedGraphs(NamedTuple):
     """The graphs of what was read: `render` returns the page of that of a launch file."""
 
     launches: Sequence[str]  # the paths of the launch files; none without a graph
@@ -69,7 +69,7 @@ class ViewedFiles(NamedTuple):
     robots: Sequence[ViewedRobot]
     notes: Sequence[str]  # on how it was read
     besides: Sequence[Path]  # the files that were read besides a single one
-    graphs: ViewedGraphs | None = None
+    graphs: _ViewedGraphs | None = None
 
 
 def read_robots(request: ViewRequest, tried: Mapping[str, str]) -> ViewedFiles:
@@ -94,7 +94,7 @@ def _inspected(request: ViewRequest, arg: Sequence[str], notes: dict[str, None])
     graphs = None
     if not opened.is_single:
         render = partial(_graph_page, opened, inspection)
-        graphs = ViewedGraphs(opened.launch_files(), render)
+        graphs = _ViewedGraphs(opened.launch_files(), render)
     return ViewedFiles(robots, [*notes], inspection.besides, graphs)
 
 
@@ -161,7 +161,7 @@ def _graded(request: ViewRequest, arg: Sequence[str], notes: dict[str, None]) ->
     graphs = None
     if any(package.launch_files for package in run.report.submission.packages):
         inspection, opened = open_and_inspect(_inspection(request, ()), lambda _: None)
-        graphs = ViewedGraphs(opened.launch_files(), partial(_graph_page, opened, inspection))
+        graphs = _ViewedGraphs(opened.launch_files(), partial(_graph_page, opened, inspection))
     return ViewedFiles(robots, [*notes], run.besides, graphs)
 
 

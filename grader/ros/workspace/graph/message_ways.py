@@ -80,6 +80,7 @@ class _WaySearch:
         self._by_name: dict[tuple[str, str], list[_NumberedEnd]] = {}
         self._in_part: list[_NumberedEnd] = []  # the ends of whose names a part is not known
         self._reading_more: list[int] = []
+        self._held_by = _processes_by_held(graph.nodes)
         for number, node in enumerate(graph.nodes):
             known = [end for end in node.ends if not (is_certain and why_end_is_open(node, end))]
             self._ends.append(known)
@@ -169,13 +170,35 @@ class _WaySearch:
                     offered, asked = (end, placed.end) if end.is_offered else (placed.end, end)
                     if self._carries(placed.node) and not fault_between(offered, asked):
                         yield placed.node, doubt or self._doubt_of(placed)
+        for other in self._held_by.get(number, ()):
+            yield other, self._nodes[other].doubt
         if not self._is_certain:
-            if _may_send_more(node):
-                others = [other for other, ends in enumerate(self._ends) if ends]
-                yield from ((other, why_more(node)) for other in others if self._carries(other))
-            for other in self._reading_more:
-                if self._carries(other):
-                    yield other, why_more(self._nodes[other])
+            yield from self._possibly_next_to(node)
+
+    def _possibly_next_to(self, node: GraphNode) -> Iterator[tuple[int, str]]:
+        """Yield the nodes that may get what a node sends, as one of both may open more."""
+        if _may_send_more(node):
+            for other, ends in enumerate(self._ends):
+                if ends and self._carries(other):
+                    yield other, why_more(node)
+        for other in self._reading_more:
+            if self._carries(other):
+                yield other, why_more(self._nodes[other])
+
+
+def _processes_by_held(nodes: Sequence[GraphNode]) -> dict[int, list[int]]:
+    """Return the node whose process holds another one, as that of a costmap, which it reads.
+
+    Nodes of a container, and controllers of a manager, have nothing to do with it.
+    """
+    numbers: dict[str, list[int]] = {}
+    for number, node in enumerate(nodes):
+        numbers.setdefault(node.label, []).append(number)
+    held: dict[int, list[int]] = {}
+    for number, node in enumerate(nodes):
+        if node.inside and node.kind == "program":
+            held[number] = numbers.get(node.inside, [])
+    return held
 
 
 def _path(number: int, before: dict[int, int]) -> list[int]:
