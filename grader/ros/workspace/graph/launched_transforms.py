@@ -11,13 +11,18 @@ from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.static_transforms import STATIC_PUBLISHER
 from grader.ros.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
 from grader.ros.workspace.graph.code_ends import transforms_sent
+from grader.ros.workspace.graph.gazebo_topics import roots, system_of
 from grader.ros.workspace.graph.launch_graph import (
     GraphNode,
     GraphTransform,
     LaunchGraph,
     Unread,
 )
-from grader.ros.workspace.graph.transform_edges import edges_in, publishes_as_named
+from grader.ros.workspace.graph.transform_edges import (
+    edges_in,
+    frames_of_system,
+    publishes_as_named,
+)
 from grader.ros.workspace.model.own_code import CPP_ENDINGS
 from grader.ros.workspace.model.workspace import Workspace
 
@@ -43,6 +48,7 @@ def transforms_in(
                 edge.parent, edge.child, edge.by, edge.location, edge.is_static, edge.is_certain
             )
     for node in _launched_nodes(launch, without):
+        yield from _bridged_by_default(workspace, node)
         for facts in workspace.code.nodes_of(node):
             for parent, child, sent in transforms_sent(workspace, node, facts):
                 is_certain = publishes_as_named(node) and not sent.is_conditional
@@ -50,6 +56,29 @@ def transforms_in(
                 yield GraphTransform(
                     parent, child, node.executable, sent.location, sent.is_static, is_certain
                 )
+
+
+def _bridged_by_default(workspace: Workspace, node: StartedNode) -> Iterator[GraphTransform]:
+    """Yield the transforms of systems of Gazebo on their default topic that a bridge publishes.
+
+    It is /model/NAME/tf, with the name of the model, which is that of the robot by default.
+    """
+    topics = _topics_of_transforms(workspace, node)
+    for root, place in roots(workspace) if topics else ():
+        for plugin in root.iter("plugin"):
+            frames = frames_of_system(plugin) if plugin.find("tf_topic") is None else None
+            if frames is not None:
+                by = f"the system {system_of(plugin)} of Gazebo"
+                is_certain = f"model/{root.get('name')}/tf" in topics and publishes_as_named(node)
+                yield GraphTransform(*frames, by, place(plugin), is_certain=is_certain)
+
+
+def _topics_of_transforms(workspace: Workspace, node: StartedNode) -> set[str]:
+    """Return the topics of Gazebo whose transforms a bridge publishes, without their slash."""
+    if node.package != BRIDGE:
+        return set()
+    rows = rows_of_bridge(workspace, node)
+    return {row.gz for row in rows if row.is_published and node.topic(f"/{row.ros}") == _TF}
 
 
 def _launched_nodes(launch: Launch, without: Collection[str]) -> list[StartedNode]:
@@ -118,10 +147,8 @@ def _why_own_is_unread(workspace: Workspace, node: StartedNode) -> str:
 
 def _why_bridge_is_unread(workspace: Workspace, node: StartedNode) -> str:
     """Return why a bridge may publish transforms that are not known; empty if it may not."""
-    if node.package != BRIDGE:
-        return ""
-    topics = [node.topic(f"/{row.ros}") for row in rows_of_bridge(workspace, node)]
-    return "the transforms of Gazebo are not read" if _TF in topics else ""
+    topics = _topics_of_transforms(workspace, node)
+    return "the transforms of Gazebo are not read" if topics else ""
 
 
 def _may_publish_others(node: GraphNode) -> bool:

@@ -190,14 +190,14 @@ def _broadcast_by_gazebo(workspace: Workspace, launch: int, bridge: StartedNode)
         workspace.charge(_OF_ROBOT + len(plugins))
         for plugin in plugins:
             topic = (plugin.findtext("tf_topic") or "").strip().strip("/")
-            frames = _frames_of_system(plugin) if topic in topics else None
+            frames = frames_of_system(plugin) if topic in topics else None
             if frames is not None:
                 is_certain = bridge.when is True
                 by = f"the system {system_of(plugin)} of Gazebo"
                 yield Edge(*frames, launch, "Gazebo", is_certain, by, place(plugin))
 
 
-def _frames_of_system(plugin: Element) -> tuple[str, str] | None:
+def frames_of_system(plugin: Element) -> tuple[str, str] | None:
     """Return parent and child of the transform that a system of Gazebo publishes.
 
     The result is None if it does not name both.
