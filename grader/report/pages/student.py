@@ -22,11 +22,15 @@ from grader.report.criteria import (
 from grader.report.drawing.graded_picture import picture_of
 from grader.report.drawing.three_views import NO_PICTURE
 from grader.report.locations import diff_lines, location_text, source_lines
+from grader.report.pages.graph_page import GraphDrawing, fitting_drawing
 from grader.report.pages.robot_page import render_robot_page
 from grader.report.pages.shell import Assets
 from grader.report.pages.viewing import Viewing
 from grader.report.statuses import STATUS_WORDS, SYMBOLS
+from grader.ros.api import launch_files, launch_graph
 
+# The checks of what is launched, whose page shows the graph.
+_OF_GRAPH = frozenset({"connects", "publishes_transform", "topic_has_type", "reaches"})
 _MAX_PICTURES = 6 * 1024 * 1024  # bytes on a page
 
 
@@ -76,7 +80,10 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
         "pictures": _pictures(report, entries),
         "no_picture": NO_PICTURE,
     }
-    assets = Assets(scripts="student.js", sources="img-src data:")
+    graph_of, graph = _graph_of(report)
+    values |= {"graph": graph, "graph_of": graph_of}
+    styles = "graph.css" if graph is not None else ""
+    assets = Assets(styles=styles, scripts="student.js", sources="img-src data:")
     return render_robot_page("student.html", values, picture, assets, cards, viewing)
 
 
@@ -99,6 +106,20 @@ def _pictures(report: Report, entries: Sequence[Entry]) -> Mapping[str, list[tup
                 address = f"data:{picture.kind.media_type};base64,{data}"
                 shown.setdefault(entry.id, []).append((picture.where, address))
     return shown
+
+
+def _graph_of(report: Report) -> tuple[str, GraphDrawing | None]:
+    """Return the launch file whose graph criteria ask about, and the drawing of that; or none."""
+    asking = [each.criterion for each in report.results if each.criterion.check.name in _OF_GRAPH]
+    if report.is_bare or not asking or not report.submission.packages:
+        return "", None
+    launches = launch_files(report.submission.workspace)
+    named = [f"/{criterion.arguments.get('launch')}" for criterion in asking]
+    asked = [path for path in launches if f"/{path}".endswith(tuple(named))]
+    path = next(iter([*asked, *launches]), "")
+    if not path:
+        return "", None
+    return path, fitting_drawing(launch_graph(report.submission.workspace, path))
 
 
 def _part_cards(report: Report) -> list[tuple[str, str, list[CriteriaGroup]]]:

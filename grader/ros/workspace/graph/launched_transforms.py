@@ -69,7 +69,7 @@ def _bridged_by_default(workspace: Workspace, node: StartedNode) -> Iterator[Gra
             frames = frames_of_system(plugin) if plugin.find("tf_topic") is None else None
             if frames is not None:
                 by = f"the system {system_of(plugin)} of Gazebo"
-                is_certain = f"model/{root.get('name')}/tf" in topics and publishes_as_named(node)
+                is_certain = f"model/{root.get('name')}/tf" in topics and node.when is True
                 yield GraphTransform(*frames, by, place(plugin), is_certain=is_certain)
 
 
@@ -113,11 +113,12 @@ def unread_transforms(
             yield Unread(f"a frame of {transform.by} is not known", transform.location)
     own_programs = set()
     for node in _launched_nodes(launch, without):
+        reason = ""
         if workspace.package_of(node) is not None:
             own_programs.add(node.name)
             reason = _why_own_is_unread(workspace, node)
-        else:
-            reason = _why_bridge_is_unread(workspace, node)
+        elif _topics_of_transforms(workspace, node):
+            reason = "the transforms of Gazebo are not read"
         if reason:
             yield Unread(reason, node.location)
     for graph_node in graph.nodes:
@@ -143,12 +144,6 @@ def _why_own_is_unread(workspace: Workspace, node: StartedNode) -> str:
         if source.path not in read and any(word in source.text for word in _SENDING):
             return f"what {source.path} publishes is not known"
     return ""
-
-
-def _why_bridge_is_unread(workspace: Workspace, node: StartedNode) -> str:
-    """Return why a bridge may publish transforms that are not known; empty if it may not."""
-    topics = _topics_of_transforms(workspace, node)
-    return "the transforms of Gazebo are not read" if topics else ""
 
 
 def _may_publish_others(node: GraphNode) -> bool:
