@@ -156,7 +156,7 @@ WEIGHTS = {
     "lab.rubric": 10_000,
     "lab.submission": 9_600,  # the release that reads a URDF, slips that are proven by reading it again
     "report": 65_300,  # the graph of a graded submission; the screen of an inspection: rows by causes, each error in the first ones; the graph of a launch file as text, JSON, DOT, Mermaid and a page
-    "ros": 300,
+    "ros": 310,  # the API has the names that checks of the graph use
     "ros.config": 5_750,  # numbers of parameters in quotes
     "ros.cpp": 13_000,  # errors of the grammar that leave open one statement only
     "ros.installation": 32_650,  # the packages that CMake finds, tests, expressions that are not closed; names of program files, targets of tests and of other projects; what stops a build from a release on; functions for what was branches of long ones
@@ -170,7 +170,7 @@ WEIGHTS = {
     "ros.python": 28_950,  # the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
-    "ros.workspace": 132_900,  # ways of messages, and transforms of code, for checks; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches; the graph of a launch file
+    "ros.workspace": 133_400,  # ways of messages, and transforms of code, for checks; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches; the graph of a launch file
     "ros.xacro": 28_600,  # xacro:attribute, letters outside of ASCII; functions that do one thing
     "ros.xml": 13_400,  # the attributes of broken tags, end tags of macros, the attributes of newer versions of URDF
     "": 400,

@@ -73,6 +73,7 @@ if TYPE_CHECKING:
     from grader.ros.urdf.wheel_travel import turning_joint as turning_joint
     from grader.ros.workspace.all_robots import read_workspace as read_workspace
     from grader.ros.workspace.extent import Extent as Extent
+    from grader.ros.workspace.graph.graph_form import graph_form as graph_form
     from grader.ros.workspace.graph.launch_graph import CONNECTION_KINDS as CONNECTION_KINDS
     from grader.ros.workspace.graph.launch_graph import GRAPH_NODE_KINDS as GRAPH_NODE_KINDS
     from grader.ros.workspace.graph.launch_graph import Connection as Connection
@@ -120,6 +121,7 @@ else:
         "urdf.wheel_travel": "travel_of turning_joint",
         "workspace.all_robots": "read_workspace",
         "workspace.extent": "Extent",
+        "workspace.graph.graph_form": "graph_form",
         "workspace.graph.launch_graph": "CONNECTION_KINDS Connection EndedProcess "
         "GRAPH_NODE_KINDS GivenValue GraphEnd GraphNode GraphTransform LaunchGraph Unread "
         "connections_in unconnected_ends",

@@ -78,6 +78,8 @@ CHECKS = (
     "manual.evidence_shown",
 )
 
+# Those that ask what connects after a launch.
+GRAPH_CHECKS = frozenset({"connects", "publishes_transform", "topic_has_type", "reaches"})
 _PLACES = {place.partition(".")[2]: place for place in CHECKS}
 
 

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from itertools import groupby
 
 from grader.base.text import format_points, printable
+from grader.lab.checks.registry import GRAPH_CHECKS
 from grader.lab.documents.pictures import PDF, EmbeddedPicture
 from grader.lab.grading.criterion_pictures import may_have_pictures, pictures_of
 from grader.lab.grading.report import Report
@@ -29,8 +30,6 @@ from grader.report.pages.viewing import Viewing
 from grader.report.statuses import STATUS_WORDS, SYMBOLS
 from grader.ros.api import launch_files, launch_graph
 
-# The checks of what is launched, whose page shows the graph.
-_OF_GRAPH = frozenset({"connects", "publishes_transform", "topic_has_type", "reaches"})
 _MAX_PICTURES = 6 * 1024 * 1024  # bytes on a page
 
 
@@ -110,7 +109,9 @@ def _pictures(report: Report, entries: Sequence[Entry]) -> Mapping[str, list[tup
 
 def _graph_of(report: Report) -> tuple[str, GraphDrawing | None]:
     """Return the launch file whose graph criteria ask about, and the drawing of that; or none."""
-    asking = [each.criterion for each in report.results if each.criterion.check.name in _OF_GRAPH]
+    asking = [
+        each.criterion for each in report.results if each.criterion.check.name in GRAPH_CHECKS
+    ]
     if report.is_bare or not asking or not report.submission.packages:
         return "", None
     launches = launch_files(report.submission.workspace)
