@@ -24,7 +24,7 @@ from grader.lab.authoring.file_equivalents import EVERY_NODE, file_equivalents
 from grader.lab.authoring.mutant_kinds import KindScore, draw, scores_by_kind, why_right
 from grader.lab.authoring.mutants import Mutant, MutantEdit, mutants, package_mutants
 from grader.lab.authoring.name_mutants import compared_names, name_changes
-from grader.lab.authoring.node_mutants import node_changes
+from grader.lab.authoring.node_mutants import node_changes, type_changes
 from grader.lab.authoring.package_equivalents import BUILT_BY_CMAKE, package_equivalents
 from grader.lab.authoring.samples import Loss, Sample, SampleResults, tested_samples
 from grader.lab.checks.manual import MANUAL_CHECKS
@@ -205,8 +205,18 @@ class Trial:
         is_value_asked = any(criterion.check.name == "parameter_is" for criterion in self.tested)
         if self._families or is_value_asked:
             names = name_changes(source, label, self._names, self._families)
-            return chain(names, node_changes(self.reference, source, label, self._families))
+            nodes = node_changes(self.reference, source, label, self._families)
+            return chain(names, nodes, type_changes(source, label, self._typed_topics))
         return ()
+
+    @cached_property
+    def _typed_topics(self) -> frozenset[str]:
+        """The last words of the topics whose types are asked for."""
+        return frozenset(
+            criterion.arguments["topic"].rpartition("/")[2]
+            for criterion in self.tested
+            if criterion.check.name == "topic_has_type"
+        )
 
     @cached_property
     def _families(self) -> tuple[Family, ...]:
