@@ -49,7 +49,7 @@ def test_the_signature_is_a_schema(check: Check) -> None:
     assert tuple(parameter.name for parameter in examined) == check.examined
     assert {parameter.kind for parameter in examined} == {inspect.Parameter.POSITIONAL_OR_KEYWORD}
     assert [parameter.kind for parameter in rest] == [inspect.Parameter.KEYWORD_ONLY] * len(rest)
-    names = {"not_": "not"}  # a keyword of Python
+    names = {"not_": "not", "from_": "from"}  # keywords of Python
     assert list(check.parameters) == [
         names.get(parameter.name, parameter.name) for parameter in rest
     ]

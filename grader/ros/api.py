@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from grader.ros.log.explaining import LogAnswer as LogAnswer
     from grader.ros.log.explaining import explain_log as explain_log
     from grader.ros.log.log_messages import MAX_LOG as MAX_LOG
+    from grader.ros.nodes.node_facts import EndpointKind as EndpointKind
     from grader.ros.nodes.node_facts import Qos as Qos
     from grader.ros.package.mesh_loading import MeshLoader as MeshLoader
     from grader.ros.package.package import MANIFEST as MANIFEST
@@ -72,6 +73,7 @@ if TYPE_CHECKING:
     from grader.ros.urdf.wheel_travel import turning_joint as turning_joint
     from grader.ros.workspace.all_robots import read_workspace as read_workspace
     from grader.ros.workspace.extent import Extent as Extent
+    from grader.ros.workspace.graph.graph_form import graph_form as graph_form
     from grader.ros.workspace.graph.launch_graph import CONNECTION_KINDS as CONNECTION_KINDS
     from grader.ros.workspace.graph.launch_graph import GRAPH_NODE_KINDS as GRAPH_NODE_KINDS
     from grader.ros.workspace.graph.launch_graph import Connection as Connection
@@ -85,6 +87,11 @@ if TYPE_CHECKING:
     from grader.ros.workspace.graph.launch_graph import connections_in as connections_in
     from grader.ros.workspace.graph.launch_graph import unconnected_ends as unconnected_ends
     from grader.ros.workspace.graph.manual_ends import manual_ends as manual_ends
+    from grader.ros.workspace.joined_graph import JoinedGraph as JoinedGraph
+    from grader.ros.workspace.joined_graph import PlacedEnd as PlacedEnd
+    from grader.ros.workspace.joined_graph import join_launches as join_launches
+    from grader.ros.workspace.launch_graphs import launch_files as launch_files
+    from grader.ros.workspace.launch_graphs import launch_graph as launch_graph
     from grader.ros.workspace.name_places import NamePlaces as NamePlaces
     from grader.ros.workspace.opened import OpenedWorkspace as OpenedWorkspace
     from grader.ros.workspace.opening import STANDARD_INPUT as STANDARD_INPUT
@@ -100,7 +107,7 @@ else:
         "known.releases": "Release StatedReleases",
         "log.explaining": "LogAnswer explain_log",
         "log.log_messages": "MAX_LOG",
-        "nodes.node_facts": "Qos",
+        "nodes.node_facts": "EndpointKind Qos",
         "package.mesh_loading": "MeshLoader",
         "package.package": "MANIFEST SETUP Package",
         "package.robot_file": "Absent Read Unreadable",
@@ -114,10 +121,13 @@ else:
         "urdf.wheel_travel": "travel_of turning_joint",
         "workspace.all_robots": "read_workspace",
         "workspace.extent": "Extent",
+        "workspace.graph.graph_form": "graph_form",
         "workspace.graph.launch_graph": "CONNECTION_KINDS Connection EndedProcess "
         "GRAPH_NODE_KINDS GivenValue GraphEnd GraphNode GraphTransform LaunchGraph Unread "
         "connections_in unconnected_ends",
         "workspace.graph.manual_ends": "manual_ends",
+        "workspace.joined_graph": "JoinedGraph PlacedEnd join_launches",
+        "workspace.launch_graphs": "launch_files launch_graph",
         "workspace.name_places": "NamePlaces",
         "workspace.opened": "OpenedWorkspace",
         "workspace.opening": "STANDARD_INPUT open_workspace",

@@ -12,6 +12,7 @@ from tests.classroom.gradebooks import batch, make_class, urdf
 from tests.command_line import ROOT, run
 from tests.review_server import running
 from tests.samples import SAMPLES
+from tests.view_server import viewing
 
 if TYPE_CHECKING:
     from playwright.sync_api import Page
@@ -114,3 +115,5 @@ def test_page_of_a_graph(open_page: Open, tmp_path: Path, axe: str) -> None:
         assert_accessible(page, axe)
         page.locator("#tab-frames").click()
         assert_accessible(page, axe)
+    with viewing(ROOT / folders[0]) as view:
+        assert_accessible(open_page(f"{view.server.url}graph!").page, axe)

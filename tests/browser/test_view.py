@@ -9,6 +9,7 @@ import pytest
 
 from tests.browser.conftest import OpenPage
 from tests.cli.test_view import XACRO, box, mesh
+from tests.command_line import ROOT
 from tests.mesh.mesh_files import CUBE, binary_stl
 from tests.samples import SAMPLES
 from tests.urdf.builders import joint, robot
@@ -146,6 +147,27 @@ def test_a_list_of_robots_leads_to_each(open_page: Open, tmp_path: Path) -> None
         assert links.all_inner_texts() == ["one.urdf", "three.urdf", "two.urdf"]
         assert page.locator("#view-robots [aria-current]").inner_text() == "two.urdf"
         assert page.evaluate("() => [...RobotView.poses().keys()]") == ["two"]
+
+
+def test_the_graph_is_a_tab(open_page: Open, tmp_path: Path) -> None:
+    """It is reached by keys on a phone, follows the files, and keeps what is chosen."""
+    folder = tmp_path / "ws"
+    shutil.copytree(ROOT / "rubrics/diffdrive/diffdrive_robot", folder / "diffdrive_robot")
+    launch = folder / "diffdrive_robot/launch/diffdrive.launch.py"
+    with viewing(folder) as view:
+        page = open_page(view.server.url, viewport=NARROW).page
+        page.get_by_role("link", name="Graph").focus()
+        page.keyboard.press("Enter")
+        page.wait_for_url("**/graph!")
+        page.locator("#filter").fill("cmd_vel")
+        page.locator("#tab-frames").click()
+        started = 'executable="drive_circle.py",'
+        put(launch.read_text().replace(started, f'{started} name="circling",'), launch)
+        page.locator(".item", has_text="/circling").wait_for(state="attached")
+        assert page.locator("#filter").input_value() == "cmd_vel"
+        assert page.locator("#frames").is_visible()
+        page.get_by_role("link", name="diffdrive.urdf.xacro").click()
+        page.locator("#space-canvas").wait_for()
 
 
 def test_arguments_are_tried(open_page: Open, tmp_path: Path) -> None:

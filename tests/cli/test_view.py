@@ -223,6 +223,36 @@ def test_several_robots_are_a_list(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.slow
+@pytest.mark.parametrize("rubric", ["", "diffdrive"])
+def test_the_graph_is_beside_the_robot(tmp_path: Path, rubric: str) -> None:
+    """It follows the files as well; each launch file has its own."""
+    folder = tmp_path / "ws"
+    shutil.copytree(ROOT / "rubrics/diffdrive/diffdrive_robot", folder / "diffdrive_robot")
+    launch = folder / "diffdrive_robot/launch/diffdrive.launch.py"
+    shutil.copy(launch, launch.with_name("other.launch.py"))
+    with viewing(folder, rubric) as view:
+        assert '<a href="graph!">Graph</a>' in view.page().part("robots")
+        page = view.page("graph!")
+        assert "/drive_circle" in page.text and 'aria-current="page">Graph of ' in page.text
+        other = "graph!diffdrive_robot%2Flaunch%2Fother.launch.py"
+        assert f'href="{other}"' in page.part("robots")
+        assert view.get(other).status == 200
+        assert view.get("graph!none").status == 404
+        started = 'executable="drive_circle.py",'
+        put(launch.read_text().replace(started, f'{started} name="circling",'), launch)
+        following = view.next(page)
+        while "/circling" not in following.text:
+            following = view.next(following)
+
+
+def test_a_robot_without_launch_files_has_no_graph(file: Path) -> None:
+    """Neither has a lone file."""
+    with viewing(file) as view:
+        assert "Graph" not in view.page().part("robots")
+        assert view.get("graph!").status == 404
+
+
 def test_arguments_of_xacro_are_tried(tmp_path: Path) -> None:
     """The page has each with its default; values are expanded without writing a file, also after a change, until they are reset."""
     file = tmp_path / "r.urdf.xacro"

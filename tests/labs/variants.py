@@ -47,11 +47,11 @@ def make_variant(lab: str, name: str, folder: Path) -> Path:
     workspace = folder / lab
     copytree(FOLDER / lab / "solution", workspace)
     for edit in variants_of(lab)[name].edits if name != "solution" else ():
-        _apply(edit, workspace)
+        apply_edit(edit, workspace)
     return workspace
 
 
-def _apply(edit: dict[str, Any], workspace: Path) -> None:
+def apply_edit(edit: dict[str, Any], workspace: Path) -> None:
     """Replace a text that occurs once, or write, move or remove a file, which must exist if it is not new."""
     file = workspace / edit["file"]
     if edit.get("new_file"):

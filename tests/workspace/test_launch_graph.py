@@ -13,6 +13,7 @@ from grader.ros.workspace.graph.launch_graph import (
     unconnected_ends,
 )
 from grader.ros.workspace.graph.manual_ends import manual_ends
+from grader.ros.workspace.graph.message_ways import find_way
 from grader.ros.workspace.model.given_files import GivenFiles
 from tests.workspace.launch_graphs import (
     CMAKE,
@@ -401,7 +402,7 @@ def test_an_unknown_action_is_said() -> None:
     assert graph.unread[0].reason.startswith("the program of a node is not evaluated")
 
 
-@pytest.mark.parametrize("name", ["opened_by_code", "read", "spawned_controllers", "edges_in"])
+@pytest.mark.parametrize("name", ["opened_by_code", "read", "spawned_controllers", "transforms_in"])
 def test_what_takes_too_much_work_is_left_open(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     """The rest of the graph is there."""
 
@@ -421,7 +422,7 @@ def test_what_takes_too_much_work_is_left_open(monkeypatch: pytest.MonkeyPatch, 
     assert (talker.opens_more != "") is (name in ("opened_by_code", "read"))
     assert ("more work" in turtle.opens_more) is (name == "read")
     assert ("/drive" in labels(graph)) is (name != "spawned_controllers")
-    assert (graph.transforms == ()) is (name == "edges_in")
+    assert (graph.transforms == ()) is (name == "transforms_in")
 
 
 def test_ends_of_other_types_and_qualities_do_not_connect() -> None:
@@ -666,3 +667,49 @@ def test_many_nodes_on_one_topic() -> None:
     assert len(connections_in(graph)) == 10_000
     assert graph.unread[-1].reason == "it has more connections, of which the first are listed"
     assert unconnected_ends(graph) == []
+
+
+_COSTMAPS = """
+local_costmap:
+  local_costmap:
+    ros__parameters:
+      plugins: [obstacle_layer]
+      obstacle_layer:
+        plugin: nav2_costmap_2d::ObstacleLayer
+        observation_sources: front
+        front: {topic: /front/scan, data_type: LaserScan}
+global_costmap:
+  global_costmap:
+    ros__parameters:
+      plugins: [static_layer]
+      static_layer: {plugin: nav2_costmap_2d::StaticLayer}
+"""
+_NAVIGATION = (
+    "IncludeLaunchDescription(PythonLaunchDescriptionSource(os.path.join("
+    "get_package_share_directory('nav2_bringup'), 'launch', 'navigation_launch.py')),"
+    " launch_arguments={%s}.items())"
+)
+
+
+def test_a_costmap_is_a_node_in_the_process_of_its_server() -> None:
+    """It has its own parameters, of the file that the launch file of Nav2 is given."""
+    given = "'params_file': os.path.join(share, 'config', 'c.yaml')"
+    graph = graph_of_actions(_NAVIGATION % given, c_yaml=_COSTMAPS)
+    by_label = {node.label: node for node in graph.nodes}
+    local = by_label["/local_costmap/local_costmap"]
+    assert local.inside == "/controller_server"
+    assert ("subscription", "/front/scan", "sensor_msgs/msg/LaserScan") in ends_of(local)
+    assert ("publisher", "/local_costmap/costmap", "nav_msgs/msg/OccupancyGrid") in ends_of(local)
+    outer = by_label["/global_costmap/global_costmap"]
+    assert ("subscription", "/map", "nav_msgs/msg/OccupancyGrid") in ends_of(outer)
+    way = find_way(graph, "/map", "/plan")
+    labels_of_way = [graph.nodes[number].label for number in way.nodes]
+    assert labels_of_way == ["/global_costmap/global_costmap", "/planner_server"]
+    assert (way.arrives, way.doubt) == (True, "")
+
+
+def test_without_a_file_the_parameters_of_nav2_are_not_known() -> None:
+    """So it is not certain which topics it reads."""
+    graph = graph_of_actions(_NAVIGATION % "")
+    way = find_way(graph, "/front/scan", "/cmd_vel_nav")
+    assert way.arrives and "may open more" in way.doubt

@@ -149,13 +149,18 @@ def inspect_path(request: InspectRequest, warn: Warn) -> Inspection:
 
     Raises GraderError.
     """
+    return open_and_inspect(request, warn)[0]
+
+
+def open_and_inspect(request: InspectRequest, warn: Warn) -> tuple[Inspection, OpenedWorkspace]:
+    """Return the inspection of what is at a path, and what is opened there. Raises GraderError."""
     selection = request.selection(Path(os.path.realpath(request.path)))
     stated = request.stated(selection.settings)
     arguments = read_arguments(request.arg or ())
     opened = open_workspace(request.path, request.max_size, arguments, stated)
     if opened.is_single:
-        return _inspect_file(opened, request, selection, warn)
-    return inspect_opened(opened, request, selection, warn)
+        return _inspect_file(opened, request, selection, warn), opened
+    return inspect_opened(opened, request, selection, warn), opened
 
 
 def inspect_opened(

@@ -29,18 +29,31 @@ from grader.lab.rubric.rubric_files import load_named
 from grader.lab.submission.opening import open_with_packages
 from grader.lab.submission.submission import Submission
 from grader.report.explanations import rubric_summary
+from grader.report.formats import GraphFormat, render_graph
+from grader.report.inspection import Inspection
 from grader.report.invocation import ExitCode, read_threshold
+from grader.report.shown_graph import ShownGraph
 from grader.report.writers.rubric_test_result import (
     render_rubric_test,
     render_rubric_test_json,
     unexamined_line,
 )
 from grader.report.writing import Terminal, Warn, missing_folder, save_bytes
-from grader.ros.api import MANIFEST, STANDARD_INPUT, Absent, Configuration, Read, Unreadable
+from grader.ros.api import (
+    MANIFEST,
+    STANDARD_INPUT,
+    Absent,
+    Configuration,
+    Read,
+    Unreadable,
+    launch_files,
+    launch_graph,
+)
 from grader.workers.pool import Processes, processors
 from grader.workers.queue import Progress
 
 _SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it
+_GRAPH = ".mmd"  # the ending of Mermaid
 _MAX_IN_NOTE = 4  # files or criteria
 _GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how long they may take
 
@@ -92,15 +105,34 @@ def write_rubric(
             f"the reference has too many facts for a rubric: {len(made.rubric.criteria)} criteria"
         )
     save_bytes(file, made.data)
-    return "".join(f"{printable(line)}\n" for line in _result_lines(file, made))
+    drawn = _save_graph(file, submission)
+    return "".join(f"{printable(line)}\n" for line in _result_lines(file, made, drawn))
+
+
+def _save_graph(file: Path, submission: Submission) -> Path | None:
+    """Write the graph of the reference beside a rubric, as Mermaid; None without a node."""
+    launches = launch_files(submission.workspace) if submission.packages else []
+    if not launches:
+        return None
+    graph = launch_graph(submission.workspace, launches[0])
+    if not graph.nodes:
+        return None
+    shown = ShownGraph(graph, Inspection(submission.id))
+    drawn = file.with_suffix(_GRAPH)
+    save_bytes(drawn, render_graph(shown, GraphFormat.MERMAID).encode())
+    return drawn
 
 
 def _check_target(file: Path, *, force: bool) -> None:
     shown = printable_path(file)
     if file.suffix != ".toml":
         raise GraderError(f"a rubric is a .toml file: give a name that ends in .toml, not {shown}")
-    if os.path.lexists(file) and not force:
-        raise GraderError(f"{shown} exists already: give another name, or --force to replace it")
+    for target in (file, file.with_suffix(_GRAPH)):
+        if os.path.lexists(target) and not force:
+            raise GraderError(
+                f"{printable_path(target)} exists already: give another name, or --force to "
+                "replace it"
+            )
     if not file.parent.is_dir():
         raise missing_folder(file)
 
@@ -168,7 +200,7 @@ def _relative(reference: Path, folder: Path) -> str:
     return path.replace(os.sep, "/")
 
 
-def _result_lines(file: Path, made: RubricDraft) -> Iterator[str]:
+def _result_lines(file: Path, made: RubricDraft, drawn: Path | None) -> Iterator[str]:
     yield (
         f"wrote {printable_path(file)}: {rubric_summary(made.rubric)}; its reference gets full "
         "marks"
@@ -178,6 +210,8 @@ def _result_lines(file: Path, made: RubricDraft) -> Iterator[str]:
             f"note: the reference is {made.rubric.reference}, outside the rubric's folder: move "
             "both together"
         )
+    if drawn is not None:
+        yield f"wrote {printable_path(drawn)}: what the reference connects, as Mermaid"
     yield from (f"omitted: {line}" for line in _omission_lines(made.omissions))
     paths, count = Trial(made.rubric).unexamined()
     if paths:

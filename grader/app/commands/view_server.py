@@ -24,12 +24,13 @@ from grader.report.local_server import (
     json_response,
     shown_until_interrupted,
 )
-from grader.report.pages.viewing import ProblemCard, RobotLink, Viewing
+from grader.report.pages.viewing import GraphViewing, ProblemCard, RobotLink, Viewing
 from grader.report.writing import Terminal
 
 _POLL = 0.05  # seconds between two looks at the files, at least
 _PATIENCE = 10.0  # seconds after which a page that waits for a change asks again
 _MAX_VALUE = 1000  # characters of an argument
+_GRAPH = "graph!"  # begins the address of a graph; in that of a robot ! is quoted
 _NOT_FOUND = Response(b"not found\n", status=HTTPStatus.NOT_FOUND)
 
 
@@ -119,7 +120,12 @@ class RobotPages:
         return json_response(page=page)
 
     def _page(self, address: str) -> str:
-        """Return the page of a robot; of the first one for an empty address, empty without any."""
+        """Return the page of a robot; of the first one for an empty address, empty without any.
+
+        That of a graph for the address of one.
+        """
+        if address.startswith(_GRAPH):
+            return self._graph(address)
         with self._changed:
             addresses = {_address(path): path for path in self._paths}
             path = addresses.get(address or _address(self._files.robots[0].path))
@@ -128,6 +134,7 @@ class RobotPages:
             now = next((robot for robot in self._files.robots if robot.path == path), None)
             is_loaded = self._error is None and now is not None and now.is_loaded
             shown = self._loaded.get(path, now)
+            graphs = self._files.graphs
             assert shown is not None  # each path is that of a robot that was read
             if shown.meshes is not None:
                 self._store.lend(shown.meshes)
@@ -144,8 +151,27 @@ class RobotPages:
                 broken=self._broken(now) if shown is not now or self._error is not None else (),
                 store=self._store,
                 meshes=shown.meshes,
+                graph=_GRAPH if graphs is not None and graphs.launches else "",
             )
             return shown.render(viewing)
+
+    def _graph(self, address: str) -> str:
+        """Return the page of the graph of a launch file; empty for another address."""
+        with self._changed:
+            number, graphs = self.number, self._files.graphs
+            robots = [RobotLink(_address(path), path, is_shown=False) for path in self._paths]
+        if graphs is None:
+            return ""
+        links: list[RobotLink] = []
+        shown = ""
+        for place, path in enumerate(graphs.launches):
+            own_address = f"{_GRAPH}{_address(path)}" if place else _GRAPH
+            links.append(RobotLink(own_address, path, own_address == address))
+            if own_address == address:
+                shown = path
+        if not shown:
+            return ""
+        return graphs.render(shown, GraphViewing(number, address, robots, links))
 
     def _broken(self, robot: ViewedRobot | None) -> Sequence[ProblemCard]:
         """Return what is wrong with a robot as the files are now."""

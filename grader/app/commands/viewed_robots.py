@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from grader.app.commands.inspect_urdf import InspectRequest, inspect_path
+from grader.app.commands.inspect_urdf import InspectRequest, open_and_inspect
 from grader.app.grading import GradeRequest, grade_submission
 from grader.base.errors import GraderError, InputError
 from grader.base.problems import Problem
@@ -17,14 +17,16 @@ from grader.base.source import Source
 from grader.base.text import printable_path
 from grader.report.formats import Format, InspectFormat
 from grader.report.inspection import InspectedRobot, Inspection
+from grader.report.pages.graph_page import graph_html
 from grader.report.pages.inspection_page import inspection_html, problem_card
 from grader.report.pages.student import render_html
-from grader.report.pages.viewing import ArgumentField, ProblemCard, Viewing
+from grader.report.pages.viewing import ArgumentField, GraphViewing, ProblemCard, Viewing
+from grader.report.shown_graph import ShownGraph
 from grader.ros.api import Read, Unreadable
 
 if TYPE_CHECKING:
     from grader.lab.grading.report import Report
-    from grader.ros.api import MeshLoader, Reading
+    from grader.ros.api import MeshLoader, OpenedWorkspace, Reading
 
 _MAX_SHOWN = 5  # problems that break a robot
 
@@ -54,12 +56,20 @@ class ViewedRobot:
     render: Callable[[Viewing], str]
 
 
+class _ViewedGraphs(NamedTuple):
+    """The graphs of what was read: `render` returns the page of that of a launch file."""
+
+    launches: Sequence[str]  # the paths of the launch files; none without a graph
+    render: Callable[[str, GraphViewing], str]
+
+
 class ViewedFiles(NamedTuple):
     """What was read at a path."""
 
     robots: Sequence[ViewedRobot]
     notes: Sequence[str]  # on how it was read
     besides: Sequence[Path]  # the files that were read besides a single one
+    graphs: _ViewedGraphs | None = None
 
 
 def read_robots(request: ViewRequest, tried: Mapping[str, str]) -> ViewedFiles:
@@ -77,27 +87,41 @@ def read_robots(request: ViewRequest, tried: Mapping[str, str]) -> ViewedFiles:
 
 def _inspected(request: ViewRequest, arg: Sequence[str], notes: dict[str, None]) -> ViewedFiles:
     """Return the robots that an inspection finds."""
-    inspection = inspect_path(
-        InspectRequest(
-            path=request.path,
-            robot="",
-            joint=None,
-            relative_to=None,
-            distro=None,
-            output_format=InspectFormat.HTML,
-            save=None,
-            max_size=request.max_size,
-            arg=arg,
-            watch=True,
-            select=None,
-            ignore=None,
-        ),
-        notes.setdefault,
-    )
+    inspection, opened = open_and_inspect(_inspection(request, arg), notes.setdefault)
     if not inspection.robots:
         raise InputError(next(iter(notes), _no_robot(request.path)))
     robots = [_inspected_robot(robot, inspection) for robot in inspection.robots]
-    return ViewedFiles(robots, [*notes], inspection.besides)
+    graphs = None
+    if not opened.is_single:
+        render = partial(_graph_page, opened, inspection)
+        graphs = _ViewedGraphs(opened.launch_files(), render)
+    return ViewedFiles(robots, [*notes], inspection.besides, graphs)
+
+
+def _inspection(request: ViewRequest, arg: Sequence[str]) -> InspectRequest:
+    return InspectRequest(
+        path=request.path,
+        robot="",
+        joint=None,
+        relative_to=None,
+        distro=None,
+        output_format=InspectFormat.HTML,
+        save=None,
+        max_size=request.max_size,
+        arg=arg,
+        watch=True,
+        select=None,
+        ignore=None,
+    )
+
+
+def _graph_page(
+    opened: "OpenedWorkspace", inspection: Inspection, launch: str, viewing: GraphViewing
+) -> str:
+    """Return the page of the graph of a launch file."""
+    launches = tuple(opened.launch_files())
+    shown = ShownGraph(opened.launch_graph(launch), inspection, launches)
+    return graph_html(shown, viewing)
 
 
 def _inspected_robot(robot: InspectedRobot, inspection: Inspection) -> ViewedRobot:
@@ -133,7 +157,12 @@ def _graded(request: ViewRequest, arg: Sequence[str], notes: dict[str, None]) ->
         ),
         notes.setdefault,
     )
-    return ViewedFiles([_graded_robot(run.report, request.path)], [*notes], run.besides)
+    robots = [_graded_robot(run.report, request.path)]
+    graphs = None
+    if any(package.launch_files for package in run.report.submission.packages):
+        inspection, opened = open_and_inspect(_inspection(request, ()), lambda _: None)
+        graphs = _ViewedGraphs(opened.launch_files(), partial(_graph_page, opened, inspection))
+    return ViewedFiles(robots, [*notes], run.besides, graphs)
 
 
 def _graded_robot(report: "Report", path: str) -> ViewedRobot:

@@ -229,7 +229,7 @@ def _handed_out(files: Sequence[Path], rubric: Rubric) -> Iterator[str]:
     Raises InputError for a file without any.
     """
     for path in files:
-        hashes = hashes_of(open_submission(str(path), rubric.lab))
+        hashes = hashes_of(open_submission(str(path), rubric.lab), rubric)
         if not hashes:
             raise InputError(f"--ignore-file {printable_path(path)}: there is no URDF in it")
         yield from hashes

@@ -7,8 +7,17 @@ from typing import NamedTuple
 
 from grader.classroom.results.results import StoredResult
 from grader.files.reading import sha256_of
+from grader.lab.checks.registry import GRAPH_CHECKS
+from grader.lab.rubric.rubric import Rubric
 from grader.lab.submission.submission import Submission
-from grader.ros.api import Read, robot_hash, written_form
+from grader.ros.api import (
+    Read,
+    graph_form,
+    launch_files,
+    launch_graph,
+    robot_hash,
+    written_form,
+)
 
 # students, or a tenth of the class: what more have in common comes from the handout
 _MAX_SHARING = 4
@@ -17,6 +26,7 @@ _LABELS = {
     "urdf": "the same file",
     "robot": "the same robot",
     "written": "the same links, joints and materials",
+    "graph": "the same graph of nodes, but for names",
 }
 
 
@@ -27,29 +37,36 @@ class EqualWork(NamedTuple):
     equal: str
 
 
-def forms_of(submission: Submission, *, is_handed_out: bool = False) -> dict[str, str]:
-    """Return the hashes of a robot's forms, without what is empty.
+def forms_of(
+    submission: Submission, rubric: Rubric, *, is_handed_out: bool = False
+) -> dict[str, str]:
+    """Return the hashes of the forms of a robot and a graph, without what is empty.
 
     `urdf` is that of the file, `robot` that of its normal form, `written` that of its links, joints
-    and materials as written.
+    and materials as written; `graph` that of what its first launch file connects, without names, if
+    a rubric asks about the graph.
     """
     urdf, forms = submission.urdf, dict[str, str]()
     if isinstance(urdf, Read):
         if urdf.data.strip():
             forms |= {"urdf": sha256_of(urdf.data), "robot": robot_hash(urdf.reading)}
         forms["written"] = written_form(urdf.reading.elements, is_handed_out=is_handed_out)
+    if any(criterion.check.name in GRAPH_CHECKS for criterion in rubric.criteria):
+        launches = launch_files(submission.workspace) if submission.packages else []
+        if launches:
+            forms["graph"] = graph_form(launch_graph(submission.workspace, launches[0]))
     return {name: form[:_DIGITS] for name, form in forms.items() if form}
 
 
-def hashes_of(submission: Submission) -> tuple[str, ...]:
-    """Return the hashes of a robot, which is no equal work if the course handed it out."""
-    return tuple(forms_of(submission, is_handed_out=True).values())
+def hashes_of(submission: Submission, rubric: Rubric) -> tuple[str, ...]:
+    """Return the hashes of work that is no equal work, as the course handed it out."""
+    return tuple(forms_of(submission, rubric, is_handed_out=True).values())
 
 
 def equal_work(results: Iterable[StoredResult], handed_out: Iterable[str]) -> list[EqualWork]:
     """Return the groups of students with equal work, without what the course handed out.
 
-    The same file comes first, then the same robot, then the same elements.
+    The same file comes first, then the same robot, the same elements, and the same graph.
     """
     known, works = {*handed_out}, [stored for stored in results if stored.work]
     most = max(_MAX_SHARING, len(works) // 10)
@@ -62,8 +79,8 @@ def equal_work(results: Iterable[StoredResult], handed_out: Iterable[str]) -> li
     for kind, label in _LABELS.items():
         for group in _groups(own_works, kind, known):
             robots = {stored.work.get("robot") for stored in group}
-            is_rare = len(group) <= most and len(robots) > 1
-            if kind != "written" or is_rare:
+            is_rare = len(group) <= most and (kind == "graph" or len(robots) > 1)
+            if kind not in ("written", "graph") or is_rare:
                 label_of.setdefault(tuple(stored.student for stored in group), label)
     return list(starmap(EqualWork, label_of.items()))
 

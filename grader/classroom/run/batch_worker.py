@@ -134,7 +134,7 @@ def _grade_one(context: ClassContext, task: Task) -> StoredResult:
     verdict: Verdict = "unreadable" if unread else "graded"
     texts = submission.documents.converted
     result = result._replace(verdict=verdict, reason=unread or submission.several, texts=texts)
-    return result if is_handed_out else result._replace(work=forms_of(submission))
+    return result if is_handed_out else result._replace(work=forms_of(submission, rubric))
 
 
 def _stored_criterion(result: Result) -> StoredCriterion:
@@ -207,7 +207,7 @@ def reference_hashes(data: bytes, path: str) -> tuple[str, ...]:
         _ = rubric.solution.robot  # raises InputError
     with suppress(InputError):
         if rubric.solution is not None:
-            return hashes_of(rubric.solution.submission)
+            return hashes_of(rubric.solution.submission, rubric)
     return ()
 
 

@@ -57,6 +57,26 @@ def node_changes(
         yield from _code_changes(PythonFile(source), label)
 
 
+def type_changes(source: Source, label: str, topics: Collection[str]) -> Iterator[MutantEdit]:
+    """Yield that a node in Python opens one of these topics with another type that it imports."""
+    if not source.path.endswith(".py") or "rclpy" not in source.text:
+        return
+    file = PythonFile(source)
+    types = []
+    for imported in file.imports:
+        if isinstance(imported, ast.ImportFrom) and (imported.module or "").endswith(".msg"):
+            types += [alias.asname or alias.name for alias in imported.names]
+    for node in file.nodes:
+        match node:
+            case ast.Call(
+                func=ast.Attribute(attr="create_publisher" | "create_subscription"),
+                args=[ast.Name(id=name) as kind, ast.Constant(value=str(topic)), *_],
+            ) if topic.rpartition("/")[2] in topics:
+                for other in [other for other in types if other != name][:1]:
+                    place = f"{label} {topic} {name}"
+                    yield MutantEdit("type of a topic changed", place, *file.span(kind), other)
+
+
 def _cpp_changes(source: Source, label: str) -> Iterator[MutantEdit]:
     """Yield the changes of a node in C++.
 

@@ -20,6 +20,7 @@ from grader.lab.authoring.facts import (
     Solution,
     are_joints_free,
 )
+from grader.lab.authoring.graph_facts import LaunchConnections
 from grader.lab.checks.parameters import measures
 from grader.lab.submission.submission import Submission
 from grader.ros.installation.places import PREFIX, is_of_one_machine
@@ -73,6 +74,12 @@ _STOPPING = ("files names_agree", "arguments names_agree", "programs names_agree
 _OF_PARAMETERS = (*_STOPPING, "controllers names_agree", "parameters names_agree")
 _OF_NAMING = (*_OF_PARAMETERS, "frames names_agree", "values names_agree")
 _OF_CODE = ("code names_agree", "interfaces names_agree")
+_OF_CONNECTIONS = (
+    *_OF_NAMING,
+    "topics names_agree",
+    "services names_agree",
+    "transforms names_agree",
+)
 # What of the nodes of a lab is seen from outside, by what they open.
 _OPENING = {"publisher": "publishes", "service": "serves", "action server": "serves"}
 _TURNED: Mapping[str, str | bool] = {"true": False, "false": True, "True": "False", "False": "True"}
@@ -385,7 +392,8 @@ def _launch_facts(
     yield _complete_fact(launch, name, _launch_text(package, name))._replace(
         carried=(after._replace(causes=(*after.causes, "parameters names_agree")),)
     )
-    nodes = _nodes_that_start(launch)
+    connections = LaunchConnections(submission, package, path)
+    nodes = connections.needed(launch, _nodes_that_start(launch))
     if nodes:
         title = _title_of_nodes(_launch_text(package, name), nodes)
         fact = _package_fact("node_runs", name, launch=name, nodes=nodes)
@@ -393,6 +401,9 @@ def _launch_facts(
     unrun = after._replace(causes=(*after.causes, *_OF_CODE))
     for fact in _opened_facts(submission, launch, name):
         yield fact._replace(carried=(unrun,))
+    misnamed = unrun._replace(causes=(*unrun.causes, *_OF_CONNECTIONS))
+    for fact in connections.facts():
+        yield fact._replace(about=_THE_PACKAGE, carried=(misnamed,))
     for fact in _turned_facts(package, path):
         yield fact._replace(carried=(after,))
 

@@ -24,7 +24,7 @@ from grader.lab.authoring.file_equivalents import EVERY_NODE, file_equivalents
 from grader.lab.authoring.mutant_kinds import KindScore, draw, scores_by_kind, why_right
 from grader.lab.authoring.mutants import Mutant, MutantEdit, mutants, package_mutants
 from grader.lab.authoring.name_mutants import compared_names, name_changes
-from grader.lab.authoring.node_mutants import node_changes
+from grader.lab.authoring.node_mutants import node_changes, type_changes
 from grader.lab.authoring.package_equivalents import BUILT_BY_CMAKE, package_equivalents
 from grader.lab.authoring.samples import Loss, Sample, SampleResults, tested_samples
 from grader.lab.checks.manual import MANUAL_CHECKS
@@ -61,6 +61,13 @@ _OF_ROBOT = (".urdf", ".xacro")
 _MESHES = (".stl", ".dae", ".obj")
 
 
+# The families of names on which checks of what is launched depend.
+_CONNECTING: Mapping[str, tuple[Family, ...]] = {
+    "connects": ("topics",),
+    "topic_has_type": ("topics",),
+    "reaches": ("services",),
+    "publishes_transform": ("frames",),
+}
 # Documents, pictures, and the tests of a package.
 _NO_PART_OF_LAB = re.compile(
     r"(?i)(^|/)(tests?|docs?)/|(^|/)(license|readme|changelog|contributing)[^/]*$|\.(md|pdf|docx|png|jpe?g|gif|svg)$"
@@ -195,22 +202,31 @@ class Trial:
 
     def _name_changes(self, source: Source, label: str) -> Iterable[MutantEdit]:
         """Return the changes of names and values in a file, if a criterion compares them."""
-        is_compared = any(
-            criterion.check.name in ("names_agree", "parameter_is") for criterion in self.tested
-        )
-        if is_compared:
+        is_value_asked = any(criterion.check.name == "parameter_is" for criterion in self.tested)
+        if self._families or is_value_asked:
             names = name_changes(source, label, self._names, self._families)
-            return chain(names, node_changes(self.reference, source, label, self._families))
+            nodes = node_changes(self.reference, source, label, self._families)
+            return chain(names, nodes, type_changes(source, label, self._typed_topics))
         return ()
 
     @cached_property
-    def _families(self) -> tuple[Family, ...]:
-        """The families of names that have to agree."""
-        return tuple(
-            criterion.arguments["of"]
+    def _typed_topics(self) -> frozenset[str]:
+        """The last words of the topics whose types are asked for."""
+        return frozenset(
+            criterion.arguments["topic"].rpartition("/")[2]
             for criterion in self.tested
-            if criterion.check.name == "names_agree"
+            if criterion.check.name == "topic_has_type"
         )
+
+    @cached_property
+    def _families(self) -> tuple[Family, ...]:
+        """The families of names that have to agree, or by which something connects."""
+        families: dict[Family, None] = {}
+        for criterion in self.tested:
+            if criterion.check.name == "names_agree":
+                families[criterion.arguments["of"]] = None
+            families.update(dict.fromkeys(_CONNECTING.get(criterion.check.name, ())))
+        return tuple(families)
 
     @cached_property
     def _names(self) -> list[tuple[Fact, Edit]]:

@@ -13,6 +13,7 @@ from grader.base.source import Location
 from grader.base.text import enumerated
 from grader.lab.checks.check import About
 from grader.lab.checks.installed_files import INSTALLING, files_of_kind, require_installed
+from grader.lab.checks.launching import STOPS, fault_that_stops, launch_of, path_of_launch
 from grader.lab.checks.outcome import Outcome, failed, judged, passed
 from grader.lab.checks.started_nodes import Fault, Wanted, find_faults
 from grader.lab.submission.submission import Submission
@@ -25,9 +26,8 @@ if TYPE_CHECKING:
 
 
 # What the edits for hints may change.
-_STOPS = {"stops": "ros2 launch stops at an error in the launch file, or at a file that it reads"}
 _LOOKING = {
-    **_STOPS,
+    **STOPS,
     "local": "a path exists on one machine only, or is relative to the working folder",
     "name": "a file or package of another name is looked for",
     "needs": "a build does not install a file that the robot needs, such as a mesh",
@@ -39,7 +39,7 @@ ABOUT = {
     "node_runs": About(
         ("launch",),
         causes={
-            **_STOPS,
+            **STOPS,
             "given": "a node has other remappings or arguments, or another file is included",
             "topic": "no node opens a topic, service or action",
             "type": "a topic has another type",
@@ -60,7 +60,7 @@ def launch_found(package: Package, *, name: str) -> Outcome:
     Args:
         name: The file's name, such as view.launch.py.
     """
-    path = _path_of(package, name)
+    path = path_of_launch(package, name)
     if is_launch_named(path, name):
         return passed(f"the launch file is {path}")
     detail = f"; the package has {path}{package.built('launch', name)}"
@@ -111,9 +111,9 @@ def node_runs(
         calls: Services and actions that they call.
         built: Whether it must find the files that it reads; if not, only what else stops it counts.
     """
-    evaluated = _launch_of(package, launch)
+    evaluated = launch_of(package, launch)
     if evaluated.faults:
-        raise _fault_that_stops(package, launch, evaluated)
+        raise fault_that_stops(path_of_launch(package, launch), evaluated)
     if package.shadows_ros:
         return _fail_shadowing(package)
     if (remap or arguments) and not nodes:
@@ -283,9 +283,9 @@ def _look_for_files(
 
     Where it `needs_robot`, one that names neither a URDF nor an RViz file fails.
     """
-    if not started and package.launch(_path_of(package, name)).syntax is not None:
+    if not started and package.launch(path_of_launch(package, name)).syntax is not None:
         return passed("the launch file cannot be read, so it looks for no file")
-    launch = _launch_of(package, name)
+    launch = launch_of(package, name)
     places = find_places(package, launch, "urdf", "rviz", "include", "read", built=built)
     if not (needs_robot or package.rviz_files):  # then RViz may start without a file
         places = [place for place in places if place.file.purpose != "rviz"]
@@ -315,7 +315,7 @@ def _judge_files(
     unknown = next(iter(_in_state(places, "unknown")), None)
     names_none = not any(place.is_of_robot for place in places)
     if launch.faults and (unknown or names_none):
-        raise _fault_that_stops(package, name, launch)
+        raise fault_that_stops(path_of_launch(package, name), launch)
     if names_none and needs_robot:
         raise _no_files(launch)
     if unknown is not None:
@@ -462,51 +462,3 @@ def _warning_that_stops(package: Package, place: FilePlace) -> Outcome | None:
     source = package.installed.get(place.text, posixpath.basename(place.text))
     detail = f": line {warning.location.line} of {source}: {warning.message}"
     return failed(mistake, place.file.location, detail=detail, mistake=mistake, cause="stops")
-
-
-def _path_of(package: Package, name: str) -> str:
-    """Return the path of a launch file. Raises MissingElement."""
-    path = package.launch_file(name)
-    if path is None:
-        raise package.missing("launch", name)
-    return path
-
-
-def _launch_of(package: Package, name: str) -> "Launch":
-    """Return a launch file, evaluated.
-
-    Raises MissingElement, and NotDecided for one that is not read.
-    """
-    path = _path_of(package, name)
-    launch = package.launch(path)
-    if launch.unread:
-        raise NotDecided(launch.unread, "the launch file cannot be read")
-    if launch.syntax is not None:
-        raise MissingElement(
-            "launch file",
-            path,
-            message=launch.syntax.message,
-            location=launch.syntax.location,
-            cause="stops",
-        )
-    return launch
-
-
-def _fault_that_stops(package: Package, name: str, launch: "Launch") -> MissingElement:
-    """Return the fault of a launch file that starts nothing because of it."""
-    path, first = _path_of(package, name), launch.faults[0]
-    return MissingElement(
-        "launch file",
-        path,
-        message=_join_faults(launch),
-        location=first.location,
-        problem=first.message,
-        cause="stops",
-    )
-
-
-def _join_faults(launch: "Launch") -> str:
-    messages = list(dict.fromkeys(fault.message for fault in launch.faults))
-    if len(messages) > 1:
-        return f"{messages[0]} (and {len(messages) - 1} more)"
-    return messages[0]

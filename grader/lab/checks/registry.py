@@ -63,6 +63,10 @@ CHECKS = (
     "launch.node_runs",
     "launch.launch_finds_files",
     "launch.launch_complete",
+    "launched_graph.connects",
+    "launched_graph.publishes_transform",
+    "launched_graph.topic_has_type",
+    "launched_graph.reaches",
     "rviz.rviz_found",
     "rviz.rviz_fixed_frame",
     "rviz.rviz_shows_robot",
@@ -74,6 +78,8 @@ CHECKS = (
     "manual.evidence_shown",
 )
 
+# Those that ask what connects after a launch.
+GRAPH_CHECKS = frozenset({"connects", "publishes_transform", "topic_has_type", "reaches"})
 _PLACES = {place.partition(".")[2]: place for place in CHECKS}
 
 

@@ -203,6 +203,29 @@ def _not_included(launch: "Launch", end: str) -> Fault | None:
     return Fault(message, launch.passed[0].location, f"; it includes {enumerated(paths)}")
 
 
+def stopping_mistakes(workspace: "Workspace") -> "Mapping[str, Fault]":
+    """Return by file the first mistake for which its node certainly ends."""
+    from grader.ros.workspace.rules.reading import read_agreement  # late: few rubrics ask for it
+
+    faults: dict[str, Fault] = {}
+    for mistake in read_agreement(workspace).mismatches:
+        is_of_code = mistake.family in ("code", "interfaces")
+        if is_of_code and mistake.is_certain and mistake.rule.name not in _HARMLESS:
+            message = f"a node cannot run: {mistake.message}"
+            faults.setdefault(mistake.location.path, Fault(message, mistake.location))
+    return faults
+
+
+def fault_of_syntax(workspace: "Workspace", node: "StartedNode", package: str) -> Fault | None:
+    """Return why Python cannot read the program of a node of a package; None if it can."""
+    code = workspace.code.by_package.get(package)
+    for program in code.programs if code is not None else ():
+        if program.name == node.executable and program.syntax is not None:
+            message = f"Python cannot read the file: {program.syntax.message}"
+            return Fault(message, program.syntax.location)
+    return None
+
+
 class _NodeTopic(NamedTuple):
     """What a node opens; `name` is empty where it is not known, and `type` None."""
 
@@ -219,19 +242,11 @@ class _NodeTopics:
 
     def __init__(self, launch: "Launch", workspace: "Workspace") -> None:
         from grader.ros.workspace.graph.code_ends import opened_by  # late: few rubrics ask for it
-        from grader.ros.workspace.rules.reading import read_agreement
 
         self._topics: list[_NodeTopic] = []
         self._is_open = bool(launch.unknown)
         self._unread: list[Fault] = []  # of programs that cannot run, and so open nothing
-        # by file, the first mistake for which its node certainly ends
-        self._stopping = {
-            mistake.location.path: mistake
-            for mistake in reversed(read_agreement(workspace).mismatches)
-            if mistake.family in ("code", "interfaces")
-            and mistake.is_certain
-            and mistake.rule.name not in _HARMLESS
-        }
+        self._stopping = stopping_mistakes(workspace)
         for node in launch.nodes:
             package = workspace.package_of(node)
             if package is None or not self._may_run(node, workspace, package.name):
@@ -248,20 +263,18 @@ class _NodeTopics:
         """Return whether a node is read and may run; note why not, and what is not known of it."""
         code = workspace.code.by_package.get(package)
         doubts = list(code.doubts) if code is not None else []
-        programs = code.programs if code is not None else ()
-        started = (program.syntax for program in programs if program.name == node.executable)
-        syntax = next(filter(None, started), None)
+        syntax = fault_of_syntax(workspace, node, package)
         own_node = workspace.code.own_node(node)
         mistake = self._stopping.get(own_node.location.path) if own_node is not None else None
         runs = own_node is not None
         if syntax is not None:
-            message = f"Python cannot read the file: {syntax.message}"
-            self._unread.append(Fault(message, syntax.location))
-            doubts = [doubt for doubt in doubts if doubt.location.path != syntax.location.path]
+            self._unread.append(syntax)
+            at = syntax.at
+            doubts = [doubt for doubt in doubts if at is None or doubt.location.path != at.path]
         elif own_node is None or own_node.doubts:
             self._is_open = True
         elif mistake is not None:
-            self._unread.append(Fault(f"a node cannot run: {mistake.message}", mistake.location))
+            self._unread.append(mistake)
             runs = False
         self._is_open = self._is_open or bool(doubts)
         return runs

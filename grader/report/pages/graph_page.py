@@ -6,18 +6,21 @@ from typing import NamedTuple
 from grader import __version__
 from grader.base.text import counted, cut, printable
 from grader.report.drawing.graph_layout import Curve, DrawnBox, lay_out
-from grader.report.inspection import problem_counts
+from grader.report.inspection import Inspection, problem_counts
 from grader.report.pages.inspection_page import problem_card
 from grader.report.pages.shell import Assets, render_page
-from grader.report.pages.viewing import ProblemCard
+from grader.report.pages.viewing import GRAPH_SCRIPT, SOURCES, STYLES, GraphViewing, ProblemCard
 from grader.report.shown_graph import ShownGraph, transform_tree
 from grader.report.writers.graph_diagrams import Diagram, diagram_of
-from grader.ros.api import GraphEnd, GraphNode, GraphTransform
+from grader.ros.api import GraphEnd, GraphNode, GraphTransform, LaunchGraph
 
 _MAX_DEPTH = 20  # of a frame that is indented
 _MAX_PARAMETERS = 20
 # A page has at most 150 KB: so many boxes, rows of ends, findings and nodes are on it.
 _MAX_DRAWN, _MAX_ROWS, _MAX_FINDINGS, _MAX_NODES = 130, 150, 30, 200
+# On a page about something else, at most 20 KB are for a graph.
+_MOST_FITTING, _MAX_BYTES = 60, 18_000
+_BYTES_A_BOX, _BYTES_AN_ARROW = 420, 190  # of markup, without names
 _MAX_LETTERS = 120  # of a text about a box, and of a list of names
 _VERBS = {
     "publisher": "publishes",
@@ -39,7 +42,7 @@ class _Item(NamedTuple):
     about: str  # for a screen reader, and on hover
 
 
-class _Drawing(NamedTuple):
+class GraphDrawing(NamedTuple):
     """The boxes and arrows of a page, the latter with a class of the style."""
 
     boxes: list[tuple[DrawnBox, _Item]]
@@ -80,8 +83,8 @@ class _FrameRow(NamedTuple):
     words: str
 
 
-def graph_html(shown: ShownGraph) -> str:
-    """Return a graph as an HTML page."""
+def graph_html(shown: ShownGraph, viewing: GraphViewing | None = None) -> str:
+    """Return a graph as an HTML page; that of `grader view` with `viewing`."""
     graph = shown.graph
     counts = [counted(len(graph.nodes), "node"), counted(len(shown.connections), "connection")]
     drawing = _draw(diagram_of(shown))
@@ -95,9 +98,41 @@ def graph_html(shown: ShownGraph) -> str:
         "nodes": [*_cards(shown)],
         "frames": [*_frames(graph.transforms)],
         "lists": [*_lists(shown)],
+        "viewing": viewing,
     }
     assets = Assets(styles="text.css student.css graph.css", scripts="graph.js")
-    return render_page("graph.html", values, {}, assets)
+    if viewing is None:
+        return render_page("graph.html", values, {}, assets)
+    assets = assets._replace(
+        styles=f"{assets.styles} {STYLES}",
+        scripts=f"{assets.scripts} {GRAPH_SCRIPT}",
+        sources=SOURCES,
+    )
+    data = {"view": {"number": viewing.number, "address": viewing.address}}
+    return render_page("graph.html", values, data, assets)
+
+
+def fitting_drawing(graph: LaunchGraph) -> GraphDrawing | None:
+    """Return the drawing of a graph for a page on something else: as much as such a page holds.
+
+    None of a graph without nodes.
+    """
+    if not graph.nodes:
+        return None
+    shown = ShownGraph(graph, Inspection(graph.path))
+    diagram = diagram_of(shown)
+    drawing = _draw(diagram, _MOST_FITTING)
+    while len(drawing.boxes) > 1 and _size_of(drawing) > _MAX_BYTES:
+        drawing = _draw(diagram, len(drawing.boxes) * 2 // 3)
+    return drawing
+
+
+def _size_of(drawing: GraphDrawing) -> int:
+    """Return about how many bytes of markup a drawing has."""
+    size = _BYTES_AN_ARROW * len(drawing.arrows)
+    for box, item in drawing.boxes:
+        size += _BYTES_A_BOX + len(item.about) + sum(map(len, box.lines))
+    return size
 
 
 def _lists(shown: ShownGraph) -> Iterator[tuple[str, list[tuple[str, str]]]]:
@@ -111,9 +146,9 @@ def _lists(shown: ShownGraph) -> Iterator[tuple[str, list[tuple[str, str]]]]:
     yield "Programs that end, or are no nodes", ended
 
 
-def _draw(diagram: Diagram) -> _Drawing:
-    """Return the boxes and arrows of a diagram, and its size."""
-    items = _items_of(diagram)
+def _draw(diagram: Diagram, most: int = _MAX_DRAWN) -> GraphDrawing:
+    """Return so many boxes of a diagram with their arrows, and its size."""
+    items = _items_of(diagram, most)
     pairs: dict[tuple[str, str], str] = {}
     for arrow in diagram.arrows:
         ends = (f"n{arrow.node}", f"t{arrow.name}")
@@ -126,19 +161,19 @@ def _draw(diagram: Diagram) -> _Drawing:
     layout = lay_out({name: item.lines for name, item in items.items()}, [*pairs])
     arrows = [(each, pairs[each.source, each.target]) for each in layout.curves]
     boxes = [(layout.boxes[name], item) for name, item in items.items()]
-    return _Drawing(boxes, arrows, layout.width, layout.height)
+    return GraphDrawing(boxes, arrows, layout.width, layout.height)
 
 
-def _items_of(diagram: Diagram) -> dict[str, _Item]:
+def _items_of(diagram: Diagram, most: int) -> dict[str, _Item]:
     """Return what is drawn as boxes: the nodes, and as many names as a page holds."""
     items: dict[str, _Item] = {}
-    for number, node, severity in diagram.nodes[:_MAX_DRAWN]:
+    for number, node, severity in diagram.nodes[:most]:
         about = f"node {node.label}, {node.program}"
         label = (printable(node.label),)
         items[f"n{number}"] = _Item(
             label, "node", severity, not node.doubt, cut(about, _MAX_LETTERS)
         )
-    most_names = max(0, _MAX_DRAWN - len(items))
+    most_names = max(0, most - len(items))
     for number, name in enumerate(diagram.names[:most_names]):
         lines = [printable(name.name)]
         about = f"{name.kind} {name.name}, type not known"

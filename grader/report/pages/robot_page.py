@@ -38,7 +38,8 @@ def render_robot_page(
     views = Markup(drawn)  # noqa: S704  an element, whose text is escaped
     shown = {"picture": picture, "views": views, "legend": legend, "has_space": space is not None}
     data: dict[str, Any] = {"robot": space} if space is not None else {}
-    scripts, styles, rules = assets.scripts, "text.css robot.css student.css", STYLE
+    scripts, rules = assets.scripts, STYLE
+    styles = f"text.css robot.css student.css {assets.styles}"
     if viewing is not None:  # the same for each version: the policy of a page stays
         scripts, styles = f"{scripts} {SPACE_SCRIPTS} {SCRIPT}", f"{styles} {STYLES}"
         assets = assets._replace(sources=SOURCES)

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from itertools import groupby
 
 from grader.base.text import format_points, printable
+from grader.lab.checks.registry import GRAPH_CHECKS
 from grader.lab.documents.pictures import PDF, EmbeddedPicture
 from grader.lab.grading.criterion_pictures import may_have_pictures, pictures_of
 from grader.lab.grading.report import Report
@@ -22,10 +23,12 @@ from grader.report.criteria import (
 from grader.report.drawing.graded_picture import picture_of
 from grader.report.drawing.three_views import NO_PICTURE
 from grader.report.locations import diff_lines, location_text, source_lines
+from grader.report.pages.graph_page import GraphDrawing, fitting_drawing
 from grader.report.pages.robot_page import render_robot_page
 from grader.report.pages.shell import Assets
 from grader.report.pages.viewing import Viewing
 from grader.report.statuses import STATUS_WORDS, SYMBOLS
+from grader.ros.api import launch_files, launch_graph
 
 _MAX_PICTURES = 6 * 1024 * 1024  # bytes on a page
 
@@ -76,7 +79,10 @@ def render_html(report: Report, viewing: Viewing | None = None) -> str:
         "pictures": _pictures(report, entries),
         "no_picture": NO_PICTURE,
     }
-    assets = Assets(scripts="student.js", sources="img-src data:")
+    graph_of, graph = _graph_of(report)
+    values |= {"graph": graph, "graph_of": graph_of}
+    styles = "graph.css" if graph is not None else ""
+    assets = Assets(styles=styles, scripts="student.js", sources="img-src data:")
     return render_robot_page("student.html", values, picture, assets, cards, viewing)
 
 
@@ -99,6 +105,22 @@ def _pictures(report: Report, entries: Sequence[Entry]) -> Mapping[str, list[tup
                 address = f"data:{picture.kind.media_type};base64,{data}"
                 shown.setdefault(entry.id, []).append((picture.where, address))
     return shown
+
+
+def _graph_of(report: Report) -> tuple[str, GraphDrawing | None]:
+    """Return the launch file whose graph criteria ask about, and the drawing of that; or none."""
+    asking = [
+        each.criterion for each in report.results if each.criterion.check.name in GRAPH_CHECKS
+    ]
+    if report.is_bare or not asking or not report.submission.packages:
+        return "", None
+    launches = launch_files(report.submission.workspace)
+    named = [f"/{criterion.arguments.get('launch')}" for criterion in asking]
+    asked = [path for path in launches if f"/{path}".endswith(tuple(named))]
+    path = next(iter([*asked, *launches]), "")
+    if not path:
+        return "", None
+    return path, fitting_drawing(launch_graph(report.submission.workspace, path))
 
 
 def _part_cards(report: Report) -> list[tuple[str, str, list[CriteriaGroup]]]:

@@ -16,15 +16,25 @@ if TYPE_CHECKING:
     from grader.ros.api import MeshLoader
 
 SCRIPT, STYLES = "view.js", "view.css"
+GRAPH_SCRIPT = "graph_view.js"
 SOURCES = "img-src data:; connect-src 'self'"
 
 
 class RobotLink(NamedTuple):
-    """A robot in the list of a page."""
+    """A robot, or a launch file, in the list of a page."""
 
     address: str
     path: str
     is_shown: bool  # on this page
+
+
+class GraphViewing(NamedTuple):
+    """What a page of a graph has in `grader view`."""
+
+    number: int  # of the version that is shown
+    address: str  # of the page
+    robots: Sequence[RobotLink]
+    launches: Sequence[RobotLink]
 
 
 class ArgumentField(NamedTuple):
@@ -57,6 +67,7 @@ class Viewing:
     broken: Sequence[ProblemCard]
     store: MeshStore
     meshes: "MeshLoader | None"  # of the robot
+    graph: str = ""  # the address of the page of the graph; empty without launch files
 
     @property
     def data(self) -> dict[str, Any]:

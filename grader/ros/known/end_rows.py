@@ -47,6 +47,9 @@ class VaryingEnd(NamedTuple):
         return RELEASES.index(self.since) <= number <= RELEASES.index(self.until)
 
 
+OnlyMore = Literal["", "subscriptions", "publishers"]
+
+
 class OpenedEnds(NamedTuple):
     """What a program, a component or a controller opens: names with types.
 
@@ -65,6 +68,8 @@ class OpenedEnds(NamedTuple):
     action_clients: Mapping[str, str] = {}
     varying: tuple[VaryingEnd, ...] = ()
     opens_more: str = ""  # why it may open more
+    opens_only: OnlyMore = ""  # what all of this is; empty where it may be anything
+    holds: tuple[str, ...] = ()  # nodes in its process, each with a row; called NAME/NAME
     is_manual: bool = False  # whether a person starts it in a terminal of its own
     is_process: bool = False  # whether it is no node, or ends by itself
 
@@ -90,6 +95,7 @@ class _IncludedNode(NamedTuple):
     node: str  # package/program
     name: str = ""  # that it is given
     remappings: Mapping[str, str] = {}
+    parameters: str = ""  # the launch argument that names its parameter file; see the package
     since: Release = RELEASES[0]
     until: Release = RELEASES[-1]
 
@@ -105,6 +111,7 @@ class _EndsOfPackage(NamedTuple):
     source: str = ""  # of programs that name none
     program: Mapping[str, OpenedEnds] = {}  # also classes of components and controllers
     launch: Mapping[str, tuple[_IncludedNode, ...]] = {}  # the nodes that a launch file starts
+    launch_parameters: str = ""  # the launch argument that names the parameter file of all of them
 
 
 @cache
@@ -140,8 +147,12 @@ def nodes_of_launch_file(package: str, file: str, release: Release) -> list[_Inc
     """Return the nodes that an installed launch file starts; none where that is not known."""
     if package not in packages_with_ends():
         return []
-    nodes = _ends_of_package(package).launch.get(file, ())
-    return [node for node in nodes if node.is_in(release)]
+    of_package = _ends_of_package(package)
+    nodes: list[_IncludedNode] = []
+    for node in of_package.launch.get(file, ()):
+        if node.is_in(release):
+            nodes.append(node._replace(parameters=of_package.launch_parameters))
+    return nodes
 
 
 @cache

@@ -94,6 +94,16 @@ class NodeFrame(NamedTuple):
     lookup: Location | None = None
 
 
+class NodeTransform(NamedTuple):
+    """A transform that a node gives to a broadcaster; frames that are not known have no name."""
+
+    parent: NodeFrame
+    child: NodeFrame
+    location: Location
+    is_static: bool = False
+    is_conditional: bool = False  # whether a parameter decides if it is sent
+
+
 class Timer(NamedTuple):
     """A timer, with its period in seconds."""
 
@@ -188,6 +198,7 @@ class NodeFacts(NamedTuple):
     timers: tuple[Timer, ...]
     doubts: tuple[Doubt, ...]
     frames: tuple[NodeFrame, ...] = ()
+    transforms: tuple[NodeTransform, ...] = ()  # of a broadcaster
 
 
 class NodeProgram(NamedTuple):

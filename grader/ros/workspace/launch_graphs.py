@@ -23,7 +23,12 @@ def launch_files(workspace: Workspace) -> list[str]:
 
 def launch_graph(workspace: Workspace, path: str) -> LaunchGraph:
     """Return what runs after a launch file of the workspace is launched on its own."""
+    return started_graph(*launched_alone(workspace, path))
+
+
+def launched_alone(workspace: Workspace, path: str) -> tuple[Workspace, int]:
+    """Return a workspace in which a launch file is among the roots, and its number there."""
     roots = [launch.source.path for _, launch in workspace.launches.roots]
     if path in roots:
-        return started_graph(workspace, roots.index(path))
-    return started_graph(replace(workspace, launched=path), 0)
+        return workspace, roots.index(path)
+    return replace(workspace, launched=path), 0

@@ -1,17 +1,23 @@
 """The frames that functions of a C++ node publish, look up or stamp messages with."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from grader.ros.cpp.cpp_evaluation import CppEvaluation
 from grader.ros.cpp.declarations import CppFunction, declared_in
 from grader.ros.cpp.syntax import CppNode
 from grader.ros.cpp.unit import CppUnit, arguments_of, called_name
 from grader.ros.nodes.cpp.rclcpp_calls import name_of
-from grader.ros.nodes.node_facts import FrameUse, NodeFrame
+from grader.ros.nodes.node_facts import FrameUse, NodeFrame, NodeTransform
 
 _LOOKING_UP = ("lookupTransform", "canTransform", "waitForTransform")
 _FULL_FORM = 5  # arguments of lookupTransform() with two times and a fixed frame
 _TRANSFORM = "TransformStamped"
+_SENDS = "sendTransform"
+_FIELDS: Mapping[FrameUse, str] = {
+    "is above": "header.frame_id",
+    "publishes": "child_frame_id",
+}
+_STATIC = "StaticTransformBroadcaster"
 
 
 def frames_in(
@@ -26,6 +32,67 @@ def frames_in(
                 yield from _set_frame(use, function, unit, evaluation)
 
 
+def transforms_in(
+    function: CppFunction, unit: CppUnit, evaluation: CppEvaluation
+) -> Iterator[NodeTransform]:
+    """Yield the transforms that a function sends by a broadcaster; frames may be unknown."""
+    for call in unit.calls_in(function):
+        if call.kind != "call_expression" or called_name(call).rpartition("::")[2] != _SENDS:
+            continue
+        given = arguments_of(call)
+        name = given[0].text if len(given) == 1 and given[0].kind == "identifier" else ""
+        frames: list[NodeFrame] = []
+        for kind, field in _FIELDS.items():
+            value = _value_set(f"{name}.{field}", function, unit) if name else None
+            if value is not None:
+                frames.append(_frame(kind, value, evaluation))
+            else:
+                frames.append(NodeFrame(kind, None, call.location))
+        broadcaster = next((each for each in call.walk() if each.kind == "identifier"), None)
+        kind_of_sender = _type_of(broadcaster, function, unit) if broadcaster is not None else ""
+        yield NodeTransform(
+            frames[0],
+            frames[1],
+            call.location,
+            is_static=_STATIC in kind_of_sender,
+            is_conditional=_is_decided_by_parameter(call, function, evaluation),
+        )
+
+
+def _value_set(field: str, function: CppFunction, unit: CppUnit) -> CppNode | None:
+    """Return what a field of a transform is set to, once in the function, or once elsewhere."""
+    inside: list[CppNode] = []
+    elsewhere: list[CppNode] = []
+    for use in unit.uses.get(field.rpartition(".")[2], ()):
+        member = use.parent
+        setting = member.parent if member is not None and member.text == field else None
+        if member is None or setting is None or member.field != "left":
+            continue
+        value = setting.child("right") if setting.kind == "assignment_expression" else None
+        if value is None or use.file is not function.node.file:
+            continue
+        is_inside = function.node.start <= use.start < function.node.end
+        (inside if is_inside else elsewhere).append(value)
+    values = inside or elsewhere
+    return values[0] if len(values) == 1 else None
+
+
+def _is_decided_by_parameter(
+    call: CppNode, function: CppFunction, evaluation: CppEvaluation
+) -> bool:
+    """Return whether a condition on a parameter decides whether a call is made."""
+    for around in call.ancestors():
+        if around.start < function.node.start:
+            return False
+        condition = around.child("condition") if around.kind == "if_statement" else None
+        for tested in condition.walk() if condition is not None else ():
+            if tested.kind == "identifier":
+                _, parts = name_of(evaluation.value_of(tested))
+                if any(part.kind == "parameter" for part in parts):
+                    return True
+    return False
+
+
 def _frames_in_calls(
     function: CppFunction, unit: CppUnit, evaluation: CppEvaluation
 ) -> Iterator[NodeFrame]:
@@ -37,7 +104,7 @@ def _frames_in_calls(
             second = given[2] if len(given) >= _FULL_FORM else given[1]
             for node in (given[0], second):
                 yield _frame("looks up", node, evaluation)._replace(lookup=call.location)
-        elif short == "sendTransform" and not _is_known_transform(given, function, unit):
+        elif short == _SENDS and not _is_known_transform(given, function, unit):
             yield NodeFrame("publishes", None, call.location)
 
 

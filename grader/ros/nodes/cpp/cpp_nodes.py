@@ -34,7 +34,7 @@ from grader.ros.known.package_tables import cpp_table
 from grader.ros.nodes.cpp.call_sites import CallSites
 from grader.ros.nodes.cpp.cpp_faults import cpp_faults
 from grader.ros.nodes.cpp.cpp_files import CompiledTarget, CppFiles, may_hide
-from grader.ros.nodes.cpp.cpp_frames import frames_in
+from grader.ros.nodes.cpp.cpp_frames import frames_in, transforms_in
 from grader.ros.nodes.cpp.cpp_message_content import CppContentReader
 from grader.ros.nodes.cpp.cpp_message_uses import cpp_field_uses
 from grader.ros.nodes.cpp.cpp_programs import program_faults
@@ -59,6 +59,7 @@ from grader.ros.nodes.node_facts import (
     NodeFrame,
     NodeParameter,
     NodeProgram,
+    NodeTransform,
     PackageNodes,
     SynchronisedType,
     Timer,
@@ -97,7 +98,7 @@ class _Parameter(NamedTuple):
 
 
 _Name = str | _Parameter | None
-_Fact = Endpoint | NodeParameter | Timer | Doubt | NodeFrame
+_Fact = Endpoint | NodeParameter | Timer | Doubt | NodeFrame | NodeTransform
 
 
 def read_cpp_nodes(package: Package) -> PackageNodes:
@@ -413,6 +414,7 @@ class _Target:
         frames = frames_in(function, self._unit, self._evaluation)
         if owner in self._facts:
             self._facts[owner] += frames
+            self._facts[owner] += transforms_in(function, self._unit, self._evaluation)
         else:
             self.loose_frames += [frame for frame in frames if frame.use == "publishes"]
 
@@ -606,6 +608,7 @@ class _Target:
         timers: list[Timer] = []
         doubts: dict[Doubt, None] = {}
         frames: list[NodeFrame] = []
+        transforms: list[NodeTransform] = []
         for fact in [fact for key in keys for fact in self._facts.get(key, ())]:
             match fact:
                 case Endpoint():
@@ -619,6 +622,8 @@ class _Target:
                     doubts[fact] = None
                 case NodeFrame():
                     frames.append(fact)
+                case NodeTransform():
+                    transforms.append(fact)
         return NodeFacts(
             class_name=class_name,
             name=name,
@@ -628,6 +633,7 @@ class _Target:
             timers=tuple(timers),
             doubts=tuple(doubts),
             frames=tuple(frames),
+            transforms=tuple(transforms),
         )
 
     @cached_property

@@ -31,6 +31,7 @@ from grader.ros.nodes.node_facts import (
     NodeFrame,
     NodeParameter,
     NodeProgram,
+    NodeTransform,
     PackageNodes,
     Qos,
     SynchronisedType,
@@ -38,6 +39,7 @@ from grader.ros.nodes.node_facts import (
     TypeImport,
 )
 from grader.ros.nodes.python.branches import calls_in_branches
+from grader.ros.nodes.python.broadcast_transforms import SENDS, SendingMethod, sent_transforms
 from grader.ros.nodes.python.code_faults import ModuleText, attributes_in, code_faults
 from grader.ros.nodes.python.endpoint_names import Bindings, EndpointNames, bindings
 from grader.ros.nodes.python.message_content import SUBSCRIBER, ContentReader
@@ -153,7 +155,7 @@ class _Name(NamedTuple):
     name: str | None
 
 
-_Fact = Endpoint | NodeParameter | NodeFrame | Timer | Doubt | _Name
+_Fact = Endpoint | NodeParameter | NodeFrame | NodeTransform | Timer | Doubt | _Name
 
 
 def read_nodes(package: Package, *, reads_meant: bool = False) -> PackageNodes:
@@ -506,6 +508,7 @@ class _Module:
                 ]
         for part, call in calls:
             self._read_call(part, call)
+            self._read_transforms(part, call)
             if self._called(part, call) in _MAKES_A_NODE:
                 for facts in self._facts.values():
                     facts.append(
@@ -556,6 +559,7 @@ class _Module:
     ) -> NodeFacts:
         names: set[str | None] = set()
         endpoints, parameters, frames, timers, doubts = [], [], [], [], []
+        transforms = []
         for fact in facts:
             match fact:
                 case _Name():
@@ -567,6 +571,8 @@ class _Module:
                     parameters.append(fact)
                 case NodeFrame():
                     frames.append(fact)
+                case NodeTransform():
+                    transforms.append(fact)
                 case Timer():
                     timers.append(fact)
                 case Doubt():
@@ -580,6 +586,7 @@ class _Module:
             timers=tuple(timers),
             doubts=tuple(doubts),
             frames=tuple(frames),
+            transforms=tuple(transforms),
         )
 
     def calls_in(self, function: str) -> Sequence[tuple[str, Location]]:
@@ -635,7 +642,13 @@ class _Module:
         given = given_argument(call, position, name)
         if isinstance(value, str) or given is None:
             yield _text(value), ()
-            return
+        else:
+            yield from self._names_written(part, given)
+
+    def _names_written(
+        self, part: CodePart, given: ast.expr
+    ) -> Iterator[tuple[str | None, tuple[NamePart, ...]]]:
+        """Yield each name that an expression is, as its text or its parts."""
         names = EndpointNames(self._bindings_around(part), partial(self._value_in, part.scope))
         for parts in names.read(given):
             kinds = {name_part.kind for name_part in parts}
@@ -687,6 +700,20 @@ class _Module:
                 self._facts[part.of] += self._looked_up(part, call, _LOOKUPS[method])
             case function:
                 self._read_given_nodes(part, call, dotted(function) or "this call")
+
+    def _read_transforms(self, part: CodePart, call: ast.Call) -> None:
+        """Add the transforms that a method of a node sends."""
+        is_sending = isinstance(call.func, ast.Attribute) and call.func.attr == SENDS
+        if not is_sending or part.of not in self._facts:
+            return
+        method = SendingMethod(
+            part.node,
+            self._class_nodes[part.of],
+            self._bindings_around(part),
+            partial(self._names_written, part),
+            self._at,
+        )
+        self._facts[part.of] += sent_transforms(method, call)
 
     def _read_method_of(
         self, at: Location | None, part: CodePart, call: ast.Call, method: str

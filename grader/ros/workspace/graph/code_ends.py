@@ -5,7 +5,14 @@ from typing import Literal, NamedTuple, get_args
 
 from grader.base.source import Location
 from grader.ros.launch.launch_model import StartedNode
-from grader.ros.nodes.node_facts import Endpoint, EndpointKind, NamePart, NodeFacts, NodeFrame
+from grader.ros.nodes.node_facts import (
+    Endpoint,
+    EndpointKind,
+    NamePart,
+    NodeFacts,
+    NodeFrame,
+    NodeTransform,
+)
 from grader.ros.python.values import Value
 from grader.ros.workspace.model.workspace import Workspace
 
@@ -117,6 +124,29 @@ def frames_of(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str | N
         for name in _names(frame, named, values):
             is_known = name is not None and _ANY not in name
             yield name if is_known else None, frame
+
+
+def transforms_sent(
+    workspace: Workspace, node: StartedNode, own_node: NodeFacts
+) -> Iterator[tuple[str, str, NodeTransform]]:
+    """Yield parent and child of each transform that one node of a program sends.
+
+    One that is not known is empty. Raises NotDecided.
+    """
+    if not own_node.transforms:
+        return
+    workspace.charge(len(own_node.transforms))
+    values = _values_given(workspace, node, own_node)
+    named = node if node.node_name else node._replace(node_name=own_node.name)
+    for sent in own_node.transforms:
+        for parent in _names(sent.parent, named, values):
+            for child in _names(sent.child, named, values):
+                yield _frame_name(parent), _frame_name(child), sent
+
+
+def _frame_name(name: str | None) -> str:
+    """Return the name of a frame without its slash; empty if it is not known."""
+    return name.removeprefix("/") if name is not None and _ANY not in name else ""
 
 
 def _values_given(

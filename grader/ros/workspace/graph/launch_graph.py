@@ -9,6 +9,7 @@ from itertools import islice
 from typing import Any, Literal, NamedTuple, get_args
 
 from grader.base.source import Location
+from grader.ros.known.end_rows import OnlyMore
 from grader.ros.nodes.node_facts import EndpointKind, Qos
 
 GraphNodeKind = Literal["program", "component", "container", "controller"]
@@ -81,6 +82,7 @@ class GraphNode(NamedTuple):
     opens_more: str = ""  # why it may open more than its ends
     parameters: tuple[GivenValue, ...] = ()
     inside: str = ""  # the full name of the container or manager whose process it is in
+    opens_only: OnlyMore = ""
 
     @property
     def label(self) -> str:
@@ -172,7 +174,7 @@ def _connections(graph: LaunchGraph) -> Iterator[Connection]:
         for end in node.ends:
             others = asking.get((OPPOSITES[end.kind], end.name), ()) if end.is_offered else ()
             for other_number, other in others:
-                fault = _fault_between(end, other)
+                fault = fault_between(end, other)
                 doubt = end.doubt or other.doubt
                 if fault and doubt:
                     continue
@@ -182,7 +184,7 @@ def _connections(graph: LaunchGraph) -> Iterator[Connection]:
                 )
 
 
-def _fault_between(offered: GraphEnd, asked: GraphEnd) -> str:
+def fault_between(offered: GraphEnd, asked: GraphEnd) -> str:
     """Return why two ends do not connect; empty if they do, as far as is known."""
     if offered.type and asked.type and offered.type != asked.type:
         return f"{offered.type} is not {asked.type}"

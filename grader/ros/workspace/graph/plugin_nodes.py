@@ -68,7 +68,8 @@ def _plugin_node(
     ends = tuple(ends_of_row(row, node, NodeParameters(values, node), release))
     name = node.full_name(node.node_name) if node.node_name else ""
     program = f"{_PACKAGE}/{file}"
-    return GraphNode(name, program, "program", location, ends, doubt, row.opens_more)
+    made = GraphNode(name, program, "program", location, ends, doubt, row.opens_more)
+    return made._replace(opens_only=row.opens_only)
 
 
 def _text(plugin: Element, path: str) -> str:

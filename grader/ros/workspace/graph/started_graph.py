@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 from grader.base.errors import NotDecided
 from grader.base.source import Location
-from grader.ros.known.end_rows import nodes_of_launch_file, opened_ends
+from grader.ros.known.end_rows import OnlyMore, nodes_of_launch_file, opened_ends
 from grader.ros.known.package_rows import controller_row, program_row
 from grader.ros.known.parameter_rows import row_for
 from grader.ros.known.releases import Release
-from grader.ros.launch.launch_model import Launch, StartedNode
+from grader.ros.launch.launch_model import GivenParameters, Launch, PassedArguments, StartedNode
 from grader.ros.launch.node_parameters import NodeParameters, controllers_of
 from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.package.package import Package
@@ -27,6 +27,7 @@ from grader.ros.workspace.graph.launch_graph import (
     Unread,
     has_more_connections,
 )
+from grader.ros.workspace.graph.launched_transforms import transforms_in
 from grader.ros.workspace.graph.node_ends import ends_of
 from grader.ros.workspace.graph.opened_by_programs import ends_of_row, release_of, shown_type
 from grader.ros.workspace.graph.plugin_nodes import plugin_nodes
@@ -36,7 +37,6 @@ from grader.ros.workspace.graph.started_controllers import (
     defined_controllers,
     spawned_controllers,
 )
-from grader.ros.workspace.graph.transform_edges import edges_in
 from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
 from grader.ros.workspace.model.workspace import Workspace
 
@@ -117,7 +117,7 @@ def _nodes_of_program(making: _Making, node: StartedNode) -> Iterator[GraphNode]
     """Yield the nodes of a program: those of own code, each, or that of a known one."""
     workspace = making.workspace
     if workspace.package_of(node) is None:
-        yield _known_node(making, node, "program")
+        yield from _known_nodes(making, node, "program")
         return
     own_nodes = workspace.code.nodes_of(node)
     for facts in own_nodes:
@@ -203,10 +203,36 @@ def _different(given: NodeParameters, defaults: Mapping[str | None, object]) -> 
     return values
 
 
-def _known_node(
+def _known_nodes(
     making: _Making, node: StartedNode, kind: GraphNodeKind, inside: str = ""
+) -> Iterator[GraphNode]:
+    """Yield the node of a program of another package, and those that it holds in its process.
+
+    These are called as their own namespace: local_costmap/local_costmap.
+    """
+    outer = _known_node(making, node, kind, inside)
+    yield outer
+    row = opened_ends(node.package, node.executable)
+    for name in row.holds if row is not None else ():
+        held = node._replace(executable=name, node_name=name)
+        full = "" if node.namespace is None else node.full_name(f"{name}/{name}")
+        space = f"{(node.namespace or '').rstrip('/')}/{name}"
+        given_to = held._replace(namespace=space)
+        inner = _known_node(making, held, "program", outer.label, given_to)
+        yield inner._replace(name=full)
+
+
+def _known_node(
+    making: _Making,
+    node: StartedNode,
+    kind: GraphNodeKind,
+    inside: str = "",
+    given_to: StartedNode | None = None,
 ) -> GraphNode:
-    """Return a node of a program, or of a component, of another package."""
+    """Return a node of a program, or of a component, of another package.
+
+    `given_to` is what has its parameters, if that is in another namespace.
+    """
     row = opened_ends(node.package, node.executable)
     of_program = program_row(node.package, node.executable)
     name = node.node_name
@@ -216,10 +242,11 @@ def _known_node(
     ends: list[GraphEnd] = []
     parameters: list[GivenValue] = []
     opens_more = f"what {node.name} opens is not known"
+    only: OnlyMore = ""
     if row is not None:
-        opens_more = row.opens_more
+        opens_more, only = row.opens_more, row.opens_only
     try:
-        given = making.workspace.parameters.read(making.package, node, name or "")
+        given = making.workspace.parameters.read(making.package, given_to or node, name or "")
         if row is not None:
             ends += ends_of_row(row, named, given, making.release)
         if node.executable == _RVIZ:
@@ -234,10 +261,9 @@ def _known_node(
         if node.executable == _IMAGE_BRIDGE:
             ends += _bridged_images(named)
     except NotDecided:
-        opens_more = _TOO_MUCH
-    made = _graph_node(node, name, kind, inside)
-    shown, different = _shown(ends), tuple(parameters)
-    return made._replace(ends=shown, opens_more=opens_more, parameters=different)
+        opens_more, only = _TOO_MUCH, ""
+    made = _graph_node(node, name, kind, inside)._replace(opens_more=opens_more, opens_only=only)
+    return made._replace(ends=_shown(ends), parameters=tuple(parameters))
 
 
 def _ends_for_rules(making: _Making, node: StartedNode) -> Iterator[GraphEnd]:
@@ -297,7 +323,7 @@ def _components(making: _Making) -> Iterator[GraphNode]:
         if own_nodes:
             yield _own_node(making, node, own_nodes[0], "component", inside)
         else:
-            yield _known_node(making, node, "component", inside)
+            yield from _known_nodes(making, node, "component", inside)
 
 
 def _controllers(making: _Making) -> Iterator[GraphNode]:
@@ -359,12 +385,13 @@ def _controller(
     row = opened_ends(controller_row(kind).package or package, cls)
     ends: Sequence[GraphEnd] = ()
     opens_more = f"what {kind} opens is not known"
+    only: OnlyMore = ""
     if row is not None:
         located = node._replace(location=controller.location)
         ends = _shown([*ends_of_row(row, located, given, making.release)])
-        opens_more = row.opens_more
-    at = controller.location
-    return GraphNode(name, kind, "controller", at, tuple(ends), doubt, opens_more, (), inside)
+        opens_more, only = row.opens_more, row.opens_only
+    at, shown = controller.location, tuple(ends)
+    return GraphNode(name, kind, "controller", at, shown, doubt, opens_more, (), inside, only)
 
 
 def _included_programs(making: _Making, processes: list[EndedProcess]) -> Iterator[GraphNode]:
@@ -382,11 +409,18 @@ def _included_programs(making: _Making, processes: list[EndedProcess]) -> Iterat
                 passed.location,
                 remaps=tuple(included.remappings.items()),
                 node_name=included.name,
+                parameters=_parameters_passed(passed, included.parameters),
             )
             if _is_process(node):
                 processes.append(EndedProcess(included.node, node.location, _doubt_of(node)))
             else:
-                yield _known_node(making, node, "program")
+                yield from _known_nodes(making, node, "program")
+
+
+def _parameters_passed(passed: PassedArguments, name: str) -> tuple[GivenParameters, ...] | None:
+    """Return the parameter file that an include passes as an argument; None if it is not known."""
+    path = dict(passed.values).get(name) if name else None
+    return (GivenParameters(passed.location, path),) if path else None
 
 
 def _plugins(
@@ -404,17 +438,10 @@ def _transforms(making: _Making) -> Iterator[GraphTransform]:
     """Yield the transforms whose frames are known, each once."""
     first: dict[tuple[str, str, str], GraphTransform] = {}
     try:
-        for edge in edges_in(making.workspace, making.number):
-            if edge.is_known and edge.parent != edge.child:
-                transform = GraphTransform(
-                    edge.parent,
-                    edge.child,
-                    edge.by,
-                    edge.location,
-                    edge.is_static,
-                    edge.is_certain,
-                )
-                first.setdefault((edge.parent, edge.child, edge.by), transform)
+        for transform in transforms_in(making.workspace, making.number):
+            if transform.parent and transform.child and transform.parent != transform.child:
+                key = (transform.parent, transform.child, transform.by)
+                first.setdefault(key, transform)
     except NotDecided:
         return
     yield from first.values()

@@ -70,7 +70,7 @@ def edges_in(workspace: Workspace, launch: int) -> Iterator[Edge]:
         if package_row(node.package).publishes_transforms or node.frame_prefix != "":
             yield Edge("", "", launch, "program", False, node.executable, node.location)
     if publishers:
-        is_certain = any(not node.frame_prefix and _is_certain(node) for node in publishers)
+        is_certain = any(not node.frame_prefix and publishes_as_named(node) for node in publishers)
         yield from _edges_of_robots(workspace, launch, is_certain=is_certain)
     yield from _broadcast_by_controllers(workspace, launch)
 
@@ -81,7 +81,7 @@ def is_zero_rotation(node: StartedNode) -> bool:
     Its quaternion is 0 0 0 0.
     """
     is_static = (node.package, node.executable) == STATIC_PUBLISHER
-    return is_static and _is_certain(node) and has_zero_rotation(node)
+    return is_static and publishes_as_named(node) and has_zero_rotation(node)
 
 
 def _published_by(
@@ -94,7 +94,7 @@ def _published_by(
     elif program == STATIC_PUBLISHER:
         parent, child = frames_named(node)
         pose = static_pose(node)
-        is_certain = _is_certain(node) and not has_zero_rotation(node)
+        is_certain = publishes_as_named(node) and not has_zero_rotation(node)
         yield Edge(
             parent or "",
             child or "",
@@ -111,12 +111,12 @@ def _published_by(
         if transforms_of("/".join(program)):
             given = workspace.parameters.given_to(package, node)
             for parent, child in _broadcast("/".join(program), given):
-                is_certain = _is_certain(node)
+                is_certain = publishes_as_named(node)
                 by, at = node.executable, node.location
                 yield Edge(parent, child, launch, "program", is_certain, by, at)
 
 
-def _is_certain(node: StartedNode) -> bool:
+def publishes_as_named(node: StartedNode) -> bool:
     """Return whether a node is started for certain, and publishes on /tf."""
     if node.when is not True or node.namespace or node.remaps is None:
         return False
@@ -190,14 +190,14 @@ def _broadcast_by_gazebo(workspace: Workspace, launch: int, bridge: StartedNode)
         workspace.charge(_OF_ROBOT + len(plugins))
         for plugin in plugins:
             topic = (plugin.findtext("tf_topic") or "").strip().strip("/")
-            frames = _frames_of_system(plugin) if topic in topics else None
+            frames = frames_of_system(plugin) if topic in topics else None
             if frames is not None:
                 is_certain = bridge.when is True
                 by = f"the system {system_of(plugin)} of Gazebo"
                 yield Edge(*frames, launch, "Gazebo", is_certain, by, place(plugin))
 
 
-def _frames_of_system(plugin: Element) -> tuple[str, str] | None:
+def frames_of_system(plugin: Element) -> tuple[str, str] | None:
     """Return parent and child of the transform that a system of Gazebo publishes.
 
     The result is None if it does not name both.

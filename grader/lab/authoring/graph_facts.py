@@ -1,0 +1,103 @@
+"""The facts of what a reference connects after a launch: transforms, and ways of messages."""
+
+from collections.abc import Iterator, Sequence
+
+from grader.base.errors import NotDecided
+from grader.lab.authoring.facts import Fact
+from grader.lab.submission.submission import Submission
+from grader.ros.api import GraphNode, GraphTransform, join_launches
+from grader.ros.launch.launch_model import Launch
+from grader.ros.package.package import Package
+
+# Types of what sensors publish, and of what moves a robot.
+_OF_SENSORS = ("sensor_msgs/msg/", "nav_msgs/msg/Odometry")
+_OF_COMMANDS = (
+    "geometry_msgs/msg/Twist",
+    "geometry_msgs/msg/TwistStamped",
+    "ackermann_msgs/msg/",
+    "trajectory_msgs/msg/JointTrajectory",
+    "std_msgs/msg/Float64MultiArray",
+)
+_MAX_WAYS, _MAX_TRANSFORMS = 4, 12  # of one launch file
+
+
+class LaunchConnections:
+    """What a launch file of a reference connects, for the facts of its package."""
+
+    def __init__(self, submission: Submission, package: Package, path: str) -> None:
+        self._workspace = submission.workspace
+        self._graph = join_launches(self._workspace, [package.path(path)], ())
+        self._own_packages = tuple(f"{each.name}/" for each in submission.packages)
+
+    def facts(self) -> Iterator[Fact]:
+        """Yield the transforms and the ways of messages that certainly are there."""
+        for parent, child in list(self._published())[:_MAX_TRANSFORMS]:
+            fact = self._fact("publishes_transform", child, parent=parent, child=child)
+            yield fact._replace(title=f"{child!r} is published below {parent!r}")
+        for start, end in list(self._ways())[:_MAX_WAYS]:
+            fact = self._fact("connects", f"{start} {end}", **{"from": start, "to": end})
+            yield fact._replace(title=f"messages find a way from {start} to {end}")
+
+    def needed(self, launch: Launch, nodes: Sequence[str]) -> list[str]:
+        """Return the nodes that are needed for more than transforms, which have facts."""
+        by_program: dict[str, list[GraphTransform]] = {}
+        for transform in self._transforms():
+            by_program.setdefault(transform.by, []).append(transform)
+        replaced = set()
+        for node in launch.nodes:
+            sent = [transform.is_certain for transform in by_program.get(node.executable, [])]
+            is_own = self._workspace.package_of(node) is not None
+            # Of another program, what else it may publish is not known.
+            is_known = all(sent) if is_own else any(sent)
+            if sent and is_known and self._graph.is_for_transforms(node):
+                replaced.add(node.name)
+        return [name for name in nodes if name not in replaced]
+
+    def _fact(self, check: str, words: str, **arguments: str) -> Fact:
+        return Fact("", check, arguments, f"{words} {check}", package="")
+
+    def _transforms(self) -> list[GraphTransform]:
+        """Return the transforms, without those of the robots; none if that is too much work."""
+        of_robots = set()
+        try:
+            for robot in self._workspace.robots.known:
+                of_robots |= {joint.child for joint in robot.robot.joints}
+            transforms = self._graph.transforms()
+        except NotDecided:
+            return []
+        return [transform for transform in transforms if transform.child not in of_robots]
+
+    def _published(self) -> Iterator[tuple[str, str]]:
+        pairs: dict[tuple[str, str], None] = {}
+        for transform in self._transforms():
+            if transform.is_certain:
+                pairs[transform.parent, transform.child] = None
+        yield from pairs
+
+    def _ways(self) -> Iterator[tuple[str, str]]:
+        """Yield the topics between which own nodes take messages from other nodes to other ones."""
+        starts, ends = dict[str, None](), dict[str, None]()
+        nodes = self._graph.graph.nodes
+        own_nodes = [node for node in nodes if self._is_own(node)]
+        own_ends = [end for node in own_nodes for end in node.ends if not end.doubt]
+        read = {end.name for end in own_ends if end.kind == "subscription"}
+        sent = {end.name for end in own_ends if end.kind == "publisher"}
+        others = [end for node in nodes if not self._is_own(node) for end in node.ends]
+        read_by_others = {end.name for end in others if end.kind == "subscription"}
+        sent_by_others = {end.name for end in others if end.kind == "publisher"}
+        for end in own_ends:
+            is_sensed = end.name in sent_by_others or end.type.startswith(_OF_SENSORS)
+            is_command = end.name in read_by_others or end.type.startswith(_OF_COMMANDS)
+            if end.kind == "subscription" and is_sensed and end.name not in sent:
+                starts[end.name] = None
+            if end.kind == "publisher" and is_command and end.name not in read:
+                ends[end.name] = None
+        for start in starts:
+            for end_name in ends:
+                way = self._graph.find_way(start, end_name)
+                is_certain = way.arrives and not way.doubt
+                if is_certain and all(self._is_own(nodes[number]) for number in way.nodes):
+                    yield start, end_name
+
+    def _is_own(self, node: GraphNode) -> bool:
+        return node.program.startswith(self._own_packages) and not node.doubt

@@ -1,0 +1,300 @@
+"""Checks of the graph: what connects after launch files are launched, by whatever nodes.
+
+The graph is that of `grader graph`. What is not read, or known only at run time, leaves a
+criterion open where it may decide it.
+"""
+
+import re
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+from grader.base.errors import NotDecided, RubricError
+from grader.base.names import closest
+from grader.base.text import MAX_NAMED, enumerated, quoted
+from grader.lab.checks.check import About
+from grader.lab.checks.launching import RUNS, Launched, launch_together
+from grader.lab.checks.outcome import Outcome, failed, judged
+from grader.lab.submission.submission import Submission
+from grader.ros.package.package import Package
+
+if TYPE_CHECKING:
+    from grader.ros.api import EndpointKind, GraphEnd, GraphTransform, PlacedEnd
+
+_NAMED = {**RUNS, "topic": "no node opens a topic, service or action", "type": "a type differs"}
+ABOUT = {
+    "connects": About(("launch",), causes={**_NAMED, "way": "nodes are not connected"}),
+    "topic_has_type": About(("launch",), causes=_NAMED),
+    "reaches": About(("launch",), causes=_NAMED),
+    "publishes_transform": About(
+        ("launch",),
+        causes={
+            **RUNS,
+            "frame": "nothing publishes a frame",
+            "parent": "a frame has another parent",
+            "reversed": "parent and child are exchanged",
+        },
+    ),
+}
+_HIDDEN = ("/tf", "/tf_static", "/rosout", "/parameter_events")
+_SERVERS: "Sequence[EndpointKind]" = ("service", "action server")
+_CLIENTS: "Sequence[EndpointKind]" = ("client", "action client")
+_SENDS: "Sequence[EndpointKind]" = ("publisher",)
+_READS: "Sequence[EndpointKind]" = ("subscription",)
+_ENDS_OF_TOPIC = (*_SENDS, *_READS)
+
+
+def connects(
+    package: Package, submission: Submission, *, from_: str, to: str, launch: str | None = None
+) -> Outcome:
+    """Messages find a way from one topic to another one through nodes that are started, whatever
+    their names and their number.
+
+    A node passes on what it receives in all that it publishes: what its code does with it is not
+    examined. Goals of actions pass it on as well; a way through a service needs manual grading. It
+    does not matter what publishes the first topic, and reads the last one. RViz passes nothing on.
+
+    Args:
+        from: The topic where the way begins.
+        to: The topic where it ends.
+        launch: The name of the launch file; default: all launch files together.
+    """
+    start, end = _full_name(from_), _full_name(to)
+    for topic in (start, end):
+        if topic in _HIDDEN:
+            raise RubricError((f"connects follows no messages of {topic}",))
+    launched = launch_together(package, submission, launch)
+    way = launched.graph.find_way(start, end)
+    if not way.arrives:
+        return launched.failure or _fail_way(launched, start, end, way.nodes)
+    if way.doubt:
+        cause = "cannot determine statically whether messages find a way"
+        raise NotDecided(f"{cause} from {start} to {end}: {way.doubt}", cause)
+    names = tuple(launched.graph.graph.nodes[number].label for number in way.nodes)
+    message = f"messages go from {start} to {end} through {enumerated(names)}"
+    return judged(True, message, names)
+
+
+def topic_has_type(
+    package: Package,
+    submission: Submission,
+    *,
+    topic: str,
+    type: str,  # noqa: A002  a rubric calls it so
+    launch: str | None = None,
+) -> Outcome:
+    """A topic has this type in all nodes that are started, and one of them opens it.
+
+    Args:
+        topic: The topic.
+        type: Its type: sensor_msgs/msg/LaserScan.
+        launch: The name of the launch file; default: all launch files together.
+    """
+    name, wanted = _full_name(topic), _type_name(type)
+    if name in _HIDDEN:
+        raise RubricError((f"topic_has_type knows no types of {name}",))
+    launched = launch_together(package, submission, launch)
+    ends = launched.graph.ends(_ENDS_OF_TOPIC, name)
+    certain = [placed.end for placed in ends if not placed.doubt]
+    for end in certain:
+        if end.type != wanted:
+            message = f"{name} has the type {end.type}; it should be {wanted}"
+            return failed(message, end.location, cause="type")
+    if certain:
+        return judged(True, f"{name} has the type {wanted}", wanted, wanted)
+    _check_open(launched, f"{name} has the type {wanted}", ends, _ENDS_OF_TOPIC)
+    return launched.failure or _fail_absent(launched, _ENDS_OF_TOPIC, "opens", name)
+
+
+def reaches(
+    package: Package,
+    submission: Submission,
+    *,
+    service: str,
+    type: str | None = None,  # noqa: A002  a rubric calls it so
+    launch: str | None = None,
+) -> Outcome:
+    """A client and a server of a service or an action meet: nodes that are started have both, by
+    one name and with one type.
+
+    Args:
+        service: The service or the action.
+        type: Its type: std_srvs/srv/Trigger.
+        launch: The name of the launch file; default: all launch files together.
+    """
+    name, wanted = _full_name(service), _type_name(type or "")
+    launched = launch_together(package, submission, launch)
+    servers, clients = launched.graph.ends(_SERVERS, name), launched.graph.ends(_CLIENTS, name)
+    for server in servers:
+        for client in clients:
+            if not (server.doubt or client.doubt) and _do_meet(server.end, client.end, wanted):
+                nodes = (client.node.label, server.node.label)
+                return judged(True, f"{nodes[0]} calls {name}, which {nodes[1]} serves", nodes)
+    for verb, kinds, ends in (("serves", _SERVERS, servers), ("calls", _CLIENTS, clients)):
+        _check_open(launched, f"a node {verb} {name}", ends, kinds)
+    if launched.failure is not None:
+        return launched.failure
+    for verb, kinds, ends in (("serves", _SERVERS, servers), ("calls", _CLIENTS, clients)):
+        if not ends:
+            return _fail_absent(launched, kinds, verb, name)
+    return _fail_pair(name, servers[0].end, clients[0].end, wanted)
+
+
+def publishes_transform(
+    package: Package,
+    submission: Submission,
+    *,
+    parent: str,
+    child: str,
+    launch: str | None = None,
+) -> Outcome:
+    """A frame is published below another one by what is started: a node, a static publisher, a
+    controller, a bridge, or the joints of the robot. There may be frames between them.
+
+    Args:
+        parent: The frame above.
+        child: The frame below.
+        launch: The name of the launch file; default: all launch files together.
+    """
+    launched = launch_together(package, submission, launch)
+    above, below = parent.removeprefix("/"), child.removeprefix("/")
+    transforms = launched.graph.transforms()
+    certain = [transform for transform in transforms if transform.is_certain]
+    chain = _chain(certain, above, below)
+    if chain is not None:
+        by = tuple(dict.fromkeys(transform.by for transform in chain))
+        message = f"{below} is published below {above} by {enumerated(by)}"
+        return judged(True, message, by)
+    doubt = _doubt_of_transform(launched, transforms, above, below)
+    if doubt:
+        cause = "cannot determine statically which transforms are published"
+        raise NotDecided(f"{cause}: {doubt}", cause)
+    return launched.failure or _fail_transform(transforms, above, below)
+
+
+def _check_open(
+    launched: Launched, what: str, ends: "Sequence[PlacedEnd]", kinds: "Sequence[EndpointKind]"
+) -> None:
+    """Raise NotDecided if an end may be there that is not certain."""
+    doubts = [placed.doubt for placed in ends if placed.doubt]
+    if not ends:
+        doubts += launched.graph.why_more_ends(kinds)
+    if doubts:
+        message = f"cannot determine statically whether {what}: {doubts[0]}"
+        raise NotDecided(message, "cannot determine statically what the nodes open")
+
+
+def _fail_absent(
+    launched: Launched, kinds: "Sequence[EndpointKind]", verb: str, name: str
+) -> Outcome:
+    """Return that no node opens an end of these kinds, with a name that is like it."""
+    others = {}
+    for node in launched.graph.graph.nodes:
+        others.update({end.name: end for end in node.ends if end.kind in kinds})
+    message = f"no node {verb} {name}"
+    meant = closest(name, [*others])
+    if meant is None:
+        return failed(message, cause="topic")
+    guess = f"; there is {quoted(meant)}"
+    return failed(message, others[meant].location, detail=guess, cause="topic")
+
+
+def _doubt_of_transform(
+    launched: Launched, transforms: "Sequence[GraphTransform]", parent: str, child: str
+) -> str:
+    """Return why a frame may be published below another one; empty if it certainly is not."""
+    for transform in _chain(transforms, parent, child) or ():
+        if not transform.is_certain:
+            return f"whether {transform.by} publishes {transform.child} is not known"
+    unread = next(launched.graph.unread_transforms(), None)
+    return unread.reason if unread is not None else ""
+
+
+def _full_name(name: str) -> str:
+    return f"/{name.removeprefix('/')}"
+
+
+def _type_name(name: str) -> str:
+    return re.sub("[.:/]+", "/", name)
+
+
+def _do_meet(offered: "GraphEnd", asked: "GraphEnd", wanted: str) -> bool:
+    """Return whether a server and a client are of one kind and of one type, the wanted one."""
+    is_pair = offered.carrier == asked.carrier
+    return is_pair and offered.type == asked.type and wanted in ("", offered.type)
+
+
+def _fail_pair(name: str, offered: "GraphEnd", asked: "GraphEnd", wanted: str) -> Outcome:
+    """Return that a server and a client of one name differ, or have another type than wanted."""
+    if offered.type == asked.type and wanted:
+        message = f"{name} has the type {offered.type}; it should be {wanted}"
+    else:
+        message = f"{name} is served with {offered.type}, and called with {asked.type}"
+    at = asked.location if offered.type == wanted else offered.location
+    return failed(message, at, cause="type")
+
+
+def _fail_way(launched: Launched, start: str, end: str, reached: Sequence[int]) -> Outcome:
+    """Return that messages of a topic reach some nodes, and none of them publishes another one."""
+    nodes = launched.graph.graph.nodes
+    if not reached:
+        read = launched.graph.ends(_READS, start)
+        if not read:
+            return _fail_absent(launched, _READS, "subscribes to", start)
+        sent = launched.graph.ends(_SENDS, start)
+        message = f"what subscribes to {start} does not connect to what publishes it"
+        types = enumerated(dict.fromkeys(placed.end.type for placed in (*sent, *read)))
+        return failed(message, read[0].end.location, detail=f": {types}", cause="type")
+    for connection in launched.graph.faulty_connections():
+        if connection.from_node in reached:
+            message = f"messages of {start} do not find a way to {end}"
+            detail = f": {connection.name} does not connect, {connection.fault}"
+            at = connection.to_end.location
+            return failed(message, at, detail=detail, cause="type")
+    publishing = launched.graph.ends(_SENDS, end)
+    if not publishing:
+        return _fail_absent(launched, _SENDS, "publishes", end)
+    labels = [nodes[number].label for number in reached]
+    message = f"messages of {start} do not find a way to {end}"
+    names = enumerated([placed.node.label for placed in publishing], MAX_NAMED)
+    detail = f": they reach {enumerated(labels, MAX_NAMED)}, and {names} publishes {end}"
+    return failed(message, publishing[0].end.location, detail=detail, cause="way")
+
+
+def _chain(
+    transforms: "Iterable[GraphTransform]", parent: str, child: str
+) -> "list[GraphTransform] | None":
+    """Return the shortest row of transforms from a frame up to another one; None without."""
+    above: dict[str, list[GraphTransform]] = {}
+    for transform in transforms:
+        if transform.parent and transform.child:
+            above.setdefault(transform.child, []).append(transform)
+    chains: dict[str, list[GraphTransform]] = {child: []}
+    waiting = [child]
+    for frame in waiting:  # grows
+        for transform in above.get(frame, ()):
+            chain = [*chains[frame], transform]
+            if transform.parent == parent:
+                return chain
+            if transform.parent not in chains:
+                chains[transform.parent] = chain
+                waiting.append(transform.parent)
+    return None
+
+
+def _fail_transform(transforms: "Sequence[GraphTransform]", parent: str, child: str) -> Outcome:
+    """Return that a frame is not published below another one, and where it is instead."""
+    message = f"nothing publishes {child} below {parent}"
+    if _chain(transforms, child, parent):
+        reversed_ = next(each for each in transforms if each.child == parent)
+        detail = f": {reversed_.by} publishes {parent} below {child}"
+        return failed(message, reversed_.location, detail=detail, cause="reversed")
+    for transform in transforms:
+        if transform.child == child:
+            detail = f": {transform.by} publishes it below {transform.parent}"
+            return failed(message, transform.location, detail=detail, cause="parent")
+    meant = closest(child, [transform.child for transform in transforms])
+    for transform in transforms:
+        if transform.child == meant:
+            detail = f"; there is {quoted(meant)}"
+            return failed(message, transform.location, detail=detail, cause="frame")
+    return failed(message, cause="frame")

@@ -1,0 +1,113 @@
+"""The transforms that Python code gives to a broadcaster of tf2: which frame is in which one."""
+
+import ast
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.ros.nodes.message_uses import given_argument
+from grader.ros.nodes.node_facts import NamePart, NodeFrame, NodeTransform
+from grader.ros.nodes.python.endpoint_names import Bindings
+from grader.ros.python.constants import dotted
+
+SENDS = "sendTransform"
+_PARENT, _CHILD = "header.frame_id", "child_frame_id"
+_STATIC = "StaticTransformBroadcaster"
+_PARAMETERS = ("get_parameter", "declare_parameter")
+_Name = tuple[str | None, tuple[NamePart, ...]]
+
+
+class SendingMethod(NamedTuple):
+    """A method that sends transforms, and how what it names is read."""
+
+    node: ast.AST
+    of_class: ast.AST  # the class of the node, where attributes of self are set
+    bindings: Bindings
+    names: Callable[[ast.expr], Iterator[_Name]]  # that an expression may be
+    place: Callable[[ast.expr], Location]
+
+
+def sent_transforms(method: SendingMethod, call: ast.Call) -> Iterator[NodeTransform]:
+    """Yield the transforms that a call of sendTransform() sends; frames may be unknown."""
+    given = given_argument(call, 0, "transform")
+    items = given.elts if isinstance(given, ast.List | ast.Tuple) else [given]
+    assert isinstance(call.func, ast.Attribute)
+    broadcaster = method.bindings.values.get(dotted(call.func.value))
+    is_static = isinstance(broadcaster, ast.Call) and dotted(broadcaster.func).endswith(_STATIC)
+    for item in items:
+        parents = _names_set(method, call, item, _PARENT)
+        children = _names_set(method, call, item, _CHILD)
+        if len(parents) > 1 and len(children) > 1:  # a loop sets both
+            parents, children = [(None, ())], [(None, ())]
+        at = method.place(call)
+        for parent, parent_parts in parents:
+            for child, child_parts in children:
+                yield NodeTransform(
+                    NodeFrame("is above", parent, at, parent_parts),
+                    NodeFrame("publishes", child, at, child_parts),
+                    at,
+                    is_static=is_static,
+                    is_conditional=_is_decided_by_parameter(method, call),
+                )
+
+
+def _names_set(
+    method: SendingMethod, call: ast.Call, item: ast.expr | None, field: str
+) -> list[_Name]:
+    """Return the names to which a field of a transform is set before it is sent."""
+    value = _value_set(method, call, dotted(item), field) if item is not None else None
+    return [*method.names(value)] if value is not None else [(None, ())]
+
+
+def _value_set(method: SendingMethod, call: ast.Call, name: str, field: str) -> ast.expr | None:
+    """Return what a field of a transform is set to; None if that is not known.
+
+    Of several values the last one before the call counts, if no branch or loop decides it.
+    """
+    if not name:
+        return None
+    around = method.of_class if name.startswith("self.") else method.node
+    statements: list[ast.Assign] = []
+    for node in ast.walk(around):
+        if isinstance(node, ast.Assign) and f"{name}.{field}" in map(dotted, node.targets):
+            statements.append(node)
+    if not statements:
+        return _value_made(method.bindings.values.get(name), field)
+    if len(statements) == 1:
+        return statements[0].value
+    body: Sequence[ast.stmt] = getattr(method.node, "body", [])
+    before = [each for each in statements if each.lineno < call.lineno]
+    if before and all(each in body for each in statements):
+        return max(before, key=lambda each: each.lineno).value
+    return None
+
+
+def _value_made(made: ast.expr | None, field: str) -> ast.expr | None:
+    """Return what the call that makes a transform gives a field of it."""
+    value = made
+    for name in field.split("."):
+        if not isinstance(value, ast.Call):
+            return None
+        given = {keyword.arg: keyword.value for keyword in value.keywords}
+        value = given.get(name)
+    return value
+
+
+def _is_decided_by_parameter(method: SendingMethod, call: ast.Call) -> bool:
+    """Return whether a condition on a parameter decides whether a call is made."""
+    for node in ast.walk(method.node):
+        if isinstance(node, ast.If) and call in ast.walk(node):
+            tested = [node.test]
+            for inner in ast.walk(node.test):
+                bound = method.bindings.values.get(dotted(inner))
+                if bound is not None:
+                    tested.append(bound)
+            if any(map(_names_parameter, tested)):
+                return True
+    return False
+
+
+def _names_parameter(value: ast.expr) -> bool:
+    """Return whether an expression is made from a parameter of the node."""
+    inner = (node.attr for node in ast.walk(value) if isinstance(node, ast.Attribute))
+    return not set(_PARAMETERS).isdisjoint(inner)

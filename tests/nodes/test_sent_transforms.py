@@ -1,0 +1,162 @@
+"""The transforms that nodes give to a broadcaster are known with parent and child, or open."""
+
+import pytest
+
+from grader.ros.nodes.node_facts import NodeFacts, NodeTransform
+from tests.nodes.test_cpp_nodes import node_of as cpp_node_of
+from tests.nodes.test_nodes import nodes_of
+
+_CLASS = """
+import rclpy
+from geometry_msgs.msg import TransformStamped
+from rclpy.node import Node
+from std_msgs.msg import Header
+from tf2_ros import StaticTransformBroadcaster, TransformBroadcaster
+
+
+class Odometry(Node):
+    def __init__(self):
+        super().__init__('odometry')
+        self.declare_parameter('publish_tf', True)
+        self.is_on = self.get_parameter('publish_tf').value
+        self.sender = TransformBroadcaster(self)
+        self.static = StaticTransformBroadcaster(self)
+        self.kept = TransformStamped()
+        self.kept.header.frame_id = 'map'
+        self.kept.child_frame_id = 'odom'
+
+    def step(self, message):
+        t = TransformStamped()
+{}
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Odometry())
+"""
+_SET = "t.header.frame_id = 'odom'; t.child_frame_id = 'base'"
+_SEND = "self.sender.sendTransform(t)"
+_MADE = "u = TransformStamped(header=Header(frame_id='odom'), child_frame_id='base')"
+_UNKNOWN = [(None, None)]
+PYTHON = [
+    (f"{_SET}\n{_SEND}", [("odom", "base")]),
+    (f"{_SET}\nself.sender.sendTransform([t])", [("odom", "base")]),
+    (f"{_SET}\nself.sender.sendTransform(transform=t)", [("odom", "base")]),
+    ("self.sender.sendTransform([self.kept])", [("map", "odom")]),
+    (
+        f"{_MADE}\nself.sender.sendTransform(u)",
+        [("odom", "base")],
+    ),
+    ("u = TransformStamped(child_frame_id='base')\nself.sender.sendTransform(u)", [(None, "base")]),
+    (
+        "for name in ['a', 'b']:\n    t.header.frame_id = 'odom'; t.child_frame_id = name\n    "
+        + _SEND,
+        [("odom", "a"), ("odom", "b")],
+    ),
+    (
+        "for name in ['a', 'b']:\n    t.header.frame_id = name; t.child_frame_id = name\n    "
+        + _SEND,
+        _UNKNOWN,
+    ),
+    (
+        f"{_SET}\n{_SEND}\nt.header.frame_id = 'base'; t.child_frame_id = 'arm'\n{_SEND}",
+        [("odom", "base"), ("base", "arm")],
+    ),
+    (f"{_SET}\nif message:\n    t.child_frame_id = 'other'\n{_SEND}", [("odom", None)]),
+    (f"{_SEND}\n{_SET}\nt.child_frame_id = 'arm'", [("odom", None)]),
+    ("self.sender.sendTransform(made(message))", _UNKNOWN),
+    ("self.sender.sendTransform(*message)", _UNKNOWN),
+    (f"t.header = message.header\n{_SEND}", _UNKNOWN),
+]
+
+
+def frames(node: NodeFacts) -> list[tuple[str | None, str | None]]:
+    """Return parent and child of the transforms of a node."""
+    return [(sent.parent.name, sent.child.name) for sent in node.transforms]
+
+
+def sent_by(statements: str) -> tuple[NodeTransform, ...]:
+    """Return the transforms of a node in Python whose method has these statements."""
+    indented = "".join(f"        {line}\n" for line in statements.splitlines())
+    [node] = nodes_of(_CLASS.format(indented)).nodes
+    return node.transforms
+
+
+@pytest.mark.parametrize(("statements", "expected"), PYTHON)
+def test_transforms_of_python(
+    statements: str, expected: list[tuple[str | None, str | None]]
+) -> None:
+    """What a field is set to before it is sent counts, if nothing decides it at run time."""
+    sent = sent_by(statements)
+    assert [(each.parent.name, each.child.name) for each in sent] == expected
+
+
+CONDITIONS = [
+    (_SEND, False),
+    (f"if message:\n    {_SEND}", False),
+    (f"if self.is_on and message:\n    {_SEND}", True),
+    (
+        f"if not self.get_parameter('publish_tf').value:\n    return\nif message:\n    {_SEND}",
+        False,
+    ),
+    (f"if self.get_parameter('publish_tf').value:\n    {_SEND}", True),
+]
+
+
+@pytest.mark.parametrize(("statements", "is_conditional"), CONDITIONS)
+def test_a_parameter_may_switch_a_transform_off(statements: str, *, is_conditional: bool) -> None:
+    """Another condition, as whether a message is there, holds sooner or later."""
+    [sent] = sent_by(f"{_SET}\n{statements}")
+    assert (sent.is_conditional, sent.is_static) == (is_conditional, False)
+
+
+def test_a_static_broadcaster_is_known() -> None:
+    """By the class that makes it."""
+    [sent] = sent_by(f"{_SET}\nself.static.sendTransform(t)")
+    assert sent.is_static
+
+
+_STAMPED = "geometry_msgs::msg::TransformStamped t;"
+_CPP_SET = 't.header.frame_id = "odom"; t.child_frame_id = "base";'
+_CPP_SEND = "sender_->sendTransform(t);"
+_CPP_MEMBERS = """
+std::unique_ptr<tf2_ros::TransformBroadcaster> sender_;
+std::shared_ptr<tf2_ros::StaticTransformBroadcaster> static_;
+geometry_msgs::msg::TransformStamped kept_;
+void set() { kept_.header.frame_id = "map"; kept_.child_frame_id = "odom"; }
+"""
+CPP = [
+    (_STAMPED + _CPP_SET + _CPP_SEND, [("odom", "base")]),
+    ("sender_->sendTransform(kept_);", [("map", "odom")]),
+    (_STAMPED + _CPP_SET + 't.child_frame_id = "arm";' + _CPP_SEND, [("odom", None)]),
+    (
+        _STAMPED + 'fill(t.child_frame_id); t.header.frame_id = "odom";' + _CPP_SEND,
+        [("odom", None)],
+    ),
+    ("sender_->sendTransform(made());", _UNKNOWN),
+    ("sendTransform(kept_);", [("map", "odom")]),
+]
+
+
+@pytest.mark.parametrize(("statements", "expected"), CPP)
+def test_transforms_of_cpp(statements: str, expected: list[tuple[str | None, str | None]]) -> None:
+    """What is set once in the function counts, else what is set once elsewhere."""
+    assert frames(cpp_node_of(statements, members=_CPP_MEMBERS)) == expected
+
+
+CPP_CONDITIONS = [
+    ("if (ready()) { %s }", False),
+    ('if (get_parameter("publish_tf").as_bool()) { %s }', False),
+    ('bool on = declare_parameter("publish_tf", true); if (on) { %s }', True),
+]
+
+
+@pytest.mark.parametrize(("statements", "is_conditional"), CPP_CONDITIONS)
+def test_a_parameter_may_switch_a_transform_of_cpp_off(
+    statements: str, *, is_conditional: bool
+) -> None:
+    """Where a variable has the value of the parameter."""
+    [sent] = cpp_node_of(
+        _STAMPED + _CPP_SET + statements % "static_->sendTransform(t);", members=_CPP_MEMBERS
+    ).transforms
+    assert (sent.is_conditional, sent.is_static) == (is_conditional, True)
