@@ -61,6 +61,7 @@ from grader.ros.workspace.rules.srdf import srdf_facts
 from grader.ros.workspace.rules.topic_wiring import topic_wiring_facts
 from grader.ros.workspace.rules.unmet_topics import unmet_topic_facts
 from grader.ros.workspace.rules.unused import unused_files
+from grader.ros.workspace.rules.used_libraries import library_facts
 from grader.ros.workspace.rules.wheel_values import wheel_value_facts
 
 _READERS = (
@@ -106,6 +107,7 @@ _READERS = (
     list_facts,
     header_facts,
     mass_facts,
+    library_facts,
 )
 
 

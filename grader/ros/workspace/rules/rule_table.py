@@ -84,6 +84,7 @@ _NOWHERE = _warning("REF032", "Package that neither the workspace nor a release 
 _NO_KEY = _warning("REF033", "Name that rosdep does not know")
 _UNKNOWN_KEY = Kind("REF034", "Name that may be no key of rosdep", severity="note", effect="other")
 _NOT_COMPILED = _error("REF035", "C++ file that does not compile")
+_BROUGHT = Kind("REF036", "Library that other packages install", severity="note", effect="other")
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -403,6 +404,14 @@ ROSDEP_KEY = Rule(
     _NO_KEY,
     _UNKNOWN_KEY,
     "rosdep knows the dependencies in package.xml that the workspace does not have.",
+)
+
+LIBRARY_DECLARED = Rule(
+    "library-declared",
+    "keys",
+    _NO_DEPENDENCY,
+    _BROUGHT,
+    "package.xml declares the libraries of Python and C++ that the files of the package use.",
 )
 
 _service = _rules_of("services", _NO_SERVICE, _SIMILAR)
