@@ -43,6 +43,7 @@ from grader.ros.workspace.rules.names import (
     uncompared,
 )
 from grader.ros.workspace.rules.namespaces import namespace_facts
+from grader.ros.workspace.rules.nested_packages import nested_package_facts
 from grader.ros.workspace.rules.one_machine import machine_facts
 from grader.ros.workspace.rules.parameter_lists import list_facts
 from grader.ros.workspace.rules.parameters import parameter_facts
@@ -108,6 +109,7 @@ _READERS = (
     header_facts,
     mass_facts,
     library_facts,
+    nested_package_facts,
 )
 
 

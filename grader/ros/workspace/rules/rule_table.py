@@ -85,6 +85,7 @@ _NO_KEY = _warning("REF033", "Name that rosdep does not know")
 _UNKNOWN_KEY = Kind("REF034", "Name that may be no key of rosdep", severity="note", effect="other")
 _NOT_COMPILED = _error("REF035", "C++ file that does not compile")
 _BROUGHT = Kind("REF036", "Library that other packages install", severity="note", effect="other")
+_NOT_BUILT = Kind("REF037", "Package that colcon does not find", severity="note", effect="other")
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -644,6 +645,13 @@ OWN_HEADER = _build(
 )
 HEADER_INSTALLED = _build(
     "header-installed", sentence="A build installs the headers that other packages include."
+)
+PACKAGE_FOUND = Rule(
+    "package-found",
+    "builds",
+    _NOT_BUILT,
+    _NOT_BUILT,
+    "No package is below the folder of another one, where colcon does not look.",
 )
 
 # What is wrong where a name of a kind is not defined.
