@@ -11,6 +11,7 @@ from grader.ros.package.package import Package
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.arguments import argument_facts
 from grader.ros.workspace.rules.bridges import bridge_facts
+from grader.ros.workspace.rules.classic_plugins import classic_plugin_facts
 from grader.ros.workspace.rules.code import code_facts
 from grader.ros.workspace.rules.companions import companion_facts
 from grader.ros.workspace.rules.component_names import component_facts
@@ -110,6 +111,7 @@ _READERS = (
     mass_facts,
     library_facts,
     nested_package_facts,
+    classic_plugin_facts,
 )
 
 

@@ -618,6 +618,10 @@ CREATE_OPTION = _word(
 REMAPPED_TOPIC = _word(
     "remapped-topic", sentence="A remapping of a well-known program names a topic that it has."
 )
+CLASSIC_PLUGIN = _word(
+    "classic-plugin",
+    sentence="The plugins of Gazebo Classic and their elements are those of ROS 2.",
+)
 
 _message = _rules_of("messages", _NO_MESSAGE)
 MESSAGE_HEADER = _message(
