@@ -57,6 +57,7 @@ from grader.ros.workspace.rules.received_messages import received_message_facts
 from grader.ros.workspace.rules.remapped_names import remapping_facts
 from grader.ros.workspace.rules.renamed_nodes import renamed_node_facts
 from grader.ros.workspace.rules.rule_table import DEFINED, AnyFamily
+from grader.ros.workspace.rules.simulated_nodes import simulated_node_facts
 from grader.ros.workspace.rules.simulated_topics import simulated_topic_facts
 from grader.ros.workspace.rules.spawners import spawner_facts
 from grader.ros.workspace.rules.srdf import srdf_facts
@@ -112,6 +113,7 @@ _READERS = (
     library_facts,
     nested_package_facts,
     classic_plugin_facts,
+    simulated_node_facts,
 )
 
 

@@ -86,6 +86,9 @@ _UNKNOWN_KEY = Kind("REF034", "Name that may be no key of rosdep", severity="not
 _NOT_COMPILED = _error("REF035", "C++ file that does not compile")
 _BROUGHT = Kind("REF036", "Library that other packages install", severity="note", effect="other")
 _NOT_BUILT = Kind("REF037", "Package that colcon does not find", severity="note", effect="other")
+_OTHER_TIME = Kind(
+    "REF038", "Node beside a simulation without its time", severity="note", effect="other"
+)
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -566,6 +569,13 @@ CLOCK_PUBLISHED = _companion(
     "clock-published", sentence="Something publishes the clock of nodes with use_sim_time."
 )
 SIMULATION_TIME = _companion("simulation-time", sentence="The nodes of a simulation use its time.")
+SIMULATED_NODE = Rule(
+    "simulated-node",
+    "wiring",
+    _OTHER_TIME,
+    _OTHER_TIME,
+    "The nodes that a launch file starts beside Gazebo use its time.",
+)
 CONTAINER_STARTED = _companion(
     "container-started", sentence="The container of a component is started."
 )
@@ -612,17 +622,16 @@ SRDF_ROBOT = _moveit("srdf-robot", sentence="An SRDF names its robot.")
 SRDF_GROUP = _moveit("srdf-group", sentence="A group of an SRDF is not empty.")
 
 _word = _rules_of("words", _NO_WORD)
+CLASSIC_PLUGIN = _word(
+    "classic-plugin",
+    sentence="The plugins of Gazebo Classic and their elements are those of ROS 2.",
+)
 CREATE_OPTION = _word(
     "create-option", sentence="The program that creates a robot in Gazebo has the given options."
 )
 REMAPPED_TOPIC = _word(
     "remapped-topic", sentence="A remapping of a well-known program names a topic that it has."
 )
-CLASSIC_PLUGIN = _word(
-    "classic-plugin",
-    sentence="The plugins of Gazebo Classic and their elements are those of ROS 2.",
-)
-
 _message = _rules_of("messages", _NO_MESSAGE)
 MESSAGE_HEADER = _message(
     "message-header", sentence="The messages of a filter or synchroniser have a header."
@@ -647,9 +656,6 @@ _build = _rules_of("builds", _NOT_COMPILED)
 OWN_HEADER = _build(
     "own-header", sentence="The headers of a package that a compiled file includes exist."
 )
-HEADER_INSTALLED = _build(
-    "header-installed", sentence="A build installs the headers that other packages include."
-)
 PACKAGE_FOUND = Rule(
     "package-found",
     "builds",
@@ -657,7 +663,9 @@ PACKAGE_FOUND = Rule(
     _NOT_BUILT,
     "No package is below the folder of another one, where colcon does not look.",
 )
-
+HEADER_INSTALLED = _build(
+    "header-installed", sentence="A build installs the headers that other packages include."
+)
 # What is wrong where a name of a kind is not defined.
 DEFINED: Mapping[DefinedKind, Rule] = {
     "frame": _FRAME_DEFINED,
