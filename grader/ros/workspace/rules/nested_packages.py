@@ -7,7 +7,7 @@ from grader.ros.package.finding import IGNORING
 from grader.ros.package.package import MANIFEST
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, warning
-from grader.ros.workspace.rules.rule_table import PACKAGE_FOUND
+from grader.ros.workspace.rules.rule_table import PACKAGE_NESTED
 from grader.ros.workspace.rules.used_packages import OF_TESTS
 
 
@@ -31,4 +31,4 @@ def nested_package_facts(workspace: Workspace) -> Iterator[Fact]:
                     f"the package in {folder} is in the folder of the package {package.name!r}, "
                     "where colcon does not look: it is not built; put it beside the other one"
                 )
-                yield warning(PACKAGE_FOUND, message, Location(path, 1, 1))
+                yield warning(PACKAGE_NESTED, message, Location(path, 1, 1))

@@ -656,8 +656,8 @@ _build = _rules_of("builds", _NOT_COMPILED)
 OWN_HEADER = _build(
     "own-header", sentence="The headers of a package that a compiled file includes exist."
 )
-PACKAGE_FOUND = Rule(
-    "package-found",
+PACKAGE_NESTED = Rule(
+    "package-nested",
     "builds",
     _NOT_BUILT,
     _NOT_BUILT,
