@@ -24,6 +24,7 @@ from grader.ros.nodes.python.action_faults import (
     goals_without_state,
 )
 from grader.ros.nodes.python.called_functions import CalledFunctions, imported_names
+from grader.ros.nodes.python.log_calls import wrong_log_calls
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, is_passive
 from grader.ros.python.constants import binds_unseen, dotted, last_name
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
@@ -117,6 +118,7 @@ def code_faults(
     yield from search.waiting_callbacks()
     yield from search.of_programs()
     yield from _wrong_calls(module, releases or RELEASES)
+    yield from wrong_log_calls(module.code, module.parts)
     yield from search.of_actions()
 
 

@@ -56,6 +56,7 @@ from grader.ros.workspace.rules.rate_values import rate_facts
 from grader.ros.workspace.rules.received_messages import received_message_facts
 from grader.ros.workspace.rules.remapped_names import remapping_facts
 from grader.ros.workspace.rules.renamed_nodes import renamed_node_facts
+from grader.ros.workspace.rules.repeated_interfaces import repeated_interface_facts
 from grader.ros.workspace.rules.rule_table import DEFINED, AnyFamily
 from grader.ros.workspace.rules.simulated_nodes import simulated_node_facts
 from grader.ros.workspace.rules.simulated_topics import simulated_topic_facts
@@ -114,6 +115,7 @@ _READERS = (
     nested_package_facts,
     classic_plugin_facts,
     simulated_node_facts,
+    repeated_interface_facts,
 )
 
 

@@ -185,6 +185,9 @@ CONTROLLER_INTERFACE = _controller(
 CONTROLLER_HARDWARE = _controller(
     "controller-hardware", sentence="A robot with a controller manager has <ros2_control>."
 )
+INTERFACE_ONCE = _controller(
+    "interface-once", sentence="A robot has each command interface in one <ros2_control> only."
+)
 MIMIC_COMMAND = _controller(
     "mimic-command", sentence="A joint that mimics another one has no command interface."
 )
