@@ -13,7 +13,7 @@ from grader.ros.workspace.rules.rule_table import LIBRARY_DECLARED
 from grader.ros.workspace.rules.used_packages import imported_modules
 
 # What differs between the names of one library in keys, in pip and in apt.
-_AROUND = re.compile(r"^(?:python3?-|py(?=[a-z])|lib)|(?:-(?:dev|all-dev|pip|python|core))+$")
+_AROUND = re.compile(r"^(?:python3?-)?(?:py(?=[a-z])|lib)?|(?:-(?:dev|all-dev|pip|python|core))+$")
 
 
 class _LibraryUse(NamedTuple):
