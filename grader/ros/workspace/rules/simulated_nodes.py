@@ -41,7 +41,8 @@ def simulated_node_facts(workspace: Workspace) -> Iterator[Fact]:
         late = []
         for node in launch.nodes:
             is_own = is_mixed and workspace.package_of(node) is not None
-            is_meant = (is_own or _has_time(node)) and node.package not in (*_SIMULATIONS, BRIDGE)
+            has_time = node.executable in _WITH_TIME or package_row(node.package).compares_time
+            is_meant = (is_own or has_time) and node.package not in (*_SIMULATIONS, BRIDGE)
             if is_meant and node.location not in seen and _is_untold(node, told):
                 late.append(node)
         seen.update(node.location for node in late)
@@ -63,11 +64,6 @@ def _starts_simulation(launch: Launch) -> bool:
         if folder == "share" and inside.partition("/")[0] in _SIMULATIONS and passed.when is True:
             return True
     return False
-
-
-def _has_time(node: StartedNode) -> bool:
-    """Return whether a well-known node compares or publishes times."""
-    return node.executable in _WITH_TIME or package_row(node.package).compares_time
 
 
 def _is_untold(node: StartedNode, told: Collection[Location]) -> bool:

@@ -169,7 +169,7 @@ def _imported(
             yield name, imported.location
 
 
-class ImportedModule(NamedTuple):
+class _ImportedModule(NamedTuple):
     """A module that a Python file imports, which is none of its package."""
 
     name: str
@@ -178,7 +178,7 @@ class ImportedModule(NamedTuple):
     is_installed: bool  # whether a file imports it that a build installs, or a launch file
 
 
-def imported_modules(workspace: Workspace, package: Package) -> Iterator[ImportedModule]:
+def imported_modules(workspace: Workspace, package: Package) -> Iterator[_ImportedModule]:
     """Yield the modules that the Python files of a package import, as far as names say."""
     modules = set()  # of the package, as far as their names say
     for path in package.tree.files:
@@ -194,7 +194,7 @@ def imported_modules(workspace: Workspace, package: Package) -> Iterator[Importe
         for match in _IMPORT.finditer(source.text):
             for name, offset in _modules_of(match):
                 if name not in modules:
-                    yield ImportedModule(name, source.at(offset), is_launch, is_part)
+                    yield _ImportedModule(name, source.at(offset), is_launch, is_part)
 
 
 def _is_code(name: str) -> bool:
