@@ -126,7 +126,7 @@ def what(page: str) -> str:
 def test_criteria_that_are_open_for_one_reason_are_one_item(review: Review) -> None:
     """Of one student, as those that need the size, the build or the package; each question is an item of its own."""
     shown = {key for key in addresses(review) if not key[1].startswith(("answer", "evidence"))}
-    assert shown >= {("Ada", "urdf-loads"), ("Ben", "setup-imports"), ("Zebulon", "package-nested")}
+    assert shown >= {("Ada", "urdf-loads"), ("Ben", "setup-imports"), ("Zebulon", "package-found")}
     assert (
         [name for name, _ in shown].count("Ada")
         == [name for name, _ in shown].count("Zebulon")
@@ -149,7 +149,7 @@ def test_a_robot_is_seen_with_the_lines_that_decide(review: Review) -> None:
     build = review.get(found["Ben", "setup-imports"]).text
     assert re.search(r'class="line-number">\d+</span>files = <mark>os\.popen</mark>', build)
     assert "side (from -y)" in build
-    none = review.get(found["Zebulon", "package-nested"]).text
+    none = review.get(found["Zebulon", "package-found"]).text
     assert "side (from -y)" in none and 'class="file"' not in none
     assert none.count("<figure>") == 1
 

@@ -48,7 +48,7 @@ _WAITING = """
 @pytest.mark.parametrize(
     ("rubric", "end", "old", "new", "lost"),
     [
-        (LAB6, "package.xml", _EXPORT, "<build_type>ament_python</build_type>", ["package-nested"]),
+        (LAB6, "package.xml", _EXPORT, "<build_type>ament_python</build_type>", ["package-found"]),
         (LAB6, "launch.py", "package='rviz2'", "package='rvizz2'", ["launch-nodes"]),
         (LAB6, "launch.py", "executable='rviz2'", "executable='rvizz2'", ["launch-nodes"]),
         (LAB6, "launch.py", "executable='rviz2'", "executable='turtle'", ["launch-nodes"]),

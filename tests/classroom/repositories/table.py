@@ -243,7 +243,7 @@ ROWS = (
             f"{SRC}/{URDF}",
             package=SRC,
             package_name="hawthorn_robot",
-            lost=("package-nested",),
+            lost=("package-found",),
             unknown=("launch-nodes", "launch-finds-files"),
         ),
     ),
@@ -484,7 +484,7 @@ ROWS = (
             package=SRC,
             installed_as="my_robots",
             lost=(
-                "package-nested",
+                "package-found",
                 "setup-installs-urdf",
                 "setup-installs-launch",
                 "setup-installs-rviz",

@@ -138,7 +138,7 @@ def _check(row: Row, work: Work, report: Report, alone: Report) -> None:
             it["files"] or it["possible"] for it in report["evidence"]
         )
         expected_of_package = ("pending", {"pending"}) if has_evidence else ("failed", {"skipped"})
-        assert (task2.pop("package-nested"), set(task2.values())) == expected_of_package
+        assert (task2.pop("package-found"), set(task2.values())) == expected_of_package
     else:
         assert {name for name, status in task2.items() if status == "failed"} == set(work.lost)
         assert {name for name, status in task2.items() if status != "passed"} == {
