@@ -195,15 +195,19 @@ def command_interfaces(
 
 
 def state_interfaces(robots: Sequence[KnownRobot]) -> Mapping[str, frozenset[str]]:
-    """Return the state interfaces of the joints of hardware that has those that are listed."""
+    """Return the state interfaces of the joints of hardware that has those that are listed.
+
+    Joints without any are not among them.
+    """
     interfaces: dict[str, frozenset[str]] = {}
     for robot in robots:
         for system in robot.systems:
             plugin = system.findtext("hardware/plugin", "").strip()
             for joint in system.iterchildren("joint") if plugin in _LISTED_HARDWARE else ():
-                name, added = joint.get("name", ""), joint.iterchildren("state_interface")
-                before = interfaces.get(name, frozenset[str]())
-                interfaces[name] = before.union(each.get("name", "") for each in added)
+                name = joint.get("name", "")
+                added = [each.get("name", "") for each in joint.iterchildren("state_interface")]
+                if added:
+                    interfaces[name] = interfaces.get(name, frozenset()).union(added)
     return interfaces
 
 

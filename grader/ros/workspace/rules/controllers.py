@@ -296,7 +296,7 @@ def _no_state(
             name = joint.text or ""
             if name in offered and kind.text not in offered[name]:
                 lacking.append(name)
-        if lacking and not may_be_offered(workspace, kind.text or ""):
+        if lacking and not may_be_offered(workspace, kind.text or "", "state_interface"):
             text = (
                 f"{controller.name} needs the state interface {lacking[0]}/{kind.text}, which "
                 "<ros2_control> does not have"
