@@ -176,13 +176,13 @@ def rules_in_public() -> Iterator[str]:
     others = [f"`{name}`" for name in of_errors if name not in found]
     yield from ("", f"These rules found none: {enumerated(others)}.", "")
     newer = tomllib.loads(NEWER_RULES.read_text(encoding="utf-8"))
-    count = newer["workspaces"]
-    yield from (f"Newer rules, also their warnings and notes, in {count} workspaces:", "")
-    yield from ("| rule | true | false |", "|---|---|---|")
+    yield from ("Newer rules, also their warnings and notes:", "")
+    yield from ("| rule | workspaces | true | false |", "|---|---|---|---|")
     for rule in newer["rule"]:
         name = rule["name"]
         link = "problems.md" if name.isupper() else f"problems.md#{name}"
-        yield f"| [`{name}`]({link}) | {rule['true']} | {rule['false']} |"
+        count = rule.get("workspaces", newer["workspaces"])
+        yield f"| [`{name}`]({link}) | {count} | {rule['true']} | {rule['false']} |"
     yield ""
     yield from ("| workspace | commit | errors |", "|---|---|---|")
     for workspace in workspaces:

@@ -161,16 +161,16 @@ WEIGHTS = {
     "ros.cpp": 13_000,  # errors of the grammar that leave open one statement only
     "ros.installation": 32_650,  # the packages that CMake finds, tests, expressions that are not closed; names of program files, targets of tests and of other projects; what stops a build from a release on; functions for what was branches of long ones
     "ros.interfaces": 4_400,  # since and until when there is a type; functions for the checks of one default
-    "ros.known": 10_250,  # nodes that programs hold; the packages that are released; when each table was read, and the last release that was read for it; rows of what programs open, for graphs
+    "ros.known": 10_300,  # keys of libraries, elements of Gazebo Classic; the packages that are released; when each table was read, and the last release that was read for it; rows of what programs open, for graphs
     "ros.launch": 46_000,  # what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing; components as nodes
     "ros.log": 3_800,
     "ros.mesh": 4_300,
-    "ros.nodes": 60_600,  # the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions
+    "ros.nodes": 61_550,  # the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions
     "ros.package": 27_900,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
     "ros.python": 28_950,  # the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
-    "ros.workspace": 134_600,  # ways of messages, and transforms of code, for checks; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches; the graph of a launch file
+    "ros.workspace": 138_450,  # ways of messages, and transforms of code, for checks; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches; the graph of a launch file
     "ros.xacro": 28_600,  # xacro:attribute, letters outside of ASCII; functions that do one thing
     "ros.xml": 13_400,  # the attributes of broken tags, end tags of macros, the attributes of newer versions of URDF
     "": 400,

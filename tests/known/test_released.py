@@ -63,6 +63,15 @@ def test_keys_of_rosdep() -> None:
     assert known.issuperset(rosdep_words().instead.values())
 
 
+def test_keys_of_libraries() -> None:
+    """Modules and libraries have keys, and what installs one is a package."""
+    words = rosdep_words()
+    of_libraries = {*words.modules.values(), *words.libraries.values()}
+    assert rosdep_keys() >= of_libraries >= words.brought.keys()
+    for packages in words.brought.values():
+        assert packages <= {*released_packages()}
+
+
 def _git(folder: Path, *arguments: str) -> None:
     identity = ("-c", "user.name=Kim", "-c", "user.email=kim@example.org")
     subprocess.run(["git", *identity, *arguments], cwd=folder, check=True, capture_output=True)

@@ -487,13 +487,15 @@ def test_options_that_create_does_not_have_are_named() -> None:
     launch = _LAUNCH.replace(given, f"{given}, {options}")
     assert launch != _LAUNCH
     found = agreement_of({**_FILES, "scout/scout.launch.py": launch})
-    assert [it.message for it in found.mismatches] == [
+    messages = [it.message for it in found.mismatches if it.rule.name == "create-option"]
+    assert messages == [
         "create has no option -entity, and ignores it; did you mean -name?",
         "create has no option -nam, and ignores it; did you mean -name?",
     ]
     assert not any(it.is_certain for it in found.mismatches)
     unknown = _LAUNCH.replace(given, f"{given}, unknown(), '-entity'")
-    assert agreement_of({**_FILES, "scout/scout.launch.py": unknown}).mismatches == ()
+    mismatches = agreement_of({**_FILES, "scout/scout.launch.py": unknown}).mismatches
+    assert [it for it in mismatches if it.rule.name == "create-option"] == []
 
 
 _FRAMES = "<frame_id>odom</frame_id><child_frame_id>base_link</child_frame_id>"
@@ -533,7 +535,8 @@ def test_a_bridge_publishes_transforms_of_gazebo() -> None:
 def test_a_sensor_without_a_topic_is_a_warning() -> None:
     """Gazebo makes a long name for it; a model that is not submitted may still publish the short one."""
     robot = _ROBOT.replace("<topic>imu</topic>", "")
-    [found] = agreement_of({**_FILES, "scout/scout.urdf": robot}).mismatches
+    mismatches = agreement_of({**_FILES, "scout/scout.urdf": robot}).mismatches
+    [found] = [it for it in mismatches if it.rule.name != "simulated-node"]
     assert found.message == (
         "nothing publishes 'imu' in Gazebo: the sensor 'imu' has no <topic> (scout/scout.urdf:5)"
     )

@@ -63,6 +63,15 @@ class _SensorWord(NamedTuple):
         )
 
 
+class _ClassicRow(NamedTuple):
+    """What plugins of Gazebo Classic had in ROS 1, with what they have in ROS 2."""
+
+    plugins: frozenset[str]  # of ROS 2, without what the names of their files have in common
+    of_sensors: frozenset[str]  # those of them that sensors have
+    elements: Mapping[str, str]
+    libraries: Mapping[str, str]
+
+
 class Gazebo(NamedTuple):
     """The words of Gazebo in robots, models and worlds."""
 
@@ -76,6 +85,7 @@ class Gazebo(NamedTuple):
     system: Mapping[str, _SystemRow]
     library: Mapping[str, _LibraryRow]
     sensor: Mapping[str, _SensorRow]
+    classic: _ClassicRow
 
     @property
     def odometry_systems(self) -> list[str]:

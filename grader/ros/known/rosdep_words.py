@@ -12,6 +12,9 @@ class RosdepWords(NamedTuple):
 
     instead: Mapping[str, str]
     elsewhere: Mapping[str, str]  # how package.xml says it
+    modules: Mapping[str, str]  # of Python, with their keys
+    libraries: Mapping[str, str]  # that find_package() of CMake finds, with their keys
+    brought: Mapping[str, frozenset[str]]  # by a key the packages that install it
 
 
 @cache

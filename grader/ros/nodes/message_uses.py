@@ -26,6 +26,7 @@ _CAUGHT = frozenset(
 # Functions that ask what a value is, or has.
 _ASKING = frozenset({"isinstance", "hasattr", "getattr", "setattr", "type"})
 _MAX_PATH = 12
+_MAX_ITEMS = 100  # of a list that a field is set to
 ITEM = "[]"  # in a path: an item of a list
 
 
@@ -353,6 +354,8 @@ class _FunctionUses:
         value = self._evaluate(node)
         if value is None or isinstance(value, SCALARS):
             return (value,)
+        if isinstance(value, list | tuple) and len(value) <= _MAX_ITEMS:
+            return ([*value],)
         return ()
 
 

@@ -131,7 +131,7 @@ class FieldUse(NamedTuple):
     `type` has the name of the section, as in Python: chat_msgs.srv.Ask.Request; GoalHandle is what
     has the goal as its `request`. `path` are the names of fields down to the one that is used; `[]`
     is an item of a list. `literal` is what the field is set to: one value, or none if it is not
-    known.
+    known. Items of a list may not be known.
     """
 
     type: str

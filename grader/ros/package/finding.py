@@ -20,7 +20,7 @@ from grader.ros.package.robots import RobotFile
 from grader.ros.python.budget import whole_budget
 
 # The files that hide a folder, with all that is below, from colcon.
-_IGNORING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
+IGNORING = ("COLCON_IGNORE", "AMENT_IGNORE", "CATKIN_IGNORE")
 _MAX_PACKAGES = 40
 # Files that are read as texts.
 _TEXTS = (
@@ -272,7 +272,7 @@ def _read_manifest(files: Tree, path: str) -> Manifest | None:
 def _find_marker(tree: Tree, folder: str) -> str:
     """Return the path of the nearest file for which colcon ignores a folder; empty without one."""
     while True:
-        for marker in _IGNORING:
+        for marker in IGNORING:
             path = f"{folder}/{marker}" if folder else marker
             if path in tree.files:
                 return path

@@ -12,6 +12,7 @@ from typing import NamedTuple
 from grader.base.names import closest, near
 from grader.base.problems import NO_FIXES, Fix, Fixes
 from grader.base.source import Location
+from grader.base.text import enumerated
 from grader.ros.known.package_tables import python_table
 from grader.ros.known.releases import RELEASES, Release
 from grader.ros.nodes.message_uses import CodePart, certain_nodes, given_argument
@@ -23,6 +24,7 @@ from grader.ros.nodes.python.action_faults import (
     goals_without_state,
 )
 from grader.ros.nodes.python.called_functions import CalledFunctions, imported_names
+from grader.ros.nodes.python.log_calls import wrong_log_calls
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, is_passive
 from grader.ros.python.constants import binds_unseen, dotted, last_name
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
@@ -48,6 +50,10 @@ _SPINNING = "rclpy.spin_until_future_complete"
 _CONCURRENT = ("MultiThreadedExecutor", "ReentrantCallbackGroup", "MutuallyExclusiveCallbackGroup")
 _CONCURRENT_MODULES = frozenset({"threading", "multiprocessing", "concurrent", "asyncio"})
 _ENDING = frozenset({"sys.exit", "exit", "quit", "os._exit"})
+
+
+# What a loop may call that only waits.
+_PAUSES = frozenset({"time.sleep", "sleep", "rate.sleep", "self.rate.sleep"})
 
 
 class ModuleText(NamedTuple):
@@ -112,6 +118,7 @@ def code_faults(
     yield from search.waiting_callbacks()
     yield from search.of_programs()
     yield from _wrong_calls(module, releases or RELEASES)
+    yield from wrong_log_calls(module.code, module.parts)
     yield from search.of_actions()
 
 
@@ -335,6 +342,32 @@ class _Search:
         for function in self._reached():
             for call in _calls_in(function):
                 yield from self._waiting(call, function.name, clients)
+            yield from self._loops(function)
+
+    def _loops(self, function: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[CodeFault]:
+        """Yield the loops of a callback that do nothing until another callback has run."""
+        for node in ast.walk(function):
+            if not isinstance(node, ast.While) or not _only_waits(node.body):
+                continue
+            awaited = _awaited(node.test)
+            if awaited and self._are_set_elsewhere(awaited, function):
+                message = (
+                    f"the loop in the callback {function.name}() waits for ever for "
+                    f"{enumerated(awaited, word='or')}: no other callback runs until it ends"
+                )
+                yield CodeFault("waits in a callback", message, self._at(node), is_certain=False)
+
+    def _are_set_elsewhere(
+        self, names: Collection[str], function: ast.FunctionDef | ast.AsyncFunctionDef
+    ) -> bool:
+        """Return whether only other functions set what a function waits for."""
+        inside = {id(node) for node in ast.walk(function)}
+        places: dict[str, list[bool]] = {name: [] for name in names}
+        for node in every_node(self._code.tree):
+            is_set = isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
+            if is_set and dotted(node) in places:
+                places[dotted(node)].append(id(node) in inside)
+        return all(len(each) > 1 and not any(each) for each in places.values())
 
     def _waiting(self, call: ast.Call, name: str, clients: Collection[str]) -> Iterator[CodeFault]:
         called = dotted(call.func)
@@ -624,3 +657,34 @@ def _may_spin(names: Collection[str]) -> bool:
     if "AsyncNode" in names:  # of rclpy.experimental: its run() is awaited
         return True
     return any("spin" in name or "WaitSet" in name or "wait_for" in name for name in names)
+
+
+def _only_waits(body: Sequence[ast.stmt]) -> bool:
+    """Return whether the body of a loop only sleeps and writes to the log."""
+    for statement in body:
+        match statement:
+            case ast.Pass():
+                continue
+            case ast.Expr(value=ast.Call(func=called)):
+                is_log = ".get_logger" in ast.unparse(called)
+                if not is_log and dotted(called) not in _PAUSES and dotted(called) != "print":
+                    return False
+            case _:
+                return False
+    return True
+
+
+def _awaited(test: ast.expr) -> list[str]:
+    """Return the attributes of self that a condition of a loop is made of; none for others.
+
+    A condition that calls a function, as rclpy.ok(), may become false otherwise.
+    """
+    names = []
+    for node in ast.walk(test):
+        match node:
+            case ast.Attribute():
+                names.append(dotted(node))
+            case ast.Call() | ast.NamedExpr() | ast.Await():
+                return []
+    is_own = bool(names) and all(name.count(".") == 1 for name in names)
+    return names if is_own and all(name.startswith("self.") for name in names) else []

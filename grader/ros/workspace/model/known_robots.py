@@ -194,6 +194,23 @@ def command_interfaces(
     return interfaces
 
 
+def state_interfaces(robots: Sequence[KnownRobot]) -> Mapping[str, frozenset[str]]:
+    """Return the state interfaces of the joints of hardware that has those that are listed.
+
+    Joints without any are not among them.
+    """
+    interfaces: dict[str, frozenset[str]] = {}
+    for robot in robots:
+        for system in robot.systems:
+            plugin = system.findtext("hardware/plugin", "").strip()
+            for joint in system.iterchildren("joint") if plugin in _LISTED_HARDWARE else ():
+                name = joint.get("name", "")
+                added = [each.get("name", "") for each in joint.iterchildren("state_interface")]
+                if added:
+                    interfaces[name] = interfaces.get(name, frozenset()).union(added)
+    return interfaces
+
+
 def _known_robot(urdf: Read) -> KnownRobot | None:
     loaded = urdf.loaded
     is_known = not loaded.undetermined and loaded.verdict != "rejected"

@@ -10,7 +10,7 @@ from grader.ros.package.made_paths import MadePath, made_paths
 from grader.ros.workspace.model.workspace import Workspace
 
 _TAG = re.compile(
-    r"<(?P<end>/?)xacro:(?:if|unless)\b|<(?P<tag>command_interface|joint|link)\b[^<>]*?"
+    r"<(?P<end>/?)xacro:(?:if|unless)\b|<(?P<tag>(?:command|state)_interface|joint|link)\b[^<>]*?"
     r"\bname\s*=\s*(?P<quote>[\"'])(?P<name>.*?)(?P=quote)|\bfilename\s*=\s*[\"'](?P<file>[^\"']*)",
     re.DOTALL,
 )
@@ -21,9 +21,9 @@ _WORD = re.compile(r"[A-Za-z_]\w*")
 _MAX_STEPS = 5  # from an argument by way of properties and parameters of macros
 
 
-def may_be_offered(workspace: Workspace, interface: str) -> bool:
-    """Return whether joints may have a command interface under other arguments."""
-    names = names_under_arguments(workspace, "command_interface")
+def may_be_offered(workspace: Workspace, interface: str, tag: str = "command_interface") -> bool:
+    """Return whether joints may have an interface of a tag under other arguments."""
+    names = names_under_arguments(workspace, tag)
     return interface in names or "*" in names
 
 

@@ -20,7 +20,11 @@ from grader.ros.workspace.graph.started_controllers import (
     named_sections,
     parameters_of_controllers,
 )
-from grader.ros.workspace.model.known_robots import KnownRobot, command_interfaces
+from grader.ros.workspace.model.known_robots import (
+    KnownRobot,
+    command_interfaces,
+    state_interfaces,
+)
 from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER
 from grader.ros.workspace.model.under_arguments import may_be_offered
 from grader.ros.workspace.model.workspace import Workspace
@@ -66,6 +70,7 @@ def controller_facts(workspace: Workspace) -> Iterator[Fact]:
         else:
             yield from _no_list(controller, section)
             yield from _no_interface(workspace, controller, section)
+            yield from _no_state(workspace, controller, _beside(workspace, controller, section))
             yield from _claimed_twice(controller, section)
     yield from _action_facts(workspace)
     yield from _no_hardware(workspace)
@@ -263,6 +268,40 @@ def _no_interface(
         elif are_comparable and needed and _are_all_joints(workspace, robots, [name]):
             text = f"{message}/{needed[0]}; <ros2_control> has no joint {name!r}"
             yield Mismatch(CONTROLLER_INTERFACE, text, joint.location)
+
+
+def _beside(workspace: Workspace, controller: Controller, section: YamlNode) -> YamlNode:
+    """Return the parameters of a controller in the file that defines it, else those of its name."""
+    for keys, node in named_sections(workspace):
+        is_beside = node.source.path == controller.type.source.path and node.get("joints")
+        if is_beside and keys[-1].rpartition("/")[2] == controller.name:
+            return node
+    return section
+
+
+def _no_state(
+    workspace: Workspace, controller: Controller, section: YamlNode
+) -> Iterator[Mismatch]:
+    """Yield the state interfaces of a list that <ros2_control> does not have of a joint.
+
+    Own hardware may have others than those that are listed there.
+    """
+    if not is_known_controller(controller.type.text):
+        return
+    robots = robots_for_file(workspace, section.source.path).robots
+    offered = state_interfaces(robots)
+    for kind in _entries(section, "state_interfaces"):
+        lacking = []
+        for joint in _entries(section, "joints"):
+            name = joint.text or ""
+            if name in offered and kind.text not in offered[name]:
+                lacking.append(name)
+        if lacking and not may_be_offered(workspace, kind.text or "", "state_interface"):
+            text = (
+                f"{controller.name} needs the state interface {lacking[0]}/{kind.text}, which "
+                "<ros2_control> does not have"
+            )
+            yield Mismatch(CONTROLLER_INTERFACE, text, kind.location)
 
 
 def _are_all_joints(

@@ -52,6 +52,8 @@ _OF_PYTHON = ("get_fields_and_field_types", "SLOT_TYPES")  # besides what begins
 # Releases whose setters check the type of what is assigned: rosidl_generator_py of Foxy to Iron.
 _CHECKING = RELEASES[: RELEASES.index("jazzy")]
 _GOAL_HANDLE = "GoalHandle"
+# Types whose lists take bytes, too, or items of several types.
+_OPEN_ITEMS = BOOLEANS | {"byte", "char", "octet", "uint8", "int8"}
 # Releases that have the headers of all packages in one folder, where a compiler finds them.
 _OF_ONE_FOLDER: frozenset[Release] = frozenset({"foxy", "galactic"})
 
@@ -360,14 +362,73 @@ def _other_value(
 ) -> Iterator[Mismatch]:
     """Yield that a field is set to a value that its type certainly does not take."""
     for value in use.literal:
-        if not _fits(field.type, value, workspace.releases):
-            wanted = field.type.full_name.replace(".", "/")
-            if field.type.is_list:
-                wanted = f"a list of {wanted}"
+        if isinstance(value, list):
+            yield from _other_list(workspace, field, value, shown, use.location)
+        elif not _fits(field.type, value, workspace.releases):
+            wanted = _type_in_words(field.type)
             message = (
                 f"the field {field.name} of {shown} is {wanted}; it is set to {_in_words(value)}"
             )
             yield Mismatch(FIELD_VALUE, message, use.location)
+
+
+def _type_in_words(kind: FieldType) -> str:
+    """Return the type of a field, as messages name it."""
+    wanted = kind.full_name.replace(".", "/")
+    return f"a list of {wanted}" if kind.is_list else wanted
+
+
+def _other_list(
+    workspace: Workspace, field: InterfaceField, items: Sequence[Value], shown: str, at: Location
+) -> Iterator[Mismatch]:
+    """Yield that a field is set to a list of another length, or with an item of another type.
+
+    Up to Iron the setters of rclpy check both. From Jazzy on they convert numbers to floats, and
+    refuse only what is no number, or a float among integers where the length is not fixed. That an
+    integer is given for a float is a warning where no release is stated.
+    """
+    kind, owner = field.type, f"the field {field.name} of {shown} is {_type_in_words(field.type)}"
+    if not kind.is_list:
+        if not kind.package and kind.name not in TEXTS:
+            yield Mismatch(FIELD_VALUE, f"{owner}; it is set to a list", at)
+        return
+    if kind.size is not None:
+        is_wrong = len(items) > kind.size if kind.is_bounded else len(items) != kind.size
+        if is_wrong:
+            most = "at most " if kind.is_bounded else ""
+            message = f"{owner} with {most}{kind.size} items; it is set to a list of {len(items)}"
+            yield Mismatch(FIELD_VALUE, message, at)
+            return
+    for item in items:
+        if not isinstance(item, bool | int | float | str) or _fits_item(kind, item):
+            continue
+        message = f"{owner}; an item is {_in_words(item)}"
+        is_certain, releases = _is_refused(kind, item, workspace.releases), workspace.releases
+        if not is_certain and releases and not {*releases} & {*_CHECKING}:
+            continue
+        if not is_certain:
+            message += ", which rclpy refuses up to Iron"
+        yield Mismatch(FIELD_VALUE, message, at, is_certain=is_certain)
+        return
+
+
+def _fits_item(kind: FieldType, item: Value) -> bool:
+    """Return whether a list of a type certainly takes an item in all releases."""
+    if kind.package or kind.name in _OPEN_ITEMS:
+        return True
+    wanted = _type_of(kind)
+    return isinstance(item, wanted) and (wanted is not int or not isinstance(item, bool))
+
+
+def _is_refused(kind: FieldType, item: Value, releases: tuple[Release, ...]) -> bool:
+    """Return whether rclpy certainly refuses an item of another type, in all stated releases."""
+    if releases and all(release in _CHECKING for release in releases):
+        return not isinstance(item, bool)  # an integer
+    is_text = isinstance(item, str)
+    if kind.name in TEXTS or is_text:
+        return is_text != (kind.name in TEXTS)
+    is_fixed = kind.size is not None and not kind.is_bounded
+    return kind.name in INTEGERS and isinstance(item, float) and not is_fixed
 
 
 def _in_words(value: Value) -> str:

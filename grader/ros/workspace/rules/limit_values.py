@@ -59,8 +59,10 @@ def limit_facts(workspace: Workspace) -> Iterator[Fact]:
                 yield from _wider(said, workspace.robots.known)
     for robot in workspace.robots.known:
         for system in robot.systems:
-            for said in _said_by_control(robot, system):
+            limits = [*_said_by_control(robot, system)]
+            for said in limits:
                 yield from _wider(said, [robot])
+            yield from _exchanged(limits)
 
 
 def _said_by_moveit(table: YamlNode) -> Iterator[_Said]:
@@ -87,6 +89,19 @@ def _said_by_control(robot: KnownRobot, system: Element) -> Iterator[_Said]:
                 if limit is not None and value is not None:
                     words = f"{param.get('name')} of the command interface {name}/{kind}"
                     yield _Said(limit, name, value, words, robot.place(param))
+
+
+def _exchanged(limits: Sequence[_Said]) -> Iterator[Fact]:
+    """Yield that the least position of a command interface is above the greatest one."""
+    lowest = {said.joint: said for said in limits if said.name == "min_position"}
+    for said in limits:
+        lower = lowest.get(said.joint)
+        if said.name == "max_position" and lower is not None and lower.value > said.value:
+            message = (
+                f"{lower.words} is {lower.value:g}, above max, which is {said.value:g}: they are "
+                "exchanged"
+            )
+            yield warning(JOINT_LIMIT, message, lower.location, said.location)
 
 
 def _wider(said: _Said, robots: Sequence[KnownRobot]) -> Iterator[Fact]:

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterator
 from typing import NamedTuple
 
 from grader.base.source import Location
-from grader.base.text import quoted
+from grader.base.text import enumerated, quoted
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.package_tables import moveit_actions
@@ -22,6 +22,7 @@ from grader.ros.workspace.rules.rule_table import (
 from grader.ros.workspace.rules.spawners import started_controllers
 
 _MANAGER = "moveit_simple_controller_manager"
+_NEWER_TYPES = ("ParallelGripperCommand",)  # of controllers, on the branch main
 _OF_PIPELINE = "_planning.yaml"  # MoveItConfigsBuilder finds the files by their names
 _TABLES_OF_JOINTS = ("joint_limits", "initial_positions")
 
@@ -143,6 +144,13 @@ def _other_action(controller: _MoveItController) -> Iterator[Mismatch]:
     if kind is None:
         return
     wanted = moveit_actions().get(kind.text or "")
+    if wanted is None and kind.text and kind.text not in _NEWER_TYPES:
+        message = (
+            f"MoveIt has no type {kind.text!r} of controllers, so it leaves out {controller.name}: "
+            f"it has {enumerated([*moveit_actions()])}"
+        )
+        yield Mismatch(MOVEIT_ACTION, message, kind.location, is_certain=False)
+        return
     if action is None:
         if wanted is not None:
             message = (

@@ -50,7 +50,7 @@ def _with_one_for_a_manifest(
     Those of which it is certain that nothing else installs them are apart from the others, and so
     are those that CMake needs.
     """
-    lacked: dict[tuple[object, bool, bool], list[Mismatch]] = {}
+    lacked: dict[tuple[object, ...], list[Mismatch]] = {}
     every = [*_without_repeated_packages([*mismatches])]
     for mismatch in every:
         if mismatch.lacked:
@@ -81,9 +81,9 @@ def _without_repeated_packages(mismatches: Sequence[Mismatch]) -> Iterator[Misma
             yield mismatch
 
 
-def _group_of(mismatch: Mismatch) -> tuple[object, bool, bool]:
+def _group_of(mismatch: Mismatch) -> tuple[object, ...]:
     """Return what the packages that are said together have in common."""
-    return mismatch.related, mismatch.is_certain, mismatch.is_built
+    return mismatch.related, mismatch.rule.name, mismatch.is_certain, mismatch.is_built
 
 
 def _lacked_text(workspace: Workspace, mismatches: Sequence[Mismatch]) -> str:

@@ -1,7 +1,7 @@
 """What only one machine has: paths in a home folder, and environment variables without default."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from grader.base.source import Location, Source
 from grader.base.text import counted, cut, quoted
@@ -14,9 +14,16 @@ from grader.ros.workspace.rules.rule_table import (
     HOME_PATH,
 )
 
-_HOME = re.compile(r"(?<![\w$}/.:])(?:file://)?(/(?:home|Users)/[\w.-]+/[^\s\"'<>,;:)}\]]*)")
+# A folder of a user, or a workspace of root.
+_HOME = re.compile(
+    r"(?<![\w$}/.:])(?:file://)?"
+    r"(/(?:(?:home|Users)/[\w.-]+|root(?=/[\w./-]*/(?:src|install)/))/[^\s\"'<>,;:)}\]]*)"
+)
 _PLACEHOLDERS = re.compile(r"^/(?:home|Users)/(?:user|username|you|your[\w-]*|<.*)/")
-_TEXTS = (".yaml", ".yml", ".urdf", ".xacro", ".sdf", ".world", ".py", ".cpp", ".hpp")
+_TEXTS = (
+    *(".yaml", ".yml", ".urdf", ".xacro", ".sdf", ".world", ".json", ".lua"),
+    *(".py", ".cpp", ".hpp", ".cc", ".h"),
+)
 _ENVIRONMENT = re.compile(
     r"\bos\.environ\[\s*[\"'](?P<python>\w+)[\"']\s*\](?!\s*=[^=])"
     r"|\bEnvironmentVariable\(\s*(?:name\s*=\s*)?[\"'](?P<launch>\w+)[\"']\s*,?\s*\)"
@@ -30,18 +37,20 @@ def machine_facts(workspace: Workspace) -> Iterator[Fact]:
 
     A path in somebody's home folder is yielded once a file.
 
-    Of a launch file it is one that a node gets as the value of a parameter: the files that it reads
-    are problems of this file.
+    Those of a launch file at which it reads files are problems of this file, and not yielded.
     """
-    launch_files = set()
+    launches: dict[str, Launch] = {}
     for package, path, launch in workspace.launches.files:
-        launch_files.add(package.path(path))
+        launches[package.path(path)] = launch
         yield from _home_values(launch)
     for package in workspace.packages:
         for source in workspace.texts.sources_of(package, _TEXTS):
-            if source.path not in launch_files:
+            if source.path not in launches:
                 yield Compared("machine")
-                yield from _home_paths(source)
+                yield from _home_paths(source, ())
+        for source in workspace.texts.launch_sources(package):
+            if source.path in launches:
+                yield from _home_paths(source, _said_paths(launches[source.path]))
     yield from _variables(workspace)
 
 
@@ -61,9 +70,24 @@ def _home_values(launch: Launch) -> Iterator[Mismatch]:
                     return
 
 
-def _home_paths(source: Source) -> Iterator[Mismatch]:
-    """Yield that a file names paths in somebody's home folder, at the first of them."""
-    paths = [path for path in _HOME.finditer(source.text) if not _PLACEHOLDERS.match(path[1])]
+def _said_paths(launch: Launch) -> list[str]:
+    """Return what is said already of the paths in a launch file."""
+    said = [reference.reason or reference.path or "" for reference in launch.references]
+    for node in launch.nodes:
+        for given in node.parameters or ():
+            said += [given.path, *(str(value.value) for value in given.values.values())]
+    return said
+
+
+def _home_paths(source: Source, said: Collection[str]) -> Iterator[Mismatch]:
+    """Yield that a file names paths in somebody's home folder, at the first of them.
+
+    Those that are part of what is said otherwise do not count.
+    """
+    paths = []
+    for path in _HOME.finditer(source.text):
+        if not _PLACEHOLDERS.match(path[1]) and not any(path[1] in text for text in said):
+            paths.append(path)
     if paths:
         message = f"the path {quoted(cut(paths[0][1], _MAX_SHOWN))} is of one machine"
         if len(paths) > 1:

@@ -11,6 +11,7 @@ from grader.ros.package.package import Package
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.arguments import argument_facts
 from grader.ros.workspace.rules.bridges import bridge_facts
+from grader.ros.workspace.rules.classic_plugins import classic_plugin_facts
 from grader.ros.workspace.rules.code import code_facts
 from grader.ros.workspace.rules.companions import companion_facts
 from grader.ros.workspace.rules.component_names import component_facts
@@ -43,6 +44,7 @@ from grader.ros.workspace.rules.names import (
     uncompared,
 )
 from grader.ros.workspace.rules.namespaces import namespace_facts
+from grader.ros.workspace.rules.nested_packages import nested_package_facts
 from grader.ros.workspace.rules.one_machine import machine_facts
 from grader.ros.workspace.rules.parameter_lists import list_facts
 from grader.ros.workspace.rules.parameters import parameter_facts
@@ -54,13 +56,16 @@ from grader.ros.workspace.rules.rate_values import rate_facts
 from grader.ros.workspace.rules.received_messages import received_message_facts
 from grader.ros.workspace.rules.remapped_names import remapping_facts
 from grader.ros.workspace.rules.renamed_nodes import renamed_node_facts
+from grader.ros.workspace.rules.repeated_interfaces import repeated_interface_facts
 from grader.ros.workspace.rules.rule_table import DEFINED, AnyFamily
+from grader.ros.workspace.rules.simulated_nodes import simulated_node_facts
 from grader.ros.workspace.rules.simulated_topics import simulated_topic_facts
 from grader.ros.workspace.rules.spawners import spawner_facts
 from grader.ros.workspace.rules.srdf import srdf_facts
 from grader.ros.workspace.rules.topic_wiring import topic_wiring_facts
 from grader.ros.workspace.rules.unmet_topics import unmet_topic_facts
 from grader.ros.workspace.rules.unused import unused_files
+from grader.ros.workspace.rules.used_libraries import library_facts
 from grader.ros.workspace.rules.wheel_values import wheel_value_facts
 
 _READERS = (
@@ -106,6 +111,11 @@ _READERS = (
     list_facts,
     header_facts,
     mass_facts,
+    library_facts,
+    nested_package_facts,
+    classic_plugin_facts,
+    simulated_node_facts,
+    repeated_interface_facts,
 )
 
 

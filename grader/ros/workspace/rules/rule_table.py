@@ -84,6 +84,11 @@ _NOWHERE = _warning("REF032", "Package that neither the workspace nor a release 
 _NO_KEY = _warning("REF033", "Name that rosdep does not know")
 _UNKNOWN_KEY = Kind("REF034", "Name that may be no key of rosdep", severity="note", effect="other")
 _NOT_COMPILED = _error("REF035", "C++ file that does not compile")
+_BROUGHT = Kind("REF036", "Library that other packages install", severity="note", effect="other")
+_NOT_BUILT = Kind("REF037", "Package that colcon does not find", severity="note", effect="other")
+_OTHER_TIME = Kind(
+    "REF038", "Node beside a simulation without its time", severity="note", effect="other"
+)
 NAME_CATALOGUE = kinds_in(globals().values())
 
 
@@ -179,6 +184,9 @@ CONTROLLER_INTERFACE = _controller(
 )
 CONTROLLER_HARDWARE = _controller(
     "controller-hardware", sentence="A robot with a controller manager has <ros2_control>."
+)
+INTERFACE_ONCE = _controller(
+    "interface-once", sentence="A robot has each command interface in one <ros2_control> only."
 )
 MIMIC_COMMAND = _controller(
     "mimic-command", sentence="A joint that mimics another one has no command interface."
@@ -405,6 +413,14 @@ ROSDEP_KEY = Rule(
     "rosdep knows the dependencies in package.xml that the workspace does not have.",
 )
 
+LIBRARY_DECLARED = Rule(
+    "library-declared",
+    "keys",
+    _NO_DEPENDENCY,
+    _BROUGHT,
+    "package.xml declares the libraries of Python and C++ that the files of the package use.",
+)
+
 _service = _rules_of("services", _NO_SERVICE, _SIMILAR)
 SERVICE_TYPE = _service(
     "service-type",
@@ -556,6 +572,13 @@ CLOCK_PUBLISHED = _companion(
     "clock-published", sentence="Something publishes the clock of nodes with use_sim_time."
 )
 SIMULATION_TIME = _companion("simulation-time", sentence="The nodes of a simulation use its time.")
+SIMULATED_NODE = Rule(
+    "simulated-node",
+    "wiring",
+    _OTHER_TIME,
+    _OTHER_TIME,
+    "The nodes that a launch file starts beside Gazebo use its time.",
+)
 CONTAINER_STARTED = _companion(
     "container-started", sentence="The container of a component is started."
 )
@@ -602,13 +625,16 @@ SRDF_ROBOT = _moveit("srdf-robot", sentence="An SRDF names its robot.")
 SRDF_GROUP = _moveit("srdf-group", sentence="A group of an SRDF is not empty.")
 
 _word = _rules_of("words", _NO_WORD)
+CLASSIC_PLUGIN = _word(
+    "classic-plugin",
+    sentence="The plugins of Gazebo Classic and their elements are those of ROS 2.",
+)
 CREATE_OPTION = _word(
     "create-option", sentence="The program that creates a robot in Gazebo has the given options."
 )
 REMAPPED_TOPIC = _word(
     "remapped-topic", sentence="A remapping of a well-known program names a topic that it has."
 )
-
 _message = _rules_of("messages", _NO_MESSAGE)
 MESSAGE_HEADER = _message(
     "message-header", sentence="The messages of a filter or synchroniser have a header."
@@ -633,10 +659,16 @@ _build = _rules_of("builds", _NOT_COMPILED)
 OWN_HEADER = _build(
     "own-header", sentence="The headers of a package that a compiled file includes exist."
 )
+PACKAGE_NESTED = Rule(
+    "package-nested",
+    "builds",
+    _NOT_BUILT,
+    _NOT_BUILT,
+    "No package is below the folder of another one, where colcon does not look.",
+)
 HEADER_INSTALLED = _build(
     "header-installed", sentence="A build installs the headers that other packages include."
 )
-
 # What is wrong where a name of a kind is not defined.
 DEFINED: Mapping[DefinedKind, Rule] = {
     "frame": _FRAME_DEFINED,

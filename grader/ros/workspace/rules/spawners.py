@@ -47,6 +47,7 @@ def spawner_facts(workspace: Workspace) -> Iterator[Fact]:
     controllers = list(defined_controllers(workspace))
     if not controllers:
         yield from _no_controllers(workspace)
+        yield from _without_plugin(workspace)
         return
     if any(isinstance(tree, YamlFault) for tree in workspace.installed.yaml.values()):
         yield Open("controller", reason="a parameter file cannot be read")

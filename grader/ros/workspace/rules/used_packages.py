@@ -160,6 +160,26 @@ def _imported(
 
     What every launch file imports does not count there.
     """
+    for imported in imported_modules(workspace, package):
+        name = imported.name
+        is_ros = name in names or name.endswith("_msgs") or name in _OF_ROS
+        is_ros = is_ros or (imported.is_installed and _is_code(name))
+        is_usual = imported.is_launched and name in _OF_LAUNCH_FILES
+        if is_ros and not is_usual:
+            yield name, imported.location
+
+
+class _ImportedModule(NamedTuple):
+    """A module that a Python file imports, which is none of its package."""
+
+    name: str
+    location: Location
+    is_launched: bool  # whether a launch file imports it
+    is_installed: bool  # whether a file imports it that a build installs, or a launch file
+
+
+def imported_modules(workspace: Workspace, package: Package) -> Iterator[_ImportedModule]:
+    """Yield the modules that the Python files of a package import, as far as names say."""
     modules = set()  # of the package, as far as their names say
     for path in package.tree.files:
         modules |= {part.removesuffix(".py") for part in path.split("/")}
@@ -173,11 +193,8 @@ def _imported(
         is_part = is_part and not OF_TESTS.search(source.path)
         for match in _IMPORT.finditer(source.text):
             for name, offset in _modules_of(match):
-                is_ros = name in names or name.endswith("_msgs") or name in _OF_ROS
-                is_ros = is_ros or (is_part and _is_code(name))
-                is_usual = is_launch and name in _OF_LAUNCH_FILES
-                if is_ros and not is_usual and name not in modules:
-                    yield name, source.at(offset)
+                if name not in modules:
+                    yield _ImportedModule(name, source.at(offset), is_launch, is_part)
 
 
 def _is_code(name: str) -> bool:
