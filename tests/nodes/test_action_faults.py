@@ -58,3 +58,44 @@ def test_attributes_that_only_increase(body: str, messages: list[str]) -> None:
     statements = "".join(f"        {line}\n" for line in body.splitlines())
     text = f"{_HEAD}\nclass Look(Node):\n    def __init__(self):\n        super().__init__('look')\n{statements}"
     assert [fault.message for fault in nodes_of(text).faults] == messages
+
+
+_ACTION = """
+import rclpy
+from rclpy.action import ActionServer
+from rclpy.node import Node
+from example_interfaces.action import Fibonacci
+class Look(Node):
+    def __init__(self):
+        super().__init__('look')
+        ActionServer(self, Fibonacci, 'look', self.execute)
+    def execute(self, goal):
+        result = Fibonacci.Result()
+"""
+# The end of a function that executes a goal, and of which goals it sets no state.
+ENDS = [
+    ("return result", "its goal"),
+    ("pass", ""),
+    ("goal.succeed()\nreturn result", ""),
+    ("keep(goal)\nreturn result", ""),
+    (
+        "if goal.x:\n    goal.canceled()\n    return result\nreturn result",
+        "a goal that nobody cancels",
+    ),
+    ("if goal.x:\n    goal.canceled()\n    return result\ngoal.abort()\nreturn result", ""),
+    ("try:\n    pass\nexcept ValueError:\n    goal.canceled()\n    return result", ""),
+    (
+        "match goal.x:\n    case 1:\n        return result\ngoal.canceled()",
+        "a goal that nobody cancels",
+    ),
+    ("def inner():\n    return 1\ngoal.canceled()\nreturn result", ""),
+]
+
+
+@pytest.mark.parametrize(("end", "goals"), ENDS)
+def test_goals_without_a_state(end: str, goals: str) -> None:
+    """A function that executes goals sets the state of each one that it ends."""
+    body = "".join(f"        {line}\n" for line in end.splitlines())
+    faults = [fault for fault in nodes_of(_ACTION + body).faults if fault.rule == "no goal state"]
+    said = [fault.message.partition(" of ")[2].partition(",")[0] for fault in faults]
+    assert said == ([goals] if goals else [])
