@@ -148,15 +148,15 @@ WEIGHTS = {
     "classroom": 70_000,  # functions of complexity at most 10
     "files": 12_350,  # the end of a log, from a file, a folder or a pipe
     "lab": 100,
-    "lab.authoring": 38_000,  # functions of complexity at most 10
-    "lab.checks": 44_200,  # functions of complexity at most 10
+    "lab.authoring": 40_200,  # functions of complexity at most 10; what nodes look up, spawners start and worlds have, details as comments
+    "lab.checks": 46_900,  # functions of complexity at most 10; world_has, looks_up, problems of packages, absent entries, spawned controllers
     "lab.documents": 10_900,
     "lab.grading": 13_000,  # what hides the base
     "lab.hints": 36_000,  # functions of complexity at most 10
     "lab.rubric": 10_000,
     "lab.submission": 9_600,  # the release that reads a URDF, slips that are proven by reading it again
     "report": 64_900,  # the screen of an inspection: rows by causes, each error in the first ones; the graph of a launch file as text, JSON, DOT, Mermaid and a page
-    "ros": 300,
+    "ros": 305,
     "ros.config": 5_750,  # numbers of parameters in quotes
     "ros.cpp": 13_000,  # errors of the grammar that leave open one statement only
     "ros.installation": 32_650,  # the packages that CMake finds, tests, expressions that are not closed; names of program files, targets of tests and of other projects; what stops a build from a release on; functions for what was branches of long ones
@@ -165,12 +165,12 @@ WEIGHTS = {
     "ros.launch": 46_000,  # what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing; components as nodes
     "ros.log": 3_800,
     "ros.mesh": 4_300,
-    "ros.nodes": 58_800,  # calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions
+    "ros.nodes": 59_800,  # functions that are given a node, goals that only cancelling ends; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions
     "ros.package": 27_900,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
     "ros.python": 28_950,  # the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
-    "ros.workspace": 128_900,  # the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches; the graph of a launch file
+    "ros.workspace": 131_500,  # worlds that are started, what spawners start, transforms that are looked up; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches; the graph of a launch file
     "ros.xacro": 28_600,  # xacro:attribute, letters outside of ASCII; functions that do one thing
     "ros.xml": 13_400,  # the attributes of broken tags, end tags of macros, the attributes of newer versions of URDF
     "": 400,

@@ -84,7 +84,13 @@ if TYPE_CHECKING:
     from grader.ros.workspace.graph.launch_graph import Unread as Unread
     from grader.ros.workspace.graph.launch_graph import connections_in as connections_in
     from grader.ros.workspace.graph.launch_graph import unconnected_ends as unconnected_ends
+    from grader.ros.workspace.graph.lookups import looked_up_transforms as looked_up_transforms
     from grader.ros.workspace.graph.manual_ends import manual_ends as manual_ends
+    from grader.ros.workspace.graph.node_ends import opened_by_bridge as opened_by_bridge
+    from grader.ros.workspace.graph.started_controllers import spawned_by as spawned_by
+    from grader.ros.workspace.graph.started_worlds import has_programs as has_programs
+    from grader.ros.workspace.graph.started_worlds import started_worlds as started_worlds
+    from grader.ros.workspace.graph.used_files import used_file as used_file
     from grader.ros.workspace.name_places import NamePlaces as NamePlaces
     from grader.ros.workspace.opened import OpenedWorkspace as OpenedWorkspace
     from grader.ros.workspace.opening import STANDARD_INPUT as STANDARD_INPUT
@@ -118,6 +124,11 @@ else:
         "GRAPH_NODE_KINDS GivenValue GraphEnd GraphNode GraphTransform LaunchGraph Unread "
         "connections_in unconnected_ends",
         "workspace.graph.manual_ends": "manual_ends",
+        "workspace.graph.lookups": "looked_up_transforms",
+        "workspace.graph.node_ends": "opened_by_bridge",
+        "workspace.graph.started_controllers": "spawned_by",
+        "workspace.graph.started_worlds": "has_programs started_worlds",
+        "workspace.graph.used_files": "used_file",
         "workspace.name_places": "NamePlaces",
         "workspace.opened": "OpenedWorkspace",
         "workspace.opening": "STANDARD_INPUT open_workspace",

@@ -46,7 +46,12 @@ _GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how lon
 
 
 def draft_choice(
-    without: Iterable[str], free: Iterable[str], *, is_names_only: bool, weights: str
+    without: Iterable[str],
+    free: Iterable[str],
+    *,
+    is_names_only: bool,
+    weights: str,
+    total: int | None = None,
 ) -> DraftChoice:
     """Return what a draft has criteria about. Raises GraderError for a kind that does not exist.
 
@@ -55,6 +60,7 @@ def draft_choice(
         free: Names that the handout leaves open, likewise.
         is_names_only: Whether only names are compared.
         weights: equal, or importance.
+        total: The points of all criteria; None for as many as there are.
     """
     kinds = frozenset(_split_texts(without))
     for kind in sorted(kinds.difference(WITHOUT)):
@@ -65,6 +71,7 @@ def draft_choice(
         is_names_only=is_names_only,
         free=frozenset(_split_texts(free)),
         has_equal_weights=weights == "equal",
+        total=total,
     )
 
 

@@ -54,6 +54,7 @@ class DraftChoice(NamedTuple):
     is_names_only: bool = False
     free: frozenset[str] = frozenset()  # names that a submission may choose
     has_equal_weights: bool = False
+    total: int | None = None  # points of all criteria
 
     def takes(self, fact: Fact) -> bool:
         """Return whether there is to be a criterion for a fact."""

@@ -63,6 +63,8 @@ CHECKS = (
     "launch.node_runs",
     "launch.launch_finds_files",
     "launch.launch_complete",
+    "simulation.world_has",
+    "lookups.looks_up",
     "rviz.rviz_found",
     "rviz.rviz_fixed_frame",
     "rviz.rviz_shows_robot",
