@@ -44,6 +44,7 @@ _FIND = re.compile(
     r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?((?:[^\"'<>\s$,()[\]{}]|,(?=\w))*)(?=[\"'<\s,)\]}])"
 )
 _PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
+_MAX_TAG = 80  # characters of a tag and the spaces behind it
 _LAUNCH_FOLDER = "launch/"
 _PROPERTY = re.compile(r"<xacro:property\b[^<>]*?\bname\s*=\s*[\"'](\w+)[\"']")
 # Files of text that are read, which no download leaves out for their size; and programs.
@@ -109,7 +110,11 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
             for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
                 path = f"{SHARE}/{match[1]}/{match[2]}"
                 is_used = is_read and not _is_unused_property(workspace, source, match.start())
-                yield _NamedPath(package, path, source.at(match.start()), is_used)
+                before = source.text[max(0, match.start() - _MAX_TAG) : match.start()]
+                is_needed = before.rstrip().endswith("<parameters>")  # of gz_ros2_control
+                yield _NamedPath(
+                    package, path, source.at(match.start()), is_used, is_needed=is_needed
+                )
 
 
 def _robots_left_out(workspace: Workspace, package: Package) -> frozenset[str]:

@@ -556,6 +556,9 @@ CLOCK_PUBLISHED = _companion(
     "clock-published", sentence="Something publishes the clock of nodes with use_sim_time."
 )
 SIMULATION_TIME = _companion("simulation-time", sentence="The nodes of a simulation use its time.")
+SIMULATION_STARTED = _companion(
+    "simulation-started", sentence="Something starts the Gazebo in which a robot is created."
+)
 CONTAINER_STARTED = _companion(
     "container-started", sentence="The container of a component is started."
 )
