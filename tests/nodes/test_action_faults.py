@@ -99,3 +99,47 @@ def test_goals_without_a_state(end: str, goals: str) -> None:
     faults = [fault for fault in nodes_of(_ACTION + body).faults if fault.rule == "no goal state"]
     said = [fault.message.partition(" of ")[2].partition(",")[0] for fault in faults]
     assert said == ([goals] if goals else [])
+
+
+_LOOP = """
+import rclpy
+from rclpy.action import ActionServer
+from rclpy.node import Node
+from tf2_ros import Buffer, TransformListener
+from example_interfaces.action import Fibonacci
+class Look(Node):
+    def __init__(self):
+        super().__init__('look')
+        self.buffer = Buffer()
+        self.listener = TransformListener(self.buffer, self)
+        ActionServer(self, Fibonacci, 'look', self.execute)
+    def where(self):
+        return self.buffer.lookup_transform('a', 'b', rclpy.time.Time())
+    def execute(self, goal):
+        while rclpy.ok():
+            self.where()
+        goal.succeed()
+        return Fibonacci.Result()
+def main():
+    rclpy.init()
+    rclpy.spin(Look())
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "count"),
+    [
+        ("", "", 1),
+        ("self.where()", "self.buffer.lookup_transform('a', 'b', rclpy.time.Time())", 1),
+        ("self.where()", "self.unknown()", 0),
+        ("def execute", "async def execute", 0),
+        ("while rclpy.ok()", "if rclpy.ok()", 0),
+        ("self.buffer, self)", "self.buffer, self, spin_thread=True)", 0),
+        ("rclpy.spin(Look())", "rclpy.spin(Look(), executor=MultiThreadedExecutor())", 0),
+        ("rclpy.spin(Look())", "run(Look())", 0),
+    ],
+)
+def test_loops_of_goals_that_look_up_transforms(old: str, new: str, count: int) -> None:
+    """With one thread, no transform is read until the loop ends."""
+    faults = nodes_of(_LOOP.replace(old, new, 1) if old else _LOOP).faults
+    assert len([fault for fault in faults if fault.rule == "waits in a callback"]) == count

@@ -104,7 +104,7 @@ _DONE = {"publishes": "publish", "serves": "serve", "calls": "call"}
 # code of nodes.
 _CPP = (".cpp", ".cc", ".cxx")
 _OF_TARGETS = ("PKG020", "PKG021", "own-header", "header-installed")
-_OF_GOALS = ("goal-state",)
+_OF_GOALS = ("goal-state", "callback-wait")
 # The programs that publish a transform, in place of which any other node may.
 _STATIC = ("tf2_ros/static_transform_publisher",)
 _TURNED: Mapping[str, str | bool] = {"true": False, "false": True, "True": "False", "False": "True"}
@@ -149,7 +149,7 @@ def _warning_facts(submission: Submission) -> Iterator[Fact]:
         )
     if "action server" in kinds:
         fact = _package_fact("without_problems", "goals", problems=[*_OF_GOALS])
-        yield fact._replace(title="each goal of an action gets a state", about=_THE_NAMES)
+        yield fact._replace(title="each goal of an action ends, and gets a state", about=_THE_NAMES)
 
 
 def _after_builds(submission: Submission) -> tuple[CarriedFact, ...]:

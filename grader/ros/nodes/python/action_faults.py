@@ -86,6 +86,44 @@ def _attributes_of(name: str, function: _Function) -> set[str] | None:
     return used
 
 
+def loops_without_transforms(
+    code: Code,
+    registered: Sequence[RegisteredGoal],
+    methods: Mapping[tuple[Location | None, str], _Function],
+) -> Iterator[CodeFault]:
+    """Yield loops of goals that look up transforms, which one thread does not read meanwhile."""
+    own_methods = {name: function for (_, name), function in methods.items()}
+    for goal in registered:
+        function = goal.function
+        if isinstance(function, ast.AsyncFunctionDef):
+            continue
+        for node in ast.walk(function):
+            if isinstance(node, ast.While) and _looks_up(node, own_methods):
+                message = (
+                    f"the loop in {function.name}() looks up transforms, and rclpy.spin() has one "
+                    "thread, which reads none until the loop ends; use a MultiThreadedExecutor"
+                )
+                at = location_in(code.source, position_of(node))
+                place = location_in(code.source, position_of(goal.call))
+                yield CodeFault("waits in a callback", message, at, place, is_certain=False)
+                break
+
+
+def _looks_up(loop: ast.While, methods: Mapping[str, _Function]) -> bool:
+    """Return whether a loop looks up a transform, itself or by a method that it calls."""
+    nodes: list[ast.AST] = [*ast.walk(loop)]
+    for node in [*nodes]:
+        match node:
+            case ast.Call(func=ast.Attribute(value=ast.Name(id="self"), attr=name)):
+                if name in methods:
+                    nodes += ast.walk(methods[name])
+    for node in nodes:
+        match node:
+            case ast.Call(func=ast.Attribute(attr="lookup_transform")):
+                return True
+    return False
+
+
 def answers_for_results(
     code: Code, parts: Sequence[CodePart], methods: Mapping[tuple[Location | None, str], _Function]
 ) -> Iterator[CodeFault]:
