@@ -21,7 +21,13 @@ from grader.lab.authoring.draft_choice import WITHOUT, DraftChoice
 from grader.lab.authoring.facts import Omission, Solution
 from grader.lab.authoring.mutant_kinds import KindScore
 from grader.lab.authoring.mutants import Mutant
-from grader.lab.authoring.rubric_test import MutantOutcome, Trial, mutant_outcomes, run_rubric_test
+from grader.lab.authoring.rubric_test import (
+    GROUP,
+    MutantOutcome,
+    Trial,
+    mutant_outcomes,
+    run_rubric_test,
+)
 from grader.lab.authoring.samples import read_samples
 from grader.lab.checks.loading import urdf_loads
 from grader.lab.rubric.rubric import Rubric
@@ -42,7 +48,7 @@ from grader.workers.queue import Progress
 
 _SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it
 _MAX_IN_NOTE = 4  # files or criteria
-_GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how long they may take
+_SECONDS = 60.0  # that a group of mutants may take
 
 
 def draft_choice(
@@ -250,7 +256,7 @@ def _graded(
     executor: Processes, rubric: Rubric, mutants: Sequence[Mutant]
 ) -> Iterator[MutantOutcome]:
     """Yield the outcomes of mutants, which are graded in groups. Raises WorkerError."""
-    groups = [mutants[at : at + _GROUP] for at in range(0, len(mutants), _GROUP)]
+    groups = [mutants[at : at + GROUP] for at in range(0, len(mutants), GROUP)]
     return chain.from_iterable(
         executor.map(partial(mutant_outcomes, rubric.data, str(rubric.path)), groups)
     )
