@@ -144,7 +144,10 @@ def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | 
                 problem for problem in submission.urdf.problems if problem.kind.effect == "drops"
             ):
                 warn(f"{problem.location.file_and_line}: {problem.code}: {problem.message}")
-    others = [file.path for file in submission.other_candidates if not file.path.endswith(MANIFEST)]
+    others = []
+    for file in submission.unused_candidates:
+        if not file.is_part and not file.path.endswith(MANIFEST):
+            others.append(file.path)
     if others:
         warn(
             f"the rubric is made from {submission.path}; other candidates: "
