@@ -77,10 +77,11 @@ def _packages_without_problems(submission: Submission, *, problems: Sequence[str
         certain += [problem for problem in of_robot if _is_asked(problem, problems)]
     if certain:
         return _fail_with_problems(certain)
+    shown = enumerated(problems, MAX_NAMED)
     for reason in _why_open(submission, problems):
-        cause = f"cannot determine statically whether there are {enumerated(problems, MAX_NAMED)}"
+        cause = f"cannot determine statically whether there are problems {shown}"
         raise NotDecided(f"{cause}: {reason}", cause)
-    return passed(f"the packages have none of the problems {enumerated(problems, MAX_NAMED)}")
+    return passed(f"the packages have none of the problems {shown}")
 
 
 def _is_asked(problem: Problem, names: Collection[str]) -> bool:
