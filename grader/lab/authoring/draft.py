@@ -65,6 +65,7 @@ _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
 }
 _ROBOT, _PACKAGE = "robot", "package"
 _WHOLE = 100  # points
+_MOST_OF_MEAN = 3  # of the mean points, for one criterion
 _STEPS = tuple(map(Decimal, ("1", "0.5", "0.25", "0.1", "0.05", "0.01")))  # of points
 # The kinds of things that a solution has, which share the points evenly.
 _JOINTS, _SHAPES, _MASSES, _SIMULATION = "joints", "shapes", "masses", "simulation"
@@ -386,6 +387,8 @@ def _weight(row: _DraftCriterion, choice: DraftChoice) -> int:
 def _shared(kinds: Sequence[str], weights: Sequence[int], total: int | None) -> list[Decimal]:
     """Return the points of criteria: each kind has an equal share, in which weights count.
 
+    A kind of few criteria has less, so that these get at most three times the mean.
+
     Without a total, it is 100 points, or the least multiple that leaves each criterion one. With
     one, points have as few decimals as leave each criterion some. Raises InputError for too few.
     """
@@ -398,7 +401,7 @@ def _shared(kinds: Sequence[str], weights: Sequence[int], total: int | None) -> 
         if total / _STEPS[-1] < needed:
             raise InputError(f"{len(kinds)} criteria cannot share {total} points: give more")
         unit = next(step for step in _STEPS if total / step >= needed)
-    shares = _apportioned(int(total / unit), [1] * len(counts))
+    shares = _even_shares(int(total / unit), [*counts.values()])
     points = [unit] * len(kinds)
     for kind, share in zip(counts, shares, strict=True):
         places = [place for place, name in enumerate(kinds) if name == kind]
@@ -408,7 +411,18 @@ def _shared(kinds: Sequence[str], weights: Sequence[int], total: int | None) -> 
     return points
 
 
-def _apportioned(points: int, weights: Sequence[int]) -> list[int]:
+def _even_shares(units: int, counts: Sequence[int]) -> list[int]:
+    """Return how many units kinds have, by the numbers of their criteria."""
+    most = [_MOST_OF_MEAN * units * count / sum(counts) for count in counts]
+    left = units / len(counts)
+    for _ in counts:
+        capped = [share for share in most if share < left]
+        others = len(counts) - len(capped)
+        left = (units - sum(capped)) / others if others else left
+    return _apportioned(units, [min(share, left) for share in most])
+
+
+def _apportioned(points: int, weights: Sequence[float]) -> list[int]:
     """Return whole points by weights, at least one for each.
 
     The rest goes to the largest remainders, of equal ones to the first.

@@ -12,6 +12,13 @@ from grader.ros.xml.parsing import XmlFile
 
 # What Gazebo loads in a world without plugins: server.config of gz-sim8.
 _DEFAULT_SYSTEMS = ("Physics", "UserCommands", "SceneBroadcaster")
+# The packages whose programs show a robot.
+_SHOWING = frozenset(
+    {
+        *("robot_state_publisher", "joint_state_publisher", "joint_state_publisher_gui"),
+        *("rviz2", "tf2_ros"),
+    }
+)
 _SIMULATION = "ros_gz_sim"
 _OTHER_PROGRAMS = ("create", "remove", "set_entity_pose")  # of that package
 # The launch files and commands that start Gazebo, which other packages also have.
@@ -113,7 +120,9 @@ def _is_library_of(library: str, system: str) -> bool:
 
 
 def has_programs(workspace: Workspace) -> bool:
-    """Return whether a workspace has nodes, controllers or a world, beside a robot."""
+    """Return whether a workspace has nodes, controllers or a world, not only a robot to show."""
     if any(code.nodes for code in workspace.code.by_package.values()):
+        return True
+    if any(node.package not in _SHOWING for _, node in workspace.launches.nodes):
         return True
     return bool(defined_controllers(workspace) or started_worlds(workspace).files)

@@ -241,7 +241,9 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
     if inside in owner.tree.folders:
         yield from _no_folder(owner, inside, f"a build installs no {target}", at)
     else:
-        is_absent = named.is_needed and workspace.texts.is_nowhere(owner, target)
+        is_absent = is_surely_absent(owner, target)
+        if named.is_needed and not is_absent:  # the second question costs more
+            is_absent = workspace.texts.is_nowhere(owner, target)
         yield _not_there(owner, target, at, is_output=named.is_output, is_absent=is_absent)
 
 
@@ -300,7 +302,7 @@ def _not_there(
     meant = similar_file(owner, name)
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"
-    is_certain = (is_absent or is_surely_absent(owner, target)) and not is_output
+    is_certain = is_absent and not is_output
     either = corrections(name, at, meant)
     cause = f"no file in {posixpath.dirname(target)}" if meant is None else ""
     return Mismatch(FILE_INSTALLED, message, at, None, is_certain, either, cause=cause)
