@@ -108,13 +108,20 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
                 or source.path in workspace.robots.files
             ) and source.path not in left_out
             for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
-                path = f"{SHARE}/{match[1]}/{match[2]}"
-                is_used = is_read and not _is_unused_property(workspace, source, match.start())
-                before = source.text[max(0, match.start() - _MAX_TAG) : match.start()]
-                is_needed = before.rstrip().endswith("<parameters>")  # of gz_ros2_control
+                start = match.start()
+                is_used = is_read and not _is_unused_property(workspace, source, start)
                 yield _NamedPath(
-                    package, path, source.at(match.start()), is_used, is_needed=is_needed
+                    package=package,
+                    path=f"{SHARE}/{match[1]}/{match[2]}",
+                    location=source.at(start),
+                    is_read=is_used,
+                    is_needed=_is_in_parameters(source, start),
                 )
+
+
+def _is_in_parameters(source: Source, at: int) -> bool:
+    """Return whether a place is the text of <parameters>, which gz_ros2_control reads."""
+    return source.text[max(0, at - _MAX_TAG) : at].rstrip().endswith("<parameters>")
 
 
 def _robots_left_out(workspace: Workspace, package: Package) -> frozenset[str]:
