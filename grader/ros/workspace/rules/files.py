@@ -107,16 +107,23 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
                 or not workspace.robots.known
                 or source.path in workspace.robots.files
             ) and source.path not in left_out
-            for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
-                start = match.start()
-                is_used = is_read and not _is_unused_property(workspace, source, start)
-                yield _NamedPath(
-                    package=package,
-                    path=f"{SHARE}/{match[1]}/{match[2]}",
-                    location=source.at(start),
-                    is_read=is_used,
-                    is_needed=_is_in_parameters(source, start),
-                )
+            yield from _paths_in_source(workspace, package, source, is_read=is_read)
+
+
+def _paths_in_source(
+    workspace: Workspace, package: Package, source: Source, *, is_read: bool
+) -> Iterator[_NamedPath]:
+    """Yield the paths that a file of a robot or of parameters names."""
+    for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
+        start = match.start()
+        is_used = is_read and not _is_unused_property(workspace, source, start)
+        yield _NamedPath(
+            package=package,
+            path=f"{SHARE}/{match[1]}/{match[2]}",
+            location=source.at(start),
+            is_read=is_used,
+            is_needed=_is_in_parameters(source, start),
+        )
 
 
 def _is_in_parameters(source: Source, at: int) -> bool:
