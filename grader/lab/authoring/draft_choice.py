@@ -26,18 +26,23 @@ _KINDS: Mapping[str, tuple[str, ...]] = {
     "motion": ("kinematics_match_reference",),
     "elements": ("entry_is",),
     "rviz": ("rviz_found", "rviz_fixed_frame", "rviz_shows_robot", "rviz_display_on"),
-    "nodes": ("node_runs",),
+    "nodes": ("node_runs", "looks_up"),
+    "worlds": ("world_has",),
     "installs": ("build_installs", "installs_files"),
     "measures": ("parameter_is",),
 }
 WITHOUT = (*_KINDS, *FAMILIES)
 # Without these, names cannot be compared.
 _OF_NAMES = ("urdf_loads", "package_found", "setup_imports", "launch_complete", "names_agree")
-# Checks that name one thing, with the argument; launch files may have any name anyway.
-_NAMED_BY = {"package_found": "name", "parameter_is": "node"}
+# Checks that are about named things, with the arguments; launch files may have any name anyway.
+_NAMED_BY = {
+    "package_found": ("name",),
+    "parameter_is": ("node",),
+    "looks_up": ("target", "source"),
+}
 _MAX_MOVED = 20  # links that @moved:1 to @moved:20 name
 _OPENED = ("publishes", "subscribes", "serves", "calls")
-_ASKED = ("nodes", "not", *_OPENED)
+_ASKED = ("nodes", "not", "spawns", *_OPENED)
 
 
 class DraftChoice(NamedTuple):
@@ -72,8 +77,8 @@ class DraftChoice(NamedTuple):
         """
         if not self.free:
             return fact
-        named = _NAMED_BY.get(fact.check)
-        if named is not None and fact.arguments.get(named) in self.free:
+        named = _NAMED_BY.get(fact.check, ())
+        if any(fact.arguments.get(name) in self.free for name in named):
             return None
         selectors: dict[str, str] = {}
         for link in self._free_links(fact, robot):
