@@ -34,7 +34,7 @@ from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
-from grader.ros.workspace.graph.code_ends import opened_by
+from grader.ros.workspace.graph.code_ends import End, opened_by
 from grader.ros.workspace.rules.reading import read_agreement, wrong_names
 from grader.ros.workspace.rules.rule_table import FAMILIES, Family
 
@@ -145,19 +145,22 @@ def _warning_facts(submission: Submission) -> Iterator[Fact]:
         fact = _package_fact("without_problems", "targets", problems=[*_OF_TARGETS])
         yield fact._replace(
             title="the targets of builds find their headers and libraries, and these are installed",
-            carried=_after_builds(submission),
+            carried=_after(submission, *_builds(submission)),
         )
     if "action server" in kinds:
         fact = _package_fact("without_problems", "goals", problems=[*_OF_GOALS])
-        yield fact._replace(title="each goal of an action ends, and gets a state", about=_THE_NAMES)
+        yield fact._replace(
+            title="each goal of an action ends, and gets a state",
+            about=_THE_NAMES,
+            carried=_after(submission, *_OF_CODE),
+        )
 
 
-def _after_builds(submission: Submission) -> tuple[CarriedFact, ...]:
-    """Return what counts instead of a fact if a build stops: that there is a package."""
+def _after(submission: Submission, *causes: str) -> tuple[CarriedFact, ...]:
+    """Return what counts instead of a fact if others fail: that there is a package."""
     if submission.package is None:
         return ()
-    named = {"name": submission.package.name}
-    return (CarriedFact(_builds(submission), "package_found", named),)
+    return (CarriedFact(causes, "package_found", {"name": submission.package.name}),)
 
 
 def _simulation_facts(submission: Submission) -> Iterator[Fact]:
@@ -187,10 +190,8 @@ def _lookup_facts(submission: Submission) -> Iterator[Fact]:
 
 def _after_names(submission: Submission) -> tuple[CarriedFact, ...]:
     """Return what counts instead of what nodes do, if they do not run or get no parameters."""
-    if submission.package is None:
-        return ()
     causes = (*_builds(submission), *_OF_PARAMETERS, *_OF_CODE, *words_of_launches(submission))
-    return (CarriedFact(causes, "package_found", {"name": submission.package.name}),)
+    return _after(submission, *causes)
 
 
 def _packages(submission: Submission) -> Iterator[tuple[Package, str]]:
@@ -535,12 +536,19 @@ def _launch_text(package: Package, name: str) -> str:
 
 
 def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator[Fact]:
-    """Yield what nodes and bridges publish, serve and call, and which controllers are spawned."""
+    """Yield what nodes and bridges publish, serve and call, and which controllers are spawned.
+
+    Of a lab with a robot, what nodes open may have other names: only bridges are asked.
+    """
     asked: dict[str, dict[str, str]] = {verb: {} for verb in _DONE}
     workspace = submission.workspace
     for node in launch.nodes:
         bridged = opened_by_bridge(workspace, node)
-        ends = bridged[0] if bridged is not None else opened_by(workspace, node)
+        ends: Iterable[End] = ()
+        if bridged is not None:
+            ends, _ = bridged
+        elif not submission.path:
+            ends = opened_by(workspace, node)
         for end in ends if node.when else ():
             verb, kind = _OPENING.get(end.kind), end.type
             if verb is not None and kind is not None and end.name and end.is_known:
