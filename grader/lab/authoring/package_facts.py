@@ -34,7 +34,7 @@ from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
-from grader.ros.workspace.graph.code_ends import End, opened_by
+from grader.ros.workspace.graph.code_ends import opened_by
 from grader.ros.workspace.rules.reading import read_agreement, wrong_names
 from grader.ros.workspace.rules.rule_table import FAMILIES, Family
 
@@ -544,11 +544,9 @@ def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator
     workspace = submission.workspace
     for node in launch.nodes:
         bridged = opened_by_bridge(workspace, node)
-        ends: Iterable[End] = ()
-        if bridged is not None:
-            ends, _ = bridged
-        elif not submission.path:
-            ends = opened_by(workspace, node)
+        ends = [*bridged[0]] if bridged is not None else []
+        if bridged is None and not submission.path:
+            ends += opened_by(workspace, node)
         for end in ends if node.when else ():
             verb, kind = _OPENING.get(end.kind), end.type
             if verb is not None and kind is not None and end.name and end.is_known:
