@@ -18,7 +18,8 @@ from rich.text import Text
 from grader.app.cli.explain import SchemaName
 from grader.app.commands.schemas import json_schema
 from grader.base.text import enumerated
-from grader.lab.checks.registry import own_checks
+from grader.lab.checks.check import Check
+from grader.lab.checks.registry import CHECKS, own_checks
 from grader.lab.grading.grade import grade
 from grader.lab.grading.report import Report
 from grader.lab.hints.hinting import hinted
@@ -133,29 +134,62 @@ def problems() -> Iterator[str]:
             yield from (f"### `{rule.name}`", "", escaped(rule.sentence), "", *example(rule.name))
 
 
+# What one may want to ask, and the modules of the checks that do.
+QUESTIONS = {
+    "Does the URDF load, and is it well written?": ("loading", "problem_codes", "xacro_source"),
+    "What does the robot show?": ("appearance", "meshes"),
+    "Which links and joints does it have?": ("structure", "joints"),
+    "Where are things?": ("placement", "heights", "contact"),
+    "How does it move and stand?": ("motion", "driving", "reference"),
+    "What do links weigh, and what do they collide with?": ("inertia", "collisions"),
+    "Which values do files and nodes have?": ("entries", "parameters"),
+    "Does the package build and install its files?": ("package_build",),
+    "What does a launch file start, and what do the nodes do?": ("launch", "simulation", "lookups"),
+    "What does RViz show?": ("rviz",),
+    "Does everything fit together?": ("names_agree",),
+    "What did the student write or show?": ("manual",),
+}
+
+
 def checks() -> Iterator[str]:
-    """Yield a list of all checks, and a section for each with what `grader explain` prints."""
+    """Yield a list of all checks by what they ask, and a section for each, as `explain` prints."""
+    yield from checks_by_question()
     for check in own_checks():
-        yield f"- [`{check.name}`](#{check.name}): {escaped(check.documentation.paragraphs[0])}"
-    yield ""
-    for check in own_checks():
-        yield from (f"## `{check.name}`", "")
-        for paragraph in check.documentation.paragraphs:
-            yield from (escaped(paragraph), "")
-        if check.parameters:
-            yield from ("| argument | meaning | type | default |", "|---|---|---|---|")
-        for name, parameter in check.parameters.items():
-            default = "required" if parameter.required else f"`{default_text(parameter.default)}`"
-            meaning = escaped(check.documentation.arguments[name])
-            yield f"| `{name}` | {meaning} | {parameter.type.name} | {default} |"
-        if check.parameters:
-            yield ""
-        if check.about.causes:
-            yield from (f"{CAUSES_OF_CHECK}:", "")
-            for cause, meaning in check.about.causes.items():
-                yield f"- `{cause}`: {escaped(meaning)}"
-            yield ""
-        yield from example(check.name)
+        yield from check_section(check)
+
+
+def checks_by_question() -> Iterator[str]:
+    """Yield the checks in lists, one for each question."""
+    modules = {place.partition(".")[2]: place.partition(".")[0] for place in CHECKS}
+    assert {*modules.values()} == {*chain.from_iterable(QUESTIONS.values())}
+    for question, asking in QUESTIONS.items():
+        yield from (f"### {question}", "")
+        for check in own_checks():
+            if modules[check.name] in asking:
+                fact = escaped(check.documentation.paragraphs[0])
+                yield f"- [`{check.name}`](#{check.name}): {fact}"
+        yield ""
+
+
+def check_section(check: Check) -> Iterator[str]:
+    """Yield the section of a check."""
+    yield from (f"## `{check.name}`", "")
+    for paragraph in check.documentation.paragraphs:
+        yield from (escaped(paragraph), "")
+    if check.parameters:
+        yield from ("| argument | meaning | type | default |", "|---|---|---|---|")
+    for name, parameter in check.parameters.items():
+        default = "required" if parameter.required else f"`{default_text(parameter.default)}`"
+        meaning = escaped(check.documentation.arguments[name])
+        yield f"| `{name}` | {meaning} | {parameter.type.name} | {default} |"
+    if check.parameters:
+        yield ""
+    if check.about.causes:
+        yield from (f"{CAUSES_OF_CHECK}:", "")
+        for cause, meaning in check.about.causes.items():
+            yield f"- `{cause}`: {escaped(meaning)}"
+        yield ""
+    yield from example(check.name)
 
 
 def rules_in_public() -> Iterator[str]:

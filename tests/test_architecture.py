@@ -148,15 +148,15 @@ WEIGHTS = {
     "classroom": 70_400,  # functions of complexity at most 10
     "files": 12_350,  # the end of a log, from a file, a folder or a pipe
     "lab": 100,
-    "lab.authoring": 39_300,  # functions of complexity at most 10; transforms and ways of messages in drafts
-    "lab.checks": 47_500,  # functions of complexity at most 10; what connects in the graph of what is launched
+    "lab.authoring": 41_550,  # functions of complexity at most 10; what nodes look up, spawners start and worlds have, details as comments
+    "lab.checks": 49_750,  # functions of complexity at most 10; what connects in the graph of what is launched
     "lab.documents": 10_900,
     "lab.grading": 13_000,  # what hides the base
     "lab.hints": 36_000,  # functions of complexity at most 10
     "lab.rubric": 10_000,
     "lab.submission": 9_600,  # the release that reads a URDF, slips that are proven by reading it again
     "report": 65_700,  # the graph of a graded submission; the screen of an inspection: rows by causes, each error in the first ones; the graph of a launch file as text, JSON, DOT, Mermaid and a page
-    "ros": 310,  # the API has the names that checks of the graph use
+    "ros": 350,  # the API has the names that checks of the graph use
     "ros.config": 5_750,  # numbers of parameters in quotes
     "ros.cpp": 13_000,  # errors of the grammar that leave open one statement only
     "ros.installation": 32_650,  # the packages that CMake finds, tests, expressions that are not closed; names of program files, targets of tests and of other projects; what stops a build from a release on; functions for what was branches of long ones
@@ -165,12 +165,12 @@ WEIGHTS = {
     "ros.launch": 46_000,  # what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing; components as nodes
     "ros.log": 3_800,
     "ros.mesh": 4_300,
-    "ros.nodes": 61_550,  # the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions
+    "ros.nodes": 62_850,  # the transforms that code gives to a broadcaster; calls are bound as Python binds them; in C++, what holds a node and what parameters are given; actions
     "ros.package": 27_900,  # the release that reads a robot, the fixes of files that cannot be read; functions that do one thing; the entry points and files that misspelt names mean
     "ros.python": 28_950,  # the letters of a folder that is not known, and constants of classes
     "ros.slips": 7_800,  # the kinds of slips of a robot that are proven by reading it again
     "ros.urdf": 49_900,  # the versions of URDF that Lyrical reads, the fixes of words, which were in lab.hints; functions that do one thing
-    "ros.workspace": 138_450,  # ways of messages, and transforms of code, for checks; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches; the graph of a launch file
+    "ros.workspace": 141_000,  # ways of messages, and transforms of code, for checks; the place of a word; the robots with which a file is compared; a function for each rule, none of high complexity; nodes of the graph; fixes of names; functions for branches; the graph of a launch file
     "ros.xacro": 28_600,  # xacro:attribute, letters outside of ASCII; functions that do one thing
     "ros.xml": 13_400,  # the attributes of broken tags, end tags of macros, the attributes of newer versions of URDF
     "": 400,

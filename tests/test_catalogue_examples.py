@@ -79,6 +79,7 @@ FOLDERS = {
     ".rviz": "rviz",
     ".yaml": "config",
     ".srdf": "config",
+    ".sdf": "worlds",
     ".py": "rover",
     "setup.py": "",
 }

@@ -30,6 +30,7 @@ PAGES = sorted(
 )
 FOLLOWED = {  # pages whose blocks belong together
     "write-a-rubric.md": "test_tutorial.py",
+    "code-lab.md": "test_tutorial.py",
     "change-dimensions.md": "here: test_the_page_on_dimensions",
     "ci.md": "here: test_the_set_up_of_ci",
     "installation.md": "here: test_the_installation",

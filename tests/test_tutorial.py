@@ -14,7 +14,7 @@ from grader.lab.checks.registry import find_check
 from grader.lab.rubric.keys import CRITERION, DEFAULTS, PART, RUBRIC
 from grader.lab.rubric.rubric import load_rubric
 from tests.command_line import ROOT
-from tests.tutorial import PAGE, Step, follow
+from tests.tutorial import CODE_PAGE, PAGE, Step, follow
 
 REFERENCE = (ROOT / "docs" / "rubric-reference.md").read_text(encoding="utf-8")
 BLOCKS: list[dict[str, Any]] = [
@@ -46,6 +46,14 @@ def test_every_command_prints_what_the_page_shows(followed: tuple[str, list[Step
         expected = 0 if not (step.shown or "").startswith("grader: ") else 2
         lost = "✗" in step.printed or "differ from their expected.toml" in step.printed
         assert step.code == (1 if lost else expected), step
+
+
+def test_the_tutorial_for_code_prints_what_it_shows(tmp_path: Path) -> None:
+    """From a solution to a tested rubric: each command was run, and only the mistake loses points."""
+    page, steps = follow(CODE_PAGE.read_text(encoding="utf-8"), tmp_path)
+    assert page == CODE_PAGE.read_text(encoding="utf-8"), "run python -m tests.tutorial"
+    assert [step.code for step in steps] == [0, 0, 0, 0, 0, 1]
+    assert len(load_rubric(str(tmp_path / "lab.toml")).criteria) == 12
 
 
 def test_the_rubric_of_the_tutorial_is_valid(

@@ -1,4 +1,4 @@
-"""Follow the tutorials in docs/. `python -m tests.tutorial` writes the output of the commands into docs/write-a-rubric.md.
+"""Follow the tutorials in docs/. `python -m tests.tutorial` writes the output of the commands into their pages.
 
 An output on the page stays as it is if it matches, where "..." stands for any text.
 """
@@ -14,6 +14,7 @@ from typing import NamedTuple
 from tests.command_line import HANG_TIMEOUT, ROOT, run_with_input
 
 PAGE = ROOT / "docs" / "write-a-rubric.md"
+CODE_PAGE = ROOT / "docs" / "code-lab.md"
 _NAME = re.compile(r"`([\w./-]+)`:\s*$")
 
 
@@ -97,5 +98,7 @@ def _pattern(text: str, anything: str) -> str:
 
 
 if __name__ == "__main__":
-    with TemporaryDirectory() as folder:
-        PAGE.write_text(follow(PAGE.read_text(encoding="utf-8"), Path(folder))[0], encoding="utf-8")
+    for written in (PAGE, CODE_PAGE):
+        with TemporaryDirectory() as folder:
+            current, _ = follow(written.read_text(encoding="utf-8"), Path(folder))
+            written.write_text(current, encoding="utf-8")

@@ -86,7 +86,13 @@ if TYPE_CHECKING:
     from grader.ros.workspace.graph.launch_graph import Unread as Unread
     from grader.ros.workspace.graph.launch_graph import connections_in as connections_in
     from grader.ros.workspace.graph.launch_graph import unconnected_ends as unconnected_ends
+    from grader.ros.workspace.graph.lookups import looked_up_transforms as looked_up_transforms
     from grader.ros.workspace.graph.manual_ends import manual_ends as manual_ends
+    from grader.ros.workspace.graph.node_ends import opened_by_bridge as opened_by_bridge
+    from grader.ros.workspace.graph.started_controllers import spawned_by as spawned_by
+    from grader.ros.workspace.graph.started_worlds import has_programs as has_programs
+    from grader.ros.workspace.graph.started_worlds import started_worlds as started_worlds
+    from grader.ros.workspace.graph.used_files import used_file as used_file
     from grader.ros.workspace.joined_graph import JoinedGraph as JoinedGraph
     from grader.ros.workspace.joined_graph import PlacedEnd as PlacedEnd
     from grader.ros.workspace.joined_graph import join_launches as join_launches
@@ -128,6 +134,11 @@ else:
         "workspace.graph.manual_ends": "manual_ends",
         "workspace.joined_graph": "JoinedGraph PlacedEnd join_launches",
         "workspace.launch_graphs": "launch_files launch_graph",
+        "workspace.graph.lookups": "looked_up_transforms",
+        "workspace.graph.node_ends": "opened_by_bridge",
+        "workspace.graph.started_controllers": "spawned_by",
+        "workspace.graph.started_worlds": "has_programs started_worlds",
+        "workspace.graph.used_files": "used_file",
         "workspace.name_places": "NamePlaces",
         "workspace.opened": "OpenedWorkspace",
         "workspace.opening": "STANDARD_INPUT open_workspace",

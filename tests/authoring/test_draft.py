@@ -7,6 +7,7 @@ import json
 import re
 import shutil
 import xml.etree.ElementTree as ET
+from decimal import Decimal
 from pathlib import Path
 
 import pytest
@@ -24,9 +25,9 @@ ARM = ROOT / "tests/corpus/authoring/arm.urdf"
 LAB6 = ROOT / "rubrics/lab6/my_robot"
 
 
-def new(folder: Path, reference: Path) -> Done:
+def new(folder: Path, reference: Path, *options: str) -> Done:
     """Write a rubric into a folder, and return what the command printed."""
-    return run(("rubric", "new", folder / "lab.toml", "--from", reference))
+    return run(("rubric", "new", folder / "lab.toml", "--from", reference, *options))
 
 
 # Python modules; entries of the template; folders that ros2 launch searches.
@@ -192,7 +193,7 @@ def test_values_of_parameters_are_comments_that_may_become_criteria(of_cart: Rub
     _ = changed.write_text(f"{before}{marked}{line}\n{re.sub('(?m)^# ', '', values)}")
     done = run(("rubric", "check", changed))
     more = values.count("# [[criterion]]")
-    assert more == 7
+    assert more == 8  # seven parameters, and what a lab of programs leaves free
     assert (
         f"{len(of_cart.criteria) + more} criteria, {of_cart.points} points, no mistakes found"
         in done.stdout.decode()
@@ -217,8 +218,11 @@ def test_what_is_odd_in_the_names_of_a_reference_is_said_in_one_line(
         )
         == 1
     )
-    asked = re.findall('with = { of = "(.*)" }', (tmp_path / "lab.toml").read_text())
+    rubric = load_rubric(str(tmp_path / "lab.toml"))
+    names = [row.arguments["of"] for row in rubric.criteria if row.check.name == "names_agree"]
+    asked = [str(name) for name in names]
     assert family not in asked
+    assert f'# id = "{family}-names-agree"' in rubric.path.read_text()
     # The numbers of a joint that does not exist are not compared.
     assert {*asked, family, "values"} == agreement_of(cart_files()).families & {*FAMILIES}
 
@@ -308,16 +312,6 @@ NAMED: dict[str, tuple[str, str, str]] = {
         '<transmission name="left"><joint name="left_wheel_joint"',
         '<transmission name="left"><joint name="port_shaft"',
     ),
-    "a joint for which Gazebo has values": (
-        '<gazebo reference="left_wheel_joint"><provideFeedback>true</provideFeedback></gazebo>',
-        '<gazebo reference="left_wheel_joint">',
-        '<gazebo reference="right_wheel_joint">',
-    ),
-    "a link called like a joint": (
-        '<link name="spar"/><joint name="spar" type="fixed"><parent link="base_link"/><child link="spar"/></joint><gazebo reference="spar"><mu1>0.1</mu1></gazebo>',
-        '<gazebo reference="spar">',
-        '<gazebo reference="base_link">',
-    ),
 }
 
 
@@ -405,16 +399,40 @@ def points_by_check(rubric: Rubric) -> dict[str, set[int]]:
     """Return the points of the criteria of each check."""
     points: dict[str, set[int]] = {}
     for criterion in rubric.criteria:
-        points.setdefault(criterion.check.name, set()).add(int(criterion.points))
+        if criterion.check.name != "joint_limits" or "lower" in criterion.arguments:
+            points.setdefault(criterion.check.name, set()).add(int(criterion.points))
     return points
 
 
-def test_names_get_half_of_the_points_where_the_work_is_not_the_robot(of_cart: Rubric) -> None:
-    """And each of them more than a criterion of the robot."""
-    of_names = [it for it in of_cart.criteria if it.check.name == "names_agree"]
-    assert 2 * sum(it.points for it in of_names) == of_cart.points
-    others = [it.points for it in of_cart.criteria if it not in of_names]
-    assert min(it.points for it in of_names) >= max(others)
+def test_kinds_of_things_share_the_points_evenly(of_cart: Rubric) -> None:
+    """RViz, joints, builds and so on have equal shares, however many criteria are about each."""
+    launches = ("node_runs", "launch_complete")
+    builds = ("urdf_loads", "package_found", "package_type", "setup_imports", "installs_files")
+    shares = []
+    for checks in (launches, builds):
+        rows = [row for row in of_cart.criteria if row.check.name in checks]
+        rows = [row for row in rows if not {"publishes", "serves"}.intersection(row.arguments)]
+        shares.append(float(sum(row.points for row in rows)))
+    assert abs(shares[0] - shares[1]) <= 1
+
+
+@pytest.mark.parametrize("total", [100, 10])
+def test_a_draft_has_the_points_that_are_asked_for(total: int, tmp_path: Path) -> None:
+    """With as many decimals as leave each criterion some."""
+    assert new(tmp_path, ARM, "--total", str(total)).returncode == 0
+    rubric = load_rubric(str(tmp_path / "lab.toml"))
+    assert rubric.points == total
+    assert min(row.points for row in rubric.criteria) > 0
+
+
+def test_criteria_cannot_share_too_few_points(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A hundredth of a point is the least."""
+    monkeypatch.setattr("grader.lab.authoring.draft._STEPS", (Decimal(1),))
+    done = new(tmp_path, ARM, "--total", "3")
+    assert done.returncode == 2
+    assert b"criteria cannot share 3 points: give more" in done.stderr
 
 
 @pytest.mark.slow

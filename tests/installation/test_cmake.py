@@ -304,11 +304,12 @@ def test_a_build_has_tests(before: str, tests: str, said: list[str]) -> None:
 
 
 def test_a_test_outside_of_a_condition() -> None:
-    """Its sources have to be there, too."""
-    setup = read(
-        f"{_FIND}ament_add_gtest(t src/nod.cpp SKIP_TEST)\nadd_custom_target(words src/nod.cpp)"
-    )
+    """Its sources have to be there, and the package that has its command."""
+    test = "ament_add_gtest(t src/nod.cpp SKIP_TEST)\nadd_custom_target(words src/nod.cpp)"
+    setup = read(f"{_FIND}{test}")
     assert [stop.message + stop.hint for stop in setup.stops] == [_NO_FILE]
+    setup = read("ament_add_gtest(t src/node.cpp)")
+    assert [stop.message + stop.hint for stop in setup.stops] == [_NO_COMMAND]
 
 
 @pytest.mark.parametrize("export", ["", "EXPORT parts "])

@@ -304,6 +304,54 @@ def test_calls_of_an_unknown_node_are_a_doubt_of_the_package() -> None:
     assert {it.reason for it in found.doubts} == reasons
 
 
+def test_a_method_of_a_variable_starts_no_node_without_a_class() -> None:
+    """Only the function that makes such a node has it; others that call methods of a variable have not."""
+    other = f"{_HEAD}def main():\n    n = rclpy.create_node('b')\n    rclpy.spin(n)\n"
+    text = f"{_HEAD}{_CLASS}def main():\n    node = Talker()\n    node.destroy_node()\n"
+    programs = nodes_of(text, b=other).programs
+    names = {program.name: [node.name for node in program.nodes] for program in programs}
+    assert names == {"talk": ["talker"], "b": ["b"]}
+
+
+_GIVEN = """
+def go(node, client, x=1):
+    node.get_logger().info('a')
+    last(node)
+def last(robot):
+    robot.create_publisher(Float32, 'x', 10)
+def main():
+    n = rclpy.create_node('a')
+    go(n, 1, x=2)
+    go(client=1, node=n)
+"""
+
+
+@pytest.mark.parametrize(
+    ("more", "opened"),
+    [
+        ("", ["x"]),
+        ("    go(Node('b'), 1)\n", []),  # more than one node
+        ("    go(*[n])\n", ["x"]),
+        ("    helper.go(n)\n", ["x"]),
+    ],
+)
+def test_a_function_of_the_module_opens_what_it_opens_of_the_node_that_it_is_given(
+    more: str, opened: list[str]
+) -> None:
+    """All its calls give it one node; a function of another module may open anything."""
+    node, *_ = nodes_of(_HEAD + _GIVEN + more).nodes
+    assert [end.name for end in node.endpoints] == opened
+    assert bool(node.doubts) == (more[:9] in ("    go(No", "    helpe"))
+
+
+def test_a_parameter_that_is_bound_again_is_no_node() -> None:
+    """An inner function, or an assignment, may give the name to something else."""
+    for body in ("def in_it(robot):\n        pass", "robot = 1"):
+        text = _GIVEN.replace("def last(robot):", f"def last(robot):\n    {body}")
+        [node] = nodes_of(_HEAD + text).nodes
+        assert node.endpoints == ()
+
+
 def test_a_program_has_the_nodes_that_its_function_creates() -> None:
     """Also those of functions that it calls, and of a function or class of another module; a derived class is one."""
     text = f"{_HEAD}from .base import Base, run\nclass T(Base):\n    pass\ndef start():\n    T()\ndef main():\n    start(); run()\n"

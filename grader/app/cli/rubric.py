@@ -35,6 +35,7 @@ _FOLDER = "A folder with samples: submissions with an expected.toml."
 _WITHOUT = "Omit kinds of criteria, such as colours,masses,inertia,collision, or families of names."
 _NAMES_ONLY = "Only what names have to agree on, and that the packages build."
 _FREE = "A name that the handout leaves open: of a link, joint, node, topic or file. Repeatable."
+_TOTAL = "The points of all criteria together."
 _WEIGHTS = "What matters gets more points, or all criteria get equal ones."
 _LEAST = "Exit 1 if the mutation score is less, in percent."
 _ALL = "Grade all mutants, not a sample."
@@ -108,6 +109,7 @@ def new_rubric(
     names_only: Annotated[bool, typer.Option("--names-only", help=_NAMES_ONLY)] = False,
     free: Annotated[list[str] | None, typer.Option(metavar="NAME", help=_FREE)] = None,
     weights: Annotated[Literal["importance", "equal"], typer.Option(help=_WEIGHTS)] = "importance",
+    total: Annotated[int | None, typer.Option(metavar="POINTS", min=1, help=_TOTAL)] = None,
 ) -> str:
     """Write a rubric from a reference solution.
 
@@ -115,7 +117,8 @@ def new_rubric(
     get full marks. The output lists the facts that no check can test.
 
     What ROS 2 does not care about is free: names of launch files and of `<ros2_control>`, files
-    that are only named, the build type.
+    that are only named, the build type. With nodes, controllers or a world in the solution, so are
+    colours, dynamics, effort, velocity, names of sensors and initial values: these are comments.
 
     Examples:
 
@@ -129,7 +132,9 @@ def new_rubric(
     """
     from grader.app.commands.rubric_making import draft_choice, write_rubric
 
-    choice = draft_choice(without or (), free or (), is_names_only=names_only, weights=weights)
+    choice = draft_choice(
+        without or (), free or (), is_names_only=names_only, weights=weights, total=total
+    )
     return write_rubric(file, reference, warn, choice, force=force)
 
 

@@ -21,7 +21,13 @@ from grader.lab.authoring.draft_choice import WITHOUT, DraftChoice
 from grader.lab.authoring.facts import Omission, Solution
 from grader.lab.authoring.mutant_kinds import KindScore
 from grader.lab.authoring.mutants import Mutant
-from grader.lab.authoring.rubric_test import MutantOutcome, Trial, mutant_outcomes, run_rubric_test
+from grader.lab.authoring.rubric_test import (
+    GROUP,
+    MutantOutcome,
+    Trial,
+    mutant_outcomes,
+    run_rubric_test,
+)
 from grader.lab.authoring.samples import read_samples
 from grader.lab.checks.loading import urdf_loads
 from grader.lab.rubric.rubric import Rubric
@@ -55,11 +61,16 @@ from grader.workers.queue import Progress
 _SCHEMA = "rubric.schema.json"  # beside the rubric, as the documentation calls it
 _GRAPH = ".mmd"  # the ending of Mermaid
 _MAX_IN_NOTE = 4  # files or criteria
-_GROUP, _SECONDS = 20, 60.0  # mutants that a worker grades at once, and how long they may take
+_SECONDS = 60.0  # that a group of mutants may take
 
 
 def draft_choice(
-    without: Iterable[str], free: Iterable[str], *, is_names_only: bool, weights: str
+    without: Iterable[str],
+    free: Iterable[str],
+    *,
+    is_names_only: bool,
+    weights: str,
+    total: int | None = None,
 ) -> DraftChoice:
     """Return what a draft has criteria about. Raises GraderError for a kind that does not exist.
 
@@ -68,6 +79,7 @@ def draft_choice(
         free: Names that the handout leaves open, likewise.
         is_names_only: Whether only names are compared.
         weights: equal, or importance.
+        total: The points of all criteria; None for as many as there are.
     """
     kinds = frozenset(_split_texts(without))
     for kind in sorted(kinds.difference(WITHOUT)):
@@ -78,6 +90,7 @@ def draft_choice(
         is_names_only=is_names_only,
         free=frozenset(_split_texts(free)),
         has_equal_weights=weights == "equal",
+        total=total,
     )
 
 
@@ -163,7 +176,10 @@ def _solution(submission: Submission, reference: str, warn: Warn) -> Solution | 
                 problem for problem in submission.urdf.problems if problem.kind.effect == "drops"
             ):
                 warn(f"{problem.location.file_and_line}: {problem.code}: {problem.message}")
-    others = [file.path for file in submission.other_candidates if not file.path.endswith(MANIFEST)]
+    others = []
+    for file in submission.unused_candidates:
+        if not file.is_part and not file.path.endswith(MANIFEST):
+            others.append(file.path)
     if others:
         warn(
             f"the rubric is made from {submission.path}; other candidates: "
@@ -277,7 +293,7 @@ def _graded(
     executor: Processes, rubric: Rubric, mutants: Sequence[Mutant]
 ) -> Iterator[MutantOutcome]:
     """Yield the outcomes of mutants, which are graded in groups. Raises WorkerError."""
-    groups = [mutants[at : at + _GROUP] for at in range(0, len(mutants), _GROUP)]
+    groups = [mutants[at : at + GROUP] for at in range(0, len(mutants), GROUP)]
     return chain.from_iterable(
         executor.map(partial(mutant_outcomes, rubric.data, str(rubric.path)), groups)
     )

@@ -9,6 +9,7 @@ its heading.
 import re
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from decimal import Decimal
 from itertools import chain, cycle, islice
 from pathlib import Path
 from textwrap import shorten
@@ -19,7 +20,7 @@ from grader.base.text import capitalised, cut, printable
 from grader.base.toml_file import assignment, read_toml, toml_literal
 from grader.base.toml_types import WrongValue
 from grader.lab.authoring.draft_choice import DraftChoice
-from grader.lab.authoring.element_facts import element_facts
+from grader.lab.authoring.element_facts import details_apart, element_facts
 from grader.lab.authoring.facts import CarriedFact, Fact, Omission, Solution, robot_facts
 from grader.lab.authoring.package_facts import (
     measure_facts,
@@ -34,6 +35,7 @@ from grader.lab.checks.registry import find_check
 from grader.lab.grading.subjects import without_selectors
 from grader.lab.rubric.rubric import Rubric, read_rubric
 from grader.lab.submission.submission import Submission
+from grader.ros.api import has_programs
 from grader.ros.known.releases import Release
 from grader.ros.urdf.shapes import UnknownShape
 
@@ -63,13 +65,35 @@ _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
     ),
 }
 _ROBOT, _PACKAGE = "robot", "package"
-_NAMES = "names"
-_WHOLE, _OF_ROBOT, _OF_NAMES = 100, 70, 50  # points
-# Families of names that only nodes, controllers and simulators have: there the work is not the
-# robot.
-_WIRED = ("controllers", "topics", "services", "interfaces", "code", "transforms")
+_WHOLE = 100  # points
+_MOST_OF_MEAN = 3  # of the mean points, for one criterion
+_STEPS = tuple(map(Decimal, ("1", "0.5", "0.25", "0.1", "0.05", "0.01")))  # of points
+# The kinds of things that a solution has, which share the points evenly.
+_JOINTS, _SHAPES, _MASSES, _SIMULATION = "joints", "shapes", "masses", "simulation"
+_BUILDS, _LAUNCHES, _RVIZ, _NODES = "builds", "launch files", "RViz", "nodes"
+_NAMES, _PARAMETERS = "names", "parameters"
+_KIND_BY_CHECK: Mapping[str, str] = {
+    **dict.fromkeys(("shows_box", "shows_cylinder", "shows_sphere", "shows_mesh"), _SHAPES),
+    **dict.fromkeys(("shows_colour", "shows_nothing", "centre_at"), _SHAPES),
+    **dict.fromkeys(("collides_as", "collision_matches_visual"), _SHAPES),
+    **dict.fromkeys(("mass_is", "inertia_plausible"), _MASSES),
+    **dict.fromkeys(("entry_is", "world_has"), _SIMULATION),
+    "urdf_loads": _BUILDS,
+    **dict.fromkeys(("package_found", "package_type", "setup_imports"), _BUILDS),
+    **dict.fromkeys(("build_installs", "installs_files"), _BUILDS),
+    **dict.fromkeys(("node_runs", "launch_complete"), _LAUNCHES),
+    **dict.fromkeys(("rviz_found", "rviz_fixed_frame", "rviz_shows_robot"), _RVIZ),
+    "rviz_display_on": _RVIZ,
+    "looks_up": _NODES,
+    "without_problems": _BUILDS,
+    "parameter_is": _PARAMETERS,
+}
+_OF_NODES = ("topics", "services", "interfaces", "code", "transforms")
+_OPENED = frozenset({"publishes", "subscribes", "serves", "calls"})
+_WHEN_CORRECTED = "When the reference is corrected"  # the heading of what is wrong in it
 # Checks of what matters most, and of what matters less, or others are about as well.
 _HEAVY = (
+    "urdf_loads",
     "frame_at",
     "joint_axis",
     "joint_limits",
@@ -146,39 +170,48 @@ def draft(
     Other values of parameters are in it as comments. Without a robot it has no `solution`. Raises
     InputError.
     """
-    chosen = _chosen_facts(submission, solution, choice)
+    chosen, details = _chosen_facts(submission, solution, choice)
     subjects: dict[str, Any] = {"submission": submission}
     if solution is not None:
         subjects |= {"urdf": solution.reading, "robot": solution.robot, "reference": solution.robot}
     rows_by_fact: dict[tuple[str, str | None, str], _DraftCriterion] = {}
     omissions: list[Omission] = []
+    values: dict[str, list[_DraftCriterion]] = {}
     for fact in chosen:
         row = fact if isinstance(fact, Omission) else _tried(subjects, fact)
         if isinstance(row, Omission):
             omissions.append(row)
+            if row.fact is not None:
+                title = capitalised(row.fact.title)
+                values.setdefault(_WHEN_CORRECTED, []).append(_DraftCriterion(row.fact, title))
         else:
             arguments = toml_literal([row.fact.args, row.fact.arguments])
             rows_by_fact[row.fact.check, row.fact.package, arguments] = row
     rows = [*rows_by_fact.values()]
-    values: Mapping[str, list[_DraftCriterion]] = {}
+    for detail in details:
+        tried = _tried(subjects, detail)
+        if isinstance(tried, _DraftCriterion):
+            values.setdefault(detail.about, []).append(tried)
     if submission.packages and not choice.is_names_only:
-        values = _values(subjects, submission, {row.fact.words for row in rows})
+        values |= _values(subjects, submission, {row.fact.words for row in rows})
     data = _rubric_text(head, rows, values, choice).encode()
     return RubricDraft(data, read_rubric(data, path), tuple(omissions))
 
 
 def _chosen_facts(
     submission: Submission, solution: Solution | None, choice: DraftChoice
-) -> list[Fact | Omission]:
+) -> tuple[list[Fact | Omission], list[Fact]]:
     """Return the facts of a reference that are chosen, without the names that are free.
 
-    Raises InputError for too many.
+    The details that a solution with programs leaves free are apart. Raises InputError for too many.
     """
     started = [*words_of_launches(submission)]
     of_robot: Iterable[Fact | Omission] = ()
     measured: Iterable[Fact] = ()
     if solution is not None:
         of_robot = chain(robot_facts(solution), element_facts(solution, started))
+        if has_programs(submission.workspace):
+            of_robot = details_apart(iter(of_robot), solution.robot)
         measured = chain(measure_facts(solution), naming_facts(solution))
     of_packages = chain(package_facts(submission), name_facts(submission), measured)
     chosen: list[Fact | Omission] = []
@@ -193,7 +226,10 @@ def _chosen_facts(
             f"the reference has more than {_MAX_FACTS} facts, which is too long for a "
             "rubric: name a smaller one"
         )
-    return chosen
+    if not has_programs(submission.workspace):
+        return chosen, []
+    details = [fact for fact in chosen if isinstance(fact, Fact) and fact.is_detail]
+    return [fact for fact in chosen if fact not in details], details
 
 
 def _values(
@@ -261,6 +297,7 @@ def _outcome(subjects: _Subjects, fact: Fact) -> Outcome:
     """
     check = find_check(fact.check)
     assert check is not None
+    check = check.for_arguments(fact.arguments)
     _, read = read_toml(f"it = {toml_literal(fact.arguments)}".encode(), Path())
     given = {}
     for name, value in read["it"].items():
@@ -321,67 +358,80 @@ def _points(
     of_robot: Sequence[_DraftCriterion],
     of_package: Sequence[_DraftCriterion],
     choice: DraftChoice,
-) -> list[int]:
-    """Return the points of criteria, whole numbers, first of those of the robot.
+) -> list[Decimal]:
+    """Return the points of criteria, first of those of the robot.
 
-    A robot without a package has the weights of its criteria. All else shares 100 points, or a
-    multiple of them: names half, where the lab's work is not the robot.
+    Those of packages are about things of several kinds, such as joints, builds and nodes: each kind
+    has an equal share, in which criteria have the weights of their checks. A robot without a
+    package has these weights alone, unless a total is asked for.
     """
-    weights = [_weight(row, choice) for row in (*of_robot, *of_package)]
-    if not of_package or (choice.has_equal_weights and not of_robot):
-        return weights
-    families = [row for row in of_package if row.fact.check == "names_agree"]
-    wired = {row.fact.arguments["of"] for row in families}.intersection(_WIRED)
-    if choice.has_equal_weights or (of_robot and not wired):
-        shares = {_ROBOT: _OF_ROBOT, _PACKAGE: _WHOLE - _OF_ROBOT}
-        groups = [_ROBOT] * len(of_robot) + [_PACKAGE] * len(of_package)
-    else:
-        rest = _WHOLE - _OF_NAMES
-        of_rest = round(rest * _OF_ROBOT / _WHOLE) if of_robot else 0
-        shares = {_ROBOT: of_rest, _PACKAGE: rest - of_rest, _NAMES: _OF_NAMES}
-        groups = [_ROBOT] * len(of_robot)
-        groups += [_NAMES if row in families else _PACKAGE for row in of_package]
-    _join_empty_shares(shares, groups)
-    return _shared(shares, groups, weights)
+    rows = [*of_robot, *of_package]
+    weights = [_weight(row, choice) for row in rows]
+    is_of_one_kind = choice.has_equal_weights or not of_package
+    if is_of_one_kind and choice.total is None:
+        return [*map(Decimal, weights)]
+    kinds = [_ROBOT if is_of_one_kind else _kind_of(row) for row in rows]
+    return _shared(kinds, weights, choice.total)
 
 
-def _join_empty_shares(shares: dict[str, int], groups: Sequence[str]) -> None:
-    """Give the share of a group without criteria to another one."""
-    if _ROBOT not in groups:
-        shares[_PACKAGE] += shares.pop(_ROBOT)
-    if _NAMES in shares and _NAMES not in groups:
-        shares[_PACKAGE] += shares.pop(_NAMES)
-    elif _NAMES in shares and _PACKAGE not in groups:
-        shares[_NAMES] += shares.pop(_PACKAGE)
+def _kind_of(row: _DraftCriterion) -> str:
+    """Return the kind of thing that a criterion is about, which has its share of the points."""
+    if row.fact.check == "names_agree":
+        return _NODES if row.fact.arguments["of"] in _OF_NODES else _NAMES
+    if row.fact.check == "node_runs" and not _OPENED.isdisjoint(row.fact.arguments):
+        return _NODES
+    return _KIND_BY_CHECK.get(row.fact.check, _JOINTS)
 
 
 def _weight(row: _DraftCriterion, choice: DraftChoice) -> int:
     """Return how much a criterion counts beside others."""
-    if choice.has_equal_weights:
+    is_effort = row.fact.check == "joint_limits" and "lower" not in row.fact.arguments
+    if choice.has_equal_weights or is_effort:
         return 1
     if row.fact.check in _HEAVY:
         return 3
     return 1 if row.fact.check in _LIGHT else 2
 
 
-def _shared(shares: Mapping[str, int], groups: Sequence[str], weights: Sequence[int]) -> list[int]:
-    """Return the points of criteria by their weights.
+def _shared(kinds: Sequence[str], weights: Sequence[int], total: int | None) -> list[Decimal]:
+    """Return the points of criteria: each kind has an equal share, in which weights count.
 
-    Those of each group have its share of 100 points, or of the least multiple that leaves each
-    criterion one.
+    A kind of few criteria has less, so that these get at most three times the mean.
+
+    Without a total, it is 100 points, or the least multiple that leaves each criterion one. With
+    one, points have as few decimals as leave each criterion some. Raises InputError for too few.
     """
-    counts = Counter(groups)
-    multiple = max(-(-counts[group] // share) for group, share in shares.items())
-    points = [0] * len(groups)
-    for group, share in shares.items():
-        places = [place for place, name in enumerate(groups) if name == group]
-        shared = _apportioned(share * multiple, [weights[place] for place in places])
+    counts = Counter(kinds)
+    needed = max(counts.values()) * len(counts)  # so that each has one
+    unit = Decimal(1)
+    if total is None:
+        total = _WHOLE * -(-needed // _WHOLE)
+    else:
+        if total / _STEPS[-1] < needed:
+            raise InputError(f"{len(kinds)} criteria cannot share {total} points: give more")
+        unit = next(step for step in _STEPS if total / step >= needed)
+    shares = _even_shares(int(total / unit), [*counts.values()])
+    points = [unit] * len(kinds)
+    for kind, share in zip(counts, shares, strict=True):
+        places = [place for place, name in enumerate(kinds) if name == kind]
+        shared = _apportioned(share, [weights[place] for place in places])
         for place, number in zip(places, shared, strict=True):
-            points[place] = number
+            points[place] = number * unit
     return points
 
 
-def _apportioned(points: int, weights: Sequence[int]) -> list[int]:
+def _even_shares(units: int, counts: Sequence[int]) -> list[int]:
+    """Return how many units kinds have, by the numbers of their criteria."""
+    most = [_MOST_OF_MEAN * units * count / sum(counts) for count in counts]
+    left = units / len(counts)
+    for _ in counts:
+        capped = [share for share in most if share < left]
+        others = len(counts) - len(capped)
+        left = (units - sum(capped)) / others if others else left
+    return _apportioned(units, [min(share, left) for share in most])
+
+
+def _apportioned(points: int, weights: Sequence[float]) -> list[int]:
     """Return whole points by weights, at least one for each.
 
     The rest goes to the largest remainders, of equal ones to the first.
@@ -414,7 +464,7 @@ def _value_lines(
     for node, rows in values.items():
         for row in rows[:_MAX_VALUES]:
             plain = row._replace(fact=row.fact._replace(about=""))
-            lines = layout.criterion(layout.ids[row.fact.words], plain, 0, _MAX_COMMENT)
+            lines = layout.criterion(layout.ids[row.fact.words], plain, Decimal(0), _MAX_COMMENT)
             for line in lines:
                 yield f"# {line}" if line else ""
         if len(rows) > _MAX_VALUES:
@@ -455,7 +505,7 @@ def _head_lines(head: Head) -> Iterator[str]:
         yield f"{assignment('distro', head.distro)}  # the release of ROS 2, which reads the URDF"
 
 
-def _default_lines(part: str, points: int, checks: set[str]) -> Iterator[str]:
+def _default_lines(part: str, points: Decimal, checks: set[str]) -> Iterator[str]:
     yield from ("", "[defaults]", assignment("part", part), assignment("points", points))
     usual = {name: given for name, given in _USUAL.items() if name in checks}
     if usual:
@@ -474,11 +524,11 @@ class _Layout(NamedTuple):
     """How criteria are written: what they need not say, and the ids of others by their words."""
 
     part: str
-    points: int
+    points: Decimal
     ids: Mapping[str, str]
 
     def criterion(
-        self, name: str, row: _DraftCriterion, points: int, width: int = _WIDTH
+        self, name: str, row: _DraftCriterion, points: Decimal, width: int = _WIDTH
     ) -> Iterator[str]:
         """Yield the lines of a criterion."""
         fact = row.fact

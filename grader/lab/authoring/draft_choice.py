@@ -26,7 +26,8 @@ _KINDS: Mapping[str, tuple[str, ...]] = {
     "motion": ("kinematics_match_reference",),
     "elements": ("entry_is",),
     "rviz": ("rviz_found", "rviz_fixed_frame", "rviz_shows_robot", "rviz_display_on"),
-    "nodes": ("node_runs", "connects", "publishes_transform"),
+    "nodes": ("node_runs", "looks_up", "connects", "publishes_transform"),
+    "worlds": ("world_has",),
     "installs": ("build_installs", "installs_files"),
     "measures": ("parameter_is",),
 }
@@ -39,10 +40,11 @@ _NAMED_BY: Mapping[str, tuple[str, ...]] = {
     "parameter_is": ("node",),
     "connects": ("from", "to"),
     "publishes_transform": ("parent", "child"),
+    "looks_up": ("target", "source"),
 }
 _MAX_MOVED = 20  # links that @moved:1 to @moved:20 name
 _OPENED = ("publishes", "subscribes", "serves", "calls")
-_ASKED = ("nodes", "not", *_OPENED)
+_ASKED = ("nodes", "not", "spawns", *_OPENED)
 
 
 class DraftChoice(NamedTuple):
@@ -59,6 +61,7 @@ class DraftChoice(NamedTuple):
     is_names_only: bool = False
     free: frozenset[str] = frozenset()  # names that a submission may choose
     has_equal_weights: bool = False
+    total: int | None = None  # points of all criteria
 
     def takes(self, fact: Fact) -> bool:
         """Return whether there is to be a criterion for a fact."""

@@ -12,6 +12,7 @@ from grader.ros.installation.places import is_of_one_machine
 from grader.ros.package.robot_file import Read, read_as_ros
 from grader.ros.package.trees import is_path, steps_of
 from grader.ros.python.budget import Budget
+from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.link_tree import JOINT_OF
 from grader.ros.workspace.rules.controllers import needed_interfaces
 from grader.ros.workspace.rules.reading import read_agreement
@@ -40,6 +41,16 @@ _INTERFACE = "command_interface/@name"
 _NAMED_BY = ("reference", "name", "filename", "type")
 _NAMED_FREELY = ("ros2_control", "transmission")
 _OF_ARGUMENTS = ("urdf_loads", "files names_agree", "arguments names_agree")
+# The paths of values that are details: see `Fact.is_detail`.
+_DETAIL = re.compile(
+    r"gazebo/sensor/(.*/)?(@name|\w*frame_id|always_on|visualize|format|horizontal_fov"
+    r"|(noise|clip)(/.*)?)"
+    r"|ros2_control/joint/\w+/param(/.*)?"
+    r"|gazebo/(?!sensor|plugin).*"
+)
+# Likewise of a joint that mimics another one.
+_DETAIL_OF_MIMIC = re.compile(r"ros2_control/joint/state_interface(/.*)?")
+_CONDITIONS = re.compile(r"\[[^\[\]]*\]")
 _Values = dict[str, Any]
 
 
@@ -89,6 +100,63 @@ def element_facts(solution: Solution, causes: Collection[str]) -> Facts:
             other = others[met[entry.words] - 1] if len(others) >= met[entry.words] else None
             carried += _carried_from_launch(entry, other, (*_OF_ARGUMENTS, *causes))
         yield entry._replace(carried=tuple(carried))
+
+
+def details_apart(facts: Facts, robot: Configuration) -> Facts:
+    """Yield facts, of those about an element first all but its details, then these."""
+    mimics: set[str] = set()
+    for joint in robot.robot.joints:
+        if joint.mimic is not None:
+            mimics.update((joint.name, f"{JOINT_OF}{joint.child}"))
+    for fact in facts:
+        if isinstance(fact, Fact) and fact.check == "entry_is":
+            yield from _with_details_apart(fact, mimics)
+        else:
+            yield fact
+
+
+def _with_details_apart(fact: Fact, mimics: Collection[str]) -> Iterator[Fact]:
+    """Yield a fact without details, if something else is left of it, and its details."""
+    values = fact.arguments.get("values", {})
+    details = [_DETAIL]
+    if values.get("@name") in mimics:
+        details.append(_DETAIL_OF_MIMIC)
+    kept = _without_details(fact.arguments, details)
+    if kept == fact.arguments:
+        yield fact
+        return
+    if kept.get("values"):
+        carried = []
+        for one in fact.carried:
+            if "at" in one.arguments:
+                weaker = _without_details(one.arguments, details)
+                carried.append(one._replace(arguments=weaker))
+            else:
+                carried.append(one)
+        main = fact._replace(arguments=kept, carried=tuple(carried))
+        yield main._replace(title=_title(main))
+    rest = {}
+    for key, value in values.items():
+        if key == "@name" or key not in kept.get("values", {}):
+            rest[key] = value
+    apart = fact._replace(
+        arguments=_entry(fact.arguments["at"], rest), words=f"{fact.words} details", carried=()
+    )
+    yield apart._replace(title=_title(apart), is_detail=True)
+
+
+def _without_details(
+    arguments: Mapping[str, Any], details: Collection[re.Pattern[str]]
+) -> Mapping[str, Any]:
+    """Return the arguments of entry_is without the values that are details."""
+    path = _CONDITIONS.sub("", arguments["at"])
+    values = {}
+    for key, value in arguments.get("values", {}).items():
+        if not any(detail.fullmatch(f"{path}/{key}") for detail in details):
+            values[key] = value
+    if len(values) == len(arguments.get("values", {})):
+        return arguments
+    return _entry(arguments["at"], values)
 
 
 def _without_topics(fact: Fact) -> Fact:

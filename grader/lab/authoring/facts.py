@@ -84,6 +84,9 @@ class Fact(NamedTuple):
     otherwise: "Sequence[Fact]" = ()  # tried in its place if the reference does not pass it
     title: str = ""  # default: what the check says
     args: Mapping[str, str | bool] = {}  # launch arguments
+    # of the look or the numbers of a robot, which a lab about controllers, nodes or worlds leaves
+    # free: see `has_programs`
+    is_detail: bool = False
 
 
 class Omission(NamedTuple):
@@ -91,6 +94,8 @@ class Omission(NamedTuple):
 
     what: str
     why: str
+    # what would be a criterion of it, if the reference was corrected
+    fact: Fact | None = None
 
 
 Facts = Iterator[Fact | Omission]
@@ -154,9 +159,9 @@ def _visual_facts(link: Link) -> Facts:
             else:
                 selected = {"shape": type(visual.geometry).__name__.lower()}
             if visual.material is not None and not visual.material.texture:
-                yield _link_fact(
-                    link.name, "shows_colour", **selected, colour=_rounded(visual.material.rgba, 4)
-                )
+                colour = _rounded(visual.material.rgba, 4)
+                shown_colour = _link_fact(link.name, "shows_colour", **selected, colour=colour)
+                yield shown_colour._replace(is_detail=True)
             if not is_mesh:
                 xyz = _rounded(visual.origin.xyz)
                 centre = _link_fact(
@@ -311,11 +316,13 @@ def _joint_facts(robot: Configuration, joint: Joint) -> Iterator[Fact]:
             directed = {**limits.arguments, "relative_to": parent, "direction": opposite}
             limits = limits._replace(arguments=directed)
         yield limits._replace(carried=(of_type,))
+        for effort in _effort_facts(joint):
+            yield effort._replace(carried=(of_type,))
     if joint.dynamics is not None and joint.type != "fixed":
         friction, damping = joint.dynamics.friction, joint.dynamics.damping
         title = f"the joint that moves {link!r} has friction {friction:g} and damping {damping:g}"
         yield _link_fact(link, "joint_dynamics", friction=friction, damping=damping)._replace(
-            title=title
+            title=title, is_detail=True
         )
     if joint.type not in _WITH_AXIS:
         return
@@ -368,14 +375,25 @@ def _range_fact(joint: Joint) -> Fact:
     assert limit is not None
     ends, turns = (limit.lower, limit.upper), joint.type == "revolute"
     lower, upper = _rounded([degrees(end) for end in ends], 1) if turns else _rounded(ends)
-    given = {"effort": limit.effort, "velocity": limit.velocity}
-    others = {name: value for name, value in given.items() if isfinite(value)}
-    others |= {} if turns else {"tolerance": _SLIDING_TOLERANCE}
+    others = {} if turns else {"tolerance": _SLIDING_TOLERANCE}
     unit = "degrees" if turns else "m"
     title = f"the range of the joint that moves {joint.child!r} is {lower:g} to {upper:g} {unit}"
     return _link_fact(joint.child, "joint_limits", lower=lower, upper=upper, **others)._replace(
         title=title
     )
+
+
+def _effort_facts(joint: Joint) -> Iterator[Fact]:
+    """Yield the maximum effort and velocity of a joint with limits."""
+    assert joint.limit is not None
+    given = {"effort": joint.limit.effort, "velocity": joint.limit.velocity}
+    known = {name: value for name, value in given.items() if isfinite(value)}
+    if known:
+        numbers = enumerated([f"{name} {value:g}" for name, value in known.items()])
+        title = f"the joint that moves {joint.child!r} has {numbers}"
+        words = f"{joint.child} effort joint_limits"
+        fact = Fact(joint.child, "joint_limits", {"link": joint.child, **known}, words)
+        yield fact._replace(title=title, is_detail=True)
 
 
 def _tree_facts(solution: Solution) -> Iterator[Fact]:

@@ -10,7 +10,7 @@ from itertools import combinations
 from typing import Any
 
 from grader.base.errors import MissingElement, NotDecided
-from grader.base.text import counted, enumerated
+from grader.base.text import counted, enumerated, first_lines
 from grader.base.toml_file import toml_literal
 from grader.lab.authoring.facts import (
     CarriedFact,
@@ -23,6 +23,12 @@ from grader.lab.authoring.facts import (
 from grader.lab.authoring.graph_facts import LaunchConnections
 from grader.lab.checks.parameters import measures
 from grader.lab.submission.submission import Submission
+from grader.ros.api import (
+    looked_up_transforms,
+    opened_by_bridge,
+    spawned_by,
+    started_worlds,
+)
 from grader.ros.installation.places import PREFIX, is_of_one_machine
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
@@ -65,6 +71,13 @@ _ODD: Mapping[Family, tuple[str, str]] = {
     "values": ("{} in what files say of the robot", "number"),
     "transforms": ("{} in the transforms that are published", "fault"),
 }
+# Where one mistake is of two families, by the words of the facts that pay for it.
+_SAME_PLACE: Mapping[Family, Sequence[tuple[tuple[str, ...], tuple[str, ...]]]] = {
+    "files": [(("urdf_loads",), ("robot",))],
+    "dependencies": [
+        (("files names_agree", "programs names_agree"), ("files", "programs")),
+    ],
+}
 _WHEEL = re.compile("wheel|axle|tire|tyre")
 _DISTANCE = re.compile("separation|wheel_?base|wheel_?track|track_?width")
 _NAMING = re.compile("joint|link|frame|wheel")
@@ -81,7 +94,26 @@ _OF_CONNECTIONS = (
     "transforms names_agree",
 )
 # What of the nodes of a lab is seen from outside, by what they open.
-_OPENING = {"publisher": "publishes", "service": "serves", "action server": "serves"}
+_OPENING = {
+    "publisher": "publishes",
+    "service": "serves",
+    "action server": "serves",
+    "client": "calls",
+    "action client": "calls",
+}
+_COMPARED = {
+    "publishes": ("topics names_agree",),
+    "serves": ("services names_agree",),
+    "calls": ("services names_agree",),
+}
+_DONE = {"publishes": "publish", "serves": "serve", "calls": "call"}
+# Warnings of `grader inspect` that mean that something does not work: of builds of C++, and of the
+# code of nodes.
+_CPP = (".cpp", ".cc", ".cxx")
+_OF_TARGETS = ("PKG020", "PKG021", "own-header", "header-installed")
+_OF_GOALS = ("goal-state", "callback-wait")
+# The programs that publish a transform, in place of which any other node may.
+_STATIC = ("tf2_ros/static_transform_publisher",)
 _TURNED: Mapping[str, str | bool] = {"true": False, "false": True, "True": "False", "False": "True"}
 _OWN_KINDS = (".urdf", ".xacro", ".rviz", ".py", ".xml", ".msg", ".srv", ".action")
 _OF_BUILDS: tuple[Family, ...] = ("files", "programs")
@@ -89,6 +121,7 @@ _MEASURING = ("shows_cylinder", "shows_sphere", "frame_at")
 _MOTION = "kinematics_match_reference"
 _MAX_TEXT = 80  # characters of a value
 _MAX_TITLE, _MAX_IN_TITLE = 95, 3  # characters; names
+_MAX_ODD = 10  # mistakes of one family
 
 
 def package_facts(submission: Submission) -> Facts:
@@ -101,6 +134,71 @@ def package_facts(submission: Submission) -> Facts:
         of = package.name if prefix else ""
         for fact in facts:
             yield fact._replace(about=about, package=of, words=f"{prefix}{fact.words}")
+    yield from _warning_facts(submission)
+    yield from _simulation_facts(submission)
+    yield from _lookup_facts(submission)
+
+
+def _warning_facts(submission: Submission) -> Iterator[Fact]:
+    """Yield that there are no warnings of what certainly does not work."""
+    codes = submission.workspace.code.by_package.values()
+    kinds = {end.kind for code in codes for node in code.nodes for end in node.endpoints}
+    has_cpp = any(
+        path.endswith(_CPP)
+        for package in submission.lab_packages.values()
+        for path in package.tree.files
+    )
+    if has_cpp:
+        fact = _package_fact("without_problems", "targets", problems=[*_OF_TARGETS])
+        yield fact._replace(
+            title="the targets of builds find their headers and libraries, and these are installed",
+            carried=_after(submission, *_builds(submission)),
+        )
+    if "action server" in kinds:
+        fact = _package_fact("without_problems", "goals", problems=[*_OF_GOALS])
+        yield fact._replace(
+            title="each goal of an action ends, and gets a state",
+            about=_THE_NAMES,
+            carried=_after(submission, *_OF_CODE),
+        )
+
+
+def _after(submission: Submission, *causes: str) -> tuple[CarriedFact, ...]:
+    """Return what counts instead of a fact if others fail: that there is a package."""
+    if submission.package is None:
+        return ()
+    return (CarriedFact(causes, "package_found", {"name": submission.package.name}),)
+
+
+def _simulation_facts(submission: Submission) -> Iterator[Fact]:
+    """Yield which systems the world has that is launched."""
+    worlds = started_worlds(submission.workspace)
+    systems = sorted(worlds.systems) if worlds.files else []
+    if systems:
+        fact = _package_fact("world_has", systems=systems)
+        title = f"the world has {enumerated(systems, _MAX_IN_TITLE)}"
+        yield fact._replace(title=title, about=_THE_NAMES)
+
+
+def _lookup_facts(submission: Submission) -> Iterator[Fact]:
+    """Yield the transforms that nodes look up, where both frames are known."""
+    seen = set()
+    lookups, _ = looked_up_transforms(submission.workspace)
+    for lookup in lookups:
+        frames = lookup.target, lookup.source
+        if None not in frames and frames not in seen:
+            seen.add(frames)
+            target, source = frames
+            label = f"{target} {source}"
+            fact = _package_fact("looks_up", label, target=target, source=source)
+            title = f"a node looks up the pose of {source} in {target}"
+            yield fact._replace(title=title, about=_THE_NAMES, carried=_after_names(submission))
+
+
+def _after_names(submission: Submission) -> tuple[CarriedFact, ...]:
+    """Return what counts instead of what nodes do, if they do not run or get no parameters."""
+    causes = (*_builds(submission), *_OF_PARAMETERS, *_OF_CODE, *words_of_launches(submission))
+    return _after(submission, *causes)
 
 
 def _packages(submission: Submission) -> Iterator[tuple[Package, str]]:
@@ -297,11 +395,14 @@ def name_facts(submission: Submission) -> Facts:
     unbuilt = CarriedFact(_builds(submission), "package_found", {"name": submission.package.name})
     for family in (known_family for known_family in FAMILIES if known_family in agreement.families):
         fact = _package_fact("names_agree", family, of=family)
-        carried = (unbuilt,) if family in _OF_BUILDS else ()
+        carried: tuple[CarriedFact, ...] = (unbuilt,) if family in _OF_BUILDS else ()
         if family == "values":
             carried = (unbuilt._replace(causes=_measured_words(submission)),)
-        odd = _odd(submission, family)
-        yield odd or fact._replace(about=_THE_NAMES, title=_NAME_TITLES[family], carried=carried)
+        for causes, places in _SAME_PLACE.get(family, ()):
+            elsewhere = {"of": family, "not_at": [*places]}
+            carried += (CarriedFact(causes, "names_agree", elsewhere),)
+        fact = fact._replace(about=_THE_NAMES, title=_NAME_TITLES[family], carried=carried)
+        yield _odd(submission, family, fact) or fact
 
 
 def _measured_words(submission: Submission) -> tuple[str, ...]:
@@ -316,18 +417,23 @@ def _measured_words(submission: Submission) -> tuple[str, ...]:
     return tuple(words)
 
 
-def _odd(submission: Submission, family: Family) -> Omission | None:
-    """Return what certainly does not agree in a family, in one line; None if nothing does not."""
+def _odd(submission: Submission, family: Family, fact: Fact) -> Omission | None:
+    """Return what certainly does not agree in a family, in one line; None if nothing does not.
+
+    It has the fact that would be a criterion of the family.
+    """
     mismatches = wrong_names(submission.workspace, family, submission.lab_packages.values())
     wrong = {mismatch.message: mismatch for mismatch in mismatches}
     if not wrong:
         return None
-    first = mismatches[0]
     text, noun = _ODD[family]
+    shown = [f"{each.location.file_and_line}: {message}" for message, each in wrong.items()]
+    faults = "; ".join(first_lines(shown, _MAX_ODD))
     more = (
-        f"{text.format(counted(len(wrong), noun))}: {first.location.file_and_line}: {first.message}"
+        f"{text.format(counted(len(wrong), noun))}: {faults}. Correct the reference and draft "
+        "again, or use the criterion among the comments"
     )
-    return Omission(f"{family} names_agree", more)
+    return Omission(f"{family} names_agree", more, fact)
 
 
 def _package_fact(check: str, label: str = "", **arguments: Any) -> Fact:
@@ -393,14 +499,16 @@ def _launch_facts(
         carried=(after._replace(causes=(*after.causes, "parameters names_agree")),)
     )
     connections = LaunchConnections(submission, package, path)
-    nodes = connections.needed(launch, _nodes_that_start(launch))
+    needed = connections.needed(launch, _nodes_that_start(launch))
+    nodes = [node for node in needed if node not in _STATIC]
     if nodes:
         title = _title_of_nodes(_launch_text(package, name), nodes)
         fact = _package_fact("node_runs", name, launch=name, nodes=nodes)
         yield fact._replace(title=title, carried=(there,))
     unrun = after._replace(causes=(*after.causes, *_OF_CODE))
     for fact in _opened_facts(submission, launch, name):
-        yield fact._replace(carried=(unrun,))
+        [compared] = fact.carried  # the names that pay for a mistake in them
+        yield fact._replace(carried=(unrun._replace(causes=(*unrun.causes, *compared.causes)),))
     misnamed = unrun._replace(causes=(*unrun.causes, *_OF_CONNECTIONS))
     for fact in connections.facts():
         yield fact._replace(about=_THE_PACKAGE, carried=(misnamed,))
@@ -440,21 +548,31 @@ def _launch_text(package: Package, name: str) -> str:
 
 
 def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator[Fact]:
-    """Yield what the nodes of a lab without a robot publish and serve."""
-    if submission.path:
-        return
-    asked: dict[str, dict[str, str]] = {"publishes": {}, "serves": {}}
+    """Yield what nodes and bridges publish, serve and call, and which controllers are spawned.
+
+    Of a lab with a robot, what nodes open may have other names: only bridges are asked.
+    """
+    asked: dict[str, dict[str, str]] = {verb: {} for verb in _DONE}
+    workspace = submission.workspace
     for node in launch.nodes:
-        for end in opened_by(submission.workspace, node) if node.when else ():
-            verb = _OPENING.get(end.endpoint.kind)
-            kind = end.endpoint.type
-            if verb is not None and kind is not None and end.name is not None and end.is_known:
+        bridged = opened_by_bridge(workspace, node)
+        ends = [*bridged[0]] if bridged is not None else []
+        if bridged is None and not submission.path:
+            ends += opened_by(workspace, node)
+        for end in ends if node.when else ():
+            verb, kind = _OPENING.get(end.kind), end.type
+            if verb is not None and kind is not None and end.name and end.is_known:
                 asked[verb][end.name] = kind.replace(".", "/")
     for verb, names in asked.items():
         if names:
             fact = _package_fact("node_runs", f"{name} {verb}", launch=name, **{verb: names})
-            done = "publish" if verb == "publishes" else "serve"
-            yield fact._replace(title=f"the nodes {done} {enumerated([*names], _MAX_IN_TITLE)}")
+            title = f"the nodes {_DONE[verb]} {enumerated([*names], _MAX_IN_TITLE)}"
+            yield fact._replace(title=title, carried=(CarriedFact(_COMPARED[verb], ""),))
+    controllers = [*spawned_by(launch).names]
+    if controllers:
+        fact = _package_fact("node_runs", f"{name} spawns", launch=name, spawns=controllers)
+        title = f"spawners start {enumerated(controllers, _MAX_IN_TITLE)}"
+        yield fact._replace(title=title, carried=(CarriedFact(("controllers names_agree",), ""),))
 
 
 def _turned_facts(package: Package, path: str) -> Iterator[Fact]:

@@ -8,6 +8,7 @@ Mutants of its reference must lose points, equivalents nothing, samples what the
 import re
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from decimal import Decimal
 from difflib import unified_diff
 from fnmatch import fnmatchcase
@@ -17,6 +18,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from grader.base.errors import InputError
+from grader.base.reuse import Memory
 from grader.base.source import Edit, Source
 from grader.files.reading import URDF_LIMIT
 from grader.lab.authoring.equivalents import Equivalent, RewritingRules, equivalents, is_same_robot
@@ -74,7 +76,8 @@ _NO_PART_OF_LAB = re.compile(
 )
 _MAX_EMPTIED = 100  # files
 _MAX_MUTANTS = 600  # by default; of more, a sample over all kinds is graded
-_SCORED_EACH = 25  # mutants after which the scores by kind are computed again
+GROUP = 5  # mutants that are graded at once, after which the progress is told
+_MAX_KEPT = 64  # results that mutants share, such as the nodes of a package
 _CONTEXT = 2  # lines around a change
 # How many submissions of how many are graded, and the scores by kind so far.
 _Progress = Callable[[int, int, Sequence[KindScore]], None]
@@ -96,7 +99,9 @@ class Trial:
         if rubric.solution is None:
             missing = 'has no reference: add reference = "FOLDER" with a correct solution'
             raise InputError(f"the rubric {rubric.id} {missing}")
-        self.rubric, self.reference = rubric, rubric.solution.submission
+        self._memory = Memory(_MAX_KEPT)
+        self.rubric = rubric
+        self.reference = replace(rubric.solution.submission, memory=self._memory)
         self.report = grade(rubric, self.reference)
         counting = (result for result in self.report.results if not result.is_adjusted)
         automatic = (
@@ -245,15 +250,17 @@ class Trial:
         return "submission" in subjects and mutant.path.endswith(MANIFEST)
 
     def submission(self, mutant: Mutant) -> Submission | None:
-        """Return the reference with a mistake; None where nothing of it can be read any more."""
+        """Return the reference with a mistake; None where nothing of it can be read any more.
+
+        What does not depend on the changed file was read before.
+        """
         data = mutant.applied(self.text(mutant.path)).encode("utf-8", "surrogateescape")
         if self._is_of_robot(mutant):
             return with_urdf(self.reference, {mutant.path: data})
         renamed = {mutant.renamed: content(self.reference, mutant.path)} if mutant.renamed else {}
+        files = {mutant.path: None if mutant.is_deleted else data, **renamed}
         try:
-            return with_files(
-                self.reference, {mutant.path: None if mutant.is_deleted else data, **renamed}
-            )
+            return replace(with_files(self.reference, files), memory=self._memory)
         except InputError:
             return None
 
@@ -512,14 +519,14 @@ def run_rubric_test(
     else:
         of_samples = None
     outcomes: list[MutantOutcome] = []
-    scores: list[KindScore] = []
     rest = None
     try:
         for outcome in grade_all(chosen):
             outcomes.append(outcome)
-            if len(outcomes) % _SCORED_EACH == 1:
+            # Those of a group arrive at once: after the first of them, no time left is true.
+            if len(outcomes) % GROUP == 0:
                 scores = scores_by_kind((graded.mutant.family, graded.fate) for graded in outcomes)
-            progress(len(samples or ()) + len(outcomes), total, scores)
+                progress(len(samples or ()) + len(outcomes), total, scores)
         rest = _Rest([*trial.equivalents()], *trial.unexamined())
     except KeyboardInterrupt:
         if not outcomes:

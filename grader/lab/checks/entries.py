@@ -1,5 +1,6 @@
 """The check of the entries of a file: of the expanded robot, of YAML, SDF, SRDF and package.xml."""
 
+import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from copy import deepcopy
 from typing import Annotated, Any, NamedTuple
@@ -34,6 +35,9 @@ _ROBOT, _IN_ROBOT = "robot", "directly in <robot>"
 _READ_BY_ROS = ("link", "joint", "material")
 _PARTS = ("inertial", "visual", "collision")  # of a link
 _IDENTIFYING = ("@name", "@reference", "@filename", "@type")  # the first that a rubric gives
+_USES = ("@world", "@controllers", "@bridge")  # of files
+_LIBRARY = "@filename"  # of a plugin
+_LIBRARY_FILE = re.compile(r"lib(.+)\.so")
 _TOLERANCE = 1e-6  # of numbers, where a rubric gives none
 _SLACK = 1e-12  # a tolerance includes its end
 _Path = Annotated[str, Constraint("a path such as gazebo[@reference='lidar']/sensor", is_path)]
@@ -60,6 +64,8 @@ def entry_is(
     has: list[Scalar] | None = None,
     values: Mapping[str, Content] | None = None,
     tolerance: NonNegative = _TOLERANCE,
+    only: bool = False,
+    absent: bool = False,
 ) -> Outcome:
     """The expanded robot, or a file of the package, has an entry at a path, with the given values.
 
@@ -69,8 +75,9 @@ def entry_is(
     the path, one of them must be as expected.
 
     Args:
-        file: The end of the path of a file in the package, such as "config/nav.yaml"; "robot" is
-            the expanded robot.
+        file: The end of the path of a file in the package, such as "config/nav.yaml" or ".sdf", or
+            the use of a file of any package: "@world" that is launched, "@controllers", which has
+            their types, or "@bridge", which has its rows; "robot" is the expanded robot.
         at: The path of the entry below the root: in XML "gazebo[@reference='lidar']/sensor/@type",
             in YAML "ros__parameters.limits.max" or "[ros_topic_name=/scan].gz_type_name". A
             condition in brackets is a value that the entry contains. A key of YAML may contain
@@ -82,6 +89,9 @@ def entry_is(
         values: What the entry contains: values by their paths in it, such as "camera/image/width"
             or "plugin/@filename"; a list as for `value`.
         tolerance: How far a number may be off, in the number's own unit.
+        only: Whether a list has no items, or the path no entries, besides those of `value` or
+            `has`.
+        absent: Whether there must be no such entry, with the values that are given, if any.
     """
     assert file == _ROBOT  # else it is _entry_of_file that is called
     reading = submission.needed_urdf()
@@ -92,9 +102,13 @@ def entry_is(
         )
     releases = submission.package.releases if submission.package is not None else ()
     steps = [_with_names(step, robot) for step in steps_of(at, is_xml=True)]
-    wanted = _Wanted(steps, value, one_of, has, values or {}, tolerance)
+    wanted = _Wanted(steps, value, one_of, has, values or {}, tolerance, only, absent)
     tree = _robot_entry(reading, root, releases)
     outcome = _judge(tree, wanted, _IN_ROBOT)
+    if absent:
+        if outcome.status == "passed":
+            _check_known(reading, tree, wanted)
+        return outcome
     if outcome.status == "passed":
         if wanted.first.name != "link":
             return outcome
@@ -106,8 +120,14 @@ def entry_is(
     return outcome
 
 
-def _entry_of_file(package: Package, *, file: str, at: str = "", **expected: Any) -> Outcome:
+def _entry_of_file(
+    package: Package, submission: Submission, *, file: str, at: str = "", **expected: Any
+) -> Outcome:
     """Return whether a file of a package has an entry; the arguments are those of entry_is."""
+    if file in _USES:
+        from grader.ros.api import used_file  # late: few rubrics ask for it
+
+        package, file = used_file(submission.workspace, file)
     tree = read_tree(package, file)
     wanted = _Wanted(steps_of(at, is_xml=tree.is_xml), **expected)
     return _judge(tree, wanted, f"directly in <{tree.name}>" if tree.is_xml else f"in {file}")
@@ -133,6 +153,8 @@ class _Wanted(NamedTuple):
     has: list[Scalar] | None = None
     values: Mapping[str, Content] = {}
     tolerance: float = _TOLERANCE
+    only: bool = False  # no other items, or no other entries
+    absent: bool = False  # no such entry
 
     @property
     def first(self) -> PathStep:
@@ -171,7 +193,14 @@ class _Wanted(NamedTuple):
             return False
         if self.one_of is not None and not self._is_any_of(entries, self.one_of):
             return False
+        if self.only and len(_items_of(entries)) != self._count_expected():
+            return False
         return self.has is None or self._are_among(_items_of(entries), self.has)
+
+    def _count_expected(self) -> int:
+        """Return how many items are expected."""
+        expected = self.has if self.has is not None else self.value
+        return len(expected) if isinstance(expected, list) else 1
 
     def _is_any_of(self, entries: Sequence[TreeEntry], values: Sequence[Scalar]) -> bool:
         return any(self.equals(entry, value) for entry in entries for value in values)
@@ -196,6 +225,8 @@ class _Wanted(NamedTuple):
         """
         if entry.text is None:
             return False
+        if entry.name == _LIBRARY and isinstance(expected, str):
+            return any(_library_name(text) == _library_name(expected) for text in entry.texts)
         if entry.is_xml or isinstance(expected, str):
             return any(matches_value(text, expected, self.tolerance) for text in entry.texts)
         if entry.is_quoted:
@@ -229,6 +260,15 @@ class _Wanted(NamedTuple):
         return len(most_pairs([fitting(value) for value in expected])) == len(expected)
 
 
+def _library_name(text: str) -> str:
+    """Return the name of the library of a plugin, which Gazebo finds with and without lib and .so.
+
+    Any other text stays as it is.
+    """
+    match = _LIBRARY_FILE.fullmatch(text)
+    return match[1] if match is not None else text
+
+
 def _inside(search: Search, entry: TreeEntry, key: str) -> list[TreeEntry]:
     return search.find(entry, steps_of(key, is_xml=entry.is_xml))
 
@@ -244,6 +284,8 @@ def _items_of(entries: Sequence[TreeEntry]) -> list[TreeEntry]:
 def _judge(tree: TreeEntry, wanted: _Wanted, where: str) -> Outcome:
     search = Search()
     entries = search.find(tree, wanted.steps)
+    if wanted.absent:
+        return _judge_absence(tree, search, entries, wanted)
     if not entries:
         return _no_entry(tree, search, wanted, where)
     shown = _shown(wanted.steps, tree)
@@ -264,6 +306,18 @@ def _judge(tree: TreeEntry, wanted: _Wanted, where: str) -> Outcome:
             at = entry
             break
     return failed(f"{shown}: {'; '.join(first_lines(faults, MAX_NAMED))}", at.place)
+
+
+def _judge_absence(
+    tree: TreeEntry, search: Search, entries: Sequence[TreeEntry], wanted: _Wanted
+) -> Outcome:
+    """Return whether there is no entry at the path, or none with the values."""
+    shown = _shown(wanted.steps, tree)
+    values = " with these values" if wanted.is_valued else ""
+    if not wanted.found_in(tree):
+        return passed(f"there is no {shown}{values}")
+    named = next((entry for entry in entries if not wanted.wrong(search, entry)), entries[0])
+    return failed(f"there is {shown}{values}; there should be none", named.place)
 
 
 def _no_entry(tree: TreeEntry, search: Search, wanted: _Wanted, where: str) -> Outcome:
@@ -385,12 +439,13 @@ def _entry_text(entry: TreeEntry) -> str:
 
 def _should(wanted: _Wanted) -> str:
     """Return what an entry should be."""
+    only = " and nothing else" if wanted.only else ""
     if wanted.has is not None:
-        return f"it should have {enumerated([*map(_value_text, wanted.has)])}"
+        return f"it should have {enumerated([*map(_value_text, wanted.has)])}{only}"
     if wanted.one_of is not None:
         return f"it should be {enumerated([*map(_value_text, wanted.one_of)], word='or')}"
     expected = wanted.value if isinstance(wanted.value, list) else [wanted.value or ""]
-    return f"it should be {enumerated([*map(_value_text, expected)])}"
+    return f"it should be {enumerated([*map(_value_text, expected)])}{only}"
 
 
 def _value_text(value: Scalar) -> str:

@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping, Sequence
 from math import degrees, hypot, isfinite
 from typing import Any, NamedTuple
 
-from grader.base.errors import MissingElement
+from grader.base.errors import MissingElement, RubricError
 from grader.base.names import did_you_mean
 from grader.base.quantities import SLACK, in_degrees, in_millimetres, number_text, point, within
 from grader.base.source import LazyLocation, place
@@ -44,9 +44,9 @@ def joint_limits(
     robot: Configuration,
     *,
     link: str,
-    lower: float,
-    upper: float,
-    tolerance: NonNegative,
+    lower: float | None = None,
+    upper: float | None = None,
+    tolerance: NonNegative = 0.0,
     effort: float | None = None,
     velocity: float | None = None,
     relative_to: str | None = None,
@@ -54,14 +54,15 @@ def joint_limits(
 ) -> Outcome:
     """The joint that moves a link has the given limits.
 
-    A continuous, planar or floating joint has no limits. Effort and velocity may be off by 1e-6. If
+    A continuous, planar or floating joint has no range. Effort and velocity may be off by 1e-6. If
     the limits are the expected ones, but in metres instead of degrees or the other way round, the
     joint has the wrong type. With `direction`, limits of the opposite sign pass for the opposite
     axis, as a joint that mimics another one may have.
 
     Args:
         link: The link that the joint moves.
-        lower: The lower limit, in degrees for a revolute joint, in metres for a prismatic joint.
+        lower: The lower limit, in degrees for a revolute joint, in metres for a prismatic joint; it
+            and `upper` may both be absent.
         upper: The upper limit, in degrees or metres.
         tolerance: How far each of the two limits may be off, in degrees or metres.
         effort: The maximum effort, in N m for a revolute joint, in N for a prismatic joint.
@@ -70,9 +71,38 @@ def joint_limits(
         direction: The direction of the axis for which the limits are given.
     """
     joint = robot.moving_joint(link)
-    detail = _joint_detail(joint)
-    if direction is not None and _is_reversed(robot, joint, relative_to, direction):
-        lower, upper = -upper, -lower
+    limit = joint.limit
+    effort_and_velocity = []
+    if limit is not None:
+        others = {"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}
+        effort_and_velocity = [*_expected_numbers(others, _EXACT)]
+    if lower is not None and upper is not None:
+        if direction is not None and _is_reversed(robot, joint, relative_to, direction):
+            lower, upper = -upper, -lower
+        wanted_range = _WantedRange(lower, upper, tolerance)
+        return _judge_range(joint, link, wanted_range, effort_and_velocity)
+    if lower is not None or upper is not None or (effort, velocity) == (None, None):
+        raise RubricError(("joint_limits needs lower and upper, or effort or velocity",))
+    if limit is None:
+        message = f"the joint that moves {link!r} has no <limit>"
+        return failed(message, joint.location, detail=_joint_detail(joint))
+    message = f"the joint that moves {link!r} has a <limit>"
+    return _compare_numbers(message, effort_and_velocity, joint, limit.location)
+
+
+class _WantedRange(NamedTuple):
+    """The limits that a joint should have, in degrees or metres, and how far each may be off."""
+
+    lower: float
+    upper: float
+    tolerance: float
+
+
+def _judge_range(
+    joint: Joint, link: str, wanted: _WantedRange, more: "Sequence[_Number]"
+) -> Outcome:
+    """Return whether a joint has a range, and `more` of the numbers of its <limit>."""
+    detail, (lower, upper, tolerance) = _joint_detail(joint), wanted
     if joint.type not in ("revolute", "prismatic"):
         message = (
             f"the joint that moves {link!r} is {joint.type}, so it has no limits; "
@@ -96,8 +126,7 @@ def joint_limits(
         failure = _wrong_type(joint, link, lower, upper, tolerance)
         if failure is not None:
             return failure
-    others = {"effort": (limit.effort, effort), "velocity": (limit.velocity, velocity)}
-    numbers += _expected_numbers(others, _EXACT)
+    numbers += more
     message = f"the range of the joint that moves {link!r} is {_range_text(low, high)} {units}"
     return _compare_numbers(message, numbers, joint, limit.location, unit_of_json)
 

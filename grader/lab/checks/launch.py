@@ -83,6 +83,7 @@ def node_runs(
     subscribes: list[str] | Mapping[str, str] | None = None,
     serves: list[str] | Mapping[str, str] | None = None,
     calls: list[str] | Mapping[str, str] | None = None,
+    spawns: list[str] | None = None,
     built: bool = True,
 ) -> Outcome:
     """The launch file starts these nodes, with the defaults of its arguments or those of the
@@ -104,11 +105,12 @@ def node_runs(
             be the end of one.
         includes: Launch files that it or another file of the submission includes, by the ends of
             their paths.
-        publishes: Topics that nodes of the submission in Python publish, after remapping; a table
-            gives their types.
+        publishes: Topics that nodes of the submission, or bridges of Gazebo, publish, after
+            remapping; a table gives their types.
         subscribes: Topics that they subscribe to.
         serves: Services and actions that they serve.
         calls: Services and actions that they call.
+        spawns: Controllers that spawners start, by whichever of them.
         built: Whether it must find the files that it reads; if not, only what else stops it counts.
     """
     evaluated = launch_of(package, launch)
@@ -133,6 +135,7 @@ def node_runs(
         subscribes=subscribes,
         serves=serves,
         calls=calls,
+        spawns=spawns,
     )
     faults = find_faults(submission, evaluated, choices, wanted) if any(wanted) else []
     failure = _fail_certainly(package, evaluated, choices, faults)

@@ -1,11 +1,16 @@
 """The check of names: those that files of the packages use are defined in one of them."""
 
+from collections.abc import Sequence
+from typing import Annotated
+
 from grader.base.errors import NotDecided
 from grader.base.text import enumerated, first_lines
+from grader.base.toml_types import Constraint
 from grader.lab.checks.check import About
 from grader.lab.checks.outcome import Outcome, failed, passed
 from grader.lab.submission.submission import Submission
-from grader.ros.workspace.rules.rule_table import Family
+from grader.ros.package.robot_file import Read
+from grader.ros.workspace.rules.rule_table import FAMILIES, Family
 
 ABOUT = {
     "names_agree": About(
@@ -15,11 +20,27 @@ ABOUT = {
         }
     )
 }
+_ROBOT = "robot"
+_CAUSES = [*FAMILIES, _ROBOT]
+_Causes = Annotated[
+    list[str],
+    Constraint(
+        f"families of names, or {_ROBOT}",
+        lambda causes: set(causes) <= set(_CAUSES),
+        {"items": {"enum": _CAUSES}},
+    ),
+]
 _OF_START = "controller-started"  # the rule of controllers that no spawner starts
 _MAX_IN_MESSAGE = 3  # mistakes, and places of each
 
 
-def names_agree(submission: Submission, *, of: Family, where_started: bool = False) -> Outcome:
+def names_agree(
+    submission: Submission,
+    *,
+    of: Family,
+    where_started: bool = False,
+    not_at: _Causes | None = None,
+) -> Outcome:
     """The names that files of the packages use are defined: files, frames, parameters, programs and
     so on.
 
@@ -33,6 +54,8 @@ def names_agree(submission: Submission, *, of: Family, where_started: bool = Fal
             their fields); or code, of which nothing may certainly stop a node, or keep it from
             working; values (numbers that contradict the robot) or transforms (that are no tree).
         where_started: Whether controllers pass that no spawner starts, for `carried`.
+        not_at: Families, or "robot" for errors of the URDF and xacro: a name in a line where one of
+            these is wrong as well does not count, for `carried`.
     """
     from grader.ros.workspace.rules.reading import (  # late: few rubrics ask for it
         read_agreement,
@@ -44,6 +67,8 @@ def names_agree(submission: Submission, *, of: Family, where_started: bool = Fal
     wrong = wrong_names(workspace, of, submission.lab_packages.values())
     if where_started:
         wrong = [mismatch for mismatch in wrong if mismatch.rule.name != _OF_START]
+    known_lines = _wrong_lines(submission, not_at or ())
+    wrong = [mismatch for mismatch in wrong if mismatch.location[:2] not in known_lines]
     agreement = read_agreement(workspace)
     undecided = agreement.undecided
     if wrong:
@@ -66,6 +91,22 @@ def names_agree(submission: Submission, *, of: Family, where_started: bool = Fal
     count = agreement.counts.get(of)
     words = f" ({count.words})" if count is not None and count.words else ""
     return passed(f"the names of {of} agree{words}")
+
+
+def _wrong_lines(submission: Submission, families: Sequence[str]) -> set[tuple[str | int, ...]]:
+    """Return the files and lines where names of families, or the robot, are wrong."""
+    from grader.ros.workspace.rules.reading import wrong_names  # late: as above
+
+    lines: set[tuple[str | int, ...]] = set()
+    for family in FAMILIES:
+        if family in families:
+            names = wrong_names(submission.workspace, family, submission.lab_packages.values())
+            lines.update(mismatch.location[:2] for mismatch in names)
+    if _ROBOT in families and isinstance(submission.urdf, Read):
+        for problem in submission.urdf.problems:
+            if problem.kind.severity == "error":
+                lines.add(problem.location[:2])
+    return lines
 
 
 def _also(places: list[str]) -> str:

@@ -67,6 +67,8 @@ CHECKS = (
     "launched_graph.publishes_transform",
     "launched_graph.topic_has_type",
     "launched_graph.reaches",
+    "simulation.world_has",
+    "lookups.looks_up",
     "rviz.rviz_found",
     "rviz.rviz_fixed_frame",
     "rviz.rviz_shows_robot",

@@ -47,6 +47,7 @@ class Wanted(NamedTuple):
     subscribes: _Topics
     serves: _Topics = None
     calls: _Topics = None
+    spawns: Sequence[str] | None = None
 
 
 class Fault(NamedTuple):
@@ -79,6 +80,7 @@ def find_faults(
     if wanted.remap or wanted.arguments:
         faults += [_ill_started(launch, names, wanted) for names in choices]
     faults += [_not_included(launch, end) for end in wanted.includes or ()]
+    faults += _not_spawned(launch, wanted.spawns or ())
     faults += _not_opened(launch, workspace, wanted)
     return [fault for fault in faults if fault is not None]
 
@@ -226,6 +228,24 @@ def fault_of_syntax(workspace: "Workspace", node: "StartedNode", package: str) -
     return None
 
 
+def _not_spawned(launch: "Launch", controllers: Sequence[str]) -> Iterator[Fault]:
+    """Yield the controllers that spawners do not start, in the order in which they are wanted."""
+    if not controllers:
+        return
+    from grader.ros.api import spawned_by  # late: as above
+
+    spawned = spawned_by(launch)
+    shown = enumerated([quoted(name) for name in sorted(spawned.names)]) or "none"
+    for name in controllers:
+        if name in spawned.names:
+            continue
+        if spawned.is_known:
+            message, detail = f"no spawner starts {quoted(name)}", f"; spawners start {shown}"
+            yield Fault(message, spawned.first, detail)
+        else:
+            yield Fault(f"a spawner starts {quoted(name)}", is_certain=False)
+
+
 class _NodeTopic(NamedTuple):
     """What a node opens; `name` is empty where it is not known, and `type` None."""
 
@@ -238,10 +258,11 @@ class _NodeTopic(NamedTuple):
 
 
 class _NodeTopics:
-    """The topics, services and actions of the nodes of a workspace that a launch file starts."""
+    """The topics, services and actions of own nodes and bridges that a launch file starts."""
 
     def __init__(self, launch: "Launch", workspace: "Workspace") -> None:
-        from grader.ros.workspace.graph.code_ends import opened_by  # late: few rubrics ask for it
+        from grader.ros.api import opened_by_bridge  # late: few rubrics ask for it
+        from grader.ros.workspace.graph.code_ends import opened_by
 
         self._topics: list[_NodeTopic] = []
         self._is_open = bool(launch.unknown)
@@ -249,9 +270,15 @@ class _NodeTopics:
         self._stopping = stopping_mistakes(workspace)
         for node in launch.nodes:
             package = workspace.package_of(node)
-            if package is None or not self._may_run(node, workspace, package.name):
+            bridged = opened_by_bridge(workspace, node)
+            if bridged is not None:
+                ends, is_known = bridged
+                self._is_open = self._is_open or not is_known
+            elif package is not None and self._may_run(node, workspace, package.name):
+                ends = [*opened_by(workspace, node)]
+            else:
                 continue
-            for end in opened_by(workspace, node):
+            for end in ends:
                 self._is_open = self._is_open or not end.is_known
                 name = end.name or "" if end.is_known else ""
                 verb, opened = _VERBS[end.endpoint.kind], end.endpoint

@@ -124,6 +124,8 @@ def _count_lines(test: RubricTest) -> Iterator[str]:
     if test.equivalents:
         lose = _count_or_none(len(test.losses), "loses", "lose")
         yield f"Equivalents  {len(test.equivalents)} graded, {lose} points"
+    elif not test.is_interrupted and report.submission.path is None:
+        yield "Equivalents  none of this reference"
     elif not test.is_interrupted:
         yield "Equivalents  none graded: ROS 2 does not load the reference without problems"
     if samples is not None:

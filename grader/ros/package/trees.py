@@ -266,6 +266,8 @@ def read_tree(package: Package, file: str) -> TreeEntry:
         matches = [file]
     else:
         matches = [path for path in files if path.endswith(f"/{file.strip('/')}")]
+        if not matches and file.startswith("."):  # an ending, such as .sdf
+            matches = [path for path in files if path.endswith(file)]
     if len(matches) > 1:
         raise NotDecided(
             f"several files are called {file}: {', '.join(matches[:3])}",

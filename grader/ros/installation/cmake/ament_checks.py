@@ -22,17 +22,24 @@ def check_tests(build: Build, commands: Sequence[Command]) -> None:
     """Note what stops the build of tests: a source that is not there, a command without package."""
     if build.values.variables.get(_SWITCH) != "" or build.doubts:
         return
-    for block in commands:
-        is_of_tests = [argument.text for argument in block.arguments] == [_SWITCH]
-        if block.name == "if" and is_of_tests:
-            packages = set(build.values.packages)
-            for command in block.body:
-                if command.name == "find_package" and command.arguments:
-                    packages.add(command.arguments[0].text.lower())
-                kind = _GTEST.fullmatch(command.name)
-                if kind is not None:
-                    _require_provider(build, command, f"ament_cmake_{kind[1]}", packages)
-                    build.require_sources([*_sources(build, command)], command)
+    for command in commands:
+        if command.name == "if" and [one.text for one in command.arguments] == [_SWITCH]:
+            _check_providers(build, command.body)
+            for inner in command.body:
+                if _GTEST.fullmatch(inner.name):
+                    build.require_sources([*_sources(build, inner)], inner)
+    _check_providers(build, commands)
+
+
+def _check_providers(build: Build, commands: Sequence[Command]) -> None:
+    """Note the tests of a block whose command no package has that is found."""
+    packages = set(build.values.packages)
+    for command in commands:
+        if command.name == "find_package" and command.arguments:
+            packages.add(command.arguments[0].text.lower())
+        kind = _GTEST.fullmatch(command.name)
+        if kind is not None:
+            _require_provider(build, command, f"ament_cmake_{kind[1]}", packages)
 
 
 def _require_provider(build: Build, command: Command, needed: str, packages: set[str]) -> None:

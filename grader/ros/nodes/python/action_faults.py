@@ -12,7 +12,8 @@ from grader.ros.python.parse import Code, every_node, location_in, position_of
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 # What sets the state of a goal: rclpy/rclpy/action/server.py of jazzy.
-_ENDING_STATES = frozenset({"succeed", "abort", "canceled"})
+_CANCELS = "canceled"
+_ENDING_STATES = frozenset({"succeed", "abort", _CANCELS})
 # The fields of the answer that has the result of an action, and what each message has.
 _OF_RESULT = frozenset({"status", "result", "get_fields_and_field_types"})
 _BUFFERS = ("tf2_ros.Buffer", "tf2_ros.buffer.Buffer")
@@ -29,7 +30,8 @@ class RegisteredGoal(NamedTuple):
 def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Iterator[CodeFault]:
     """Yield functions that end without setting the state of their goal: rclpy aborts it then.
 
-    One that gives the goal to something else, or keeps it, may set it there.
+    One that gives the goal to something else, or keeps it, may set it there. A function that only
+    cancels goals sets no state of the others.
     """
     for goal in registered:
         function = goal.function
@@ -37,16 +39,36 @@ def goals_without_state(code: Code, registered: Sequence[RegisteredGoal]) -> Ite
         if len(names) != 1 or function.decorator_list:
             continue
         used = _attributes_of(names[0], function)
-        returned = [node for node in ast.walk(function) if isinstance(node, ast.Return)]
-        if used is None or not _ENDING_STATES.isdisjoint(used) or not returned:
+        if used is None:
             continue
+        states = _ENDING_STATES.intersection(used)
+        if states - {_CANCELS} or not any(_returns_without_state(function.body)):
+            continue
+        of_goal = "a goal that nobody cancels" if states else "its goal"
         message = (
-            f"{function.name}() sets no state of its goal, so rclpy aborts it; "
+            f"{function.name}() sets no state of {of_goal}, so rclpy aborts it; "
             f"call {names[0]}.succeed()"
         )
         at = location_in(code.source, position_of(function))
         place = location_in(code.source, position_of(goal.call))
         yield CodeFault("no goal state", message, at, place, is_certain=False)
+
+
+def _returns_without_state(body: Sequence[ast.stmt]) -> Iterator[ast.Return]:
+    """Yield what statements return, but not after a call that cancels the goal, in any block."""
+    for statement in body:
+        if isinstance(statement, ast.Return):
+            yield statement
+        if isinstance(statement, _Function | ast.ClassDef):
+            continue
+        match statement:
+            case ast.Expr(value=ast.Call(func=ast.Attribute(attr=name))) if name == _CANCELS:
+                return
+        blocks = [getattr(statement, field, []) for field in ("body", "orelse", "finalbody")]
+        blocks += [handler.body for handler in getattr(statement, "handlers", [])]
+        blocks += [case.body for case in getattr(statement, "cases", [])]
+        for block in blocks:
+            yield from _returns_without_state(block)
 
 
 def _attributes_of(name: str, function: _Function) -> set[str] | None:
@@ -62,6 +84,44 @@ def _attributes_of(name: str, function: _Function) -> set[str] | None:
         if isinstance(node, ast.Name) and node.id == name and node not in owners:
             return None
     return used
+
+
+def loops_without_transforms(
+    code: Code,
+    registered: Sequence[RegisteredGoal],
+    methods: Mapping[tuple[Location | None, str], _Function],
+) -> Iterator[CodeFault]:
+    """Yield loops of goals that look up transforms, which one thread does not read meanwhile."""
+    own_methods = {name: function for (_, name), function in methods.items()}
+    for goal in registered:
+        function = goal.function
+        if isinstance(function, ast.AsyncFunctionDef):
+            continue
+        for node in ast.walk(function):
+            if isinstance(node, ast.While) and _looks_up(node, own_methods):
+                message = (
+                    f"the loop in {function.name}() looks up transforms, and rclpy.spin() has one "
+                    "thread, which reads none until the loop ends; use a MultiThreadedExecutor"
+                )
+                at = location_in(code.source, position_of(node))
+                place = location_in(code.source, position_of(goal.call))
+                yield CodeFault("waits in a callback", message, at, place, is_certain=False)
+                break
+
+
+def _looks_up(loop: ast.While, methods: Mapping[str, _Function]) -> bool:
+    """Return whether a loop looks up a transform, itself or by a method that it calls."""
+    nodes: list[ast.AST] = [*ast.walk(loop)]
+    for node in [*nodes]:
+        match node:
+            case ast.Call(func=ast.Attribute(value=ast.Name(id="self"), attr=name)):
+                if name in methods:
+                    nodes += ast.walk(methods[name])
+    for node in nodes:
+        match node:
+            case ast.Call(func=ast.Attribute(attr="lookup_transform")):
+                return True
+    return False
 
 
 def answers_for_results(

@@ -22,6 +22,7 @@ from grader.ros.nodes.python.action_faults import (
     answers_for_results,
     buffers_without_listener,
     goals_without_state,
+    loops_without_transforms,
 )
 from grader.ros.nodes.python.called_functions import CalledFunctions, imported_names
 from grader.ros.nodes.python.log_calls import wrong_log_calls
@@ -29,6 +30,8 @@ from grader.ros.nodes.python.rclpy_names import CALLBACKS, is_passive
 from grader.ros.python.constants import binds_unseen, dotted, last_name
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
 
+# With one of these, callbacks may run while another one waits.
+_OTHER_THREADS = ("xecutor", "hread", "spin_once", "spin_some", "asyncio", "await ")
 _MAX_FAULTS = 20  # of one module and rule
 _ANSWERING = ("create_service", "ActionServer")
 # Messages of pyflakes about what certainly fails when it runs.
@@ -417,14 +420,7 @@ class _Search:
 
         It is this module, one that it imports or one that imports it.
         """
-        name = self._module.name
-        for module in self._others.values():
-            is_user = any(f"{imported}.".startswith(f"{name}.") for imported in module.imports)
-            is_used = any(
-                f"{imported}.".startswith(f"{module.name}.") for imported in self._module.imports
-            )
-            if module.name != name and not is_user and not is_used:
-                continue
+        for module in self._related_modules():
             text = module.code.source.text
             if any(word in text for word in _CONCURRENT):
                 return True
@@ -433,6 +429,17 @@ class _Search:
             ):
                 return True
         return False
+
+    def _related_modules(self) -> Iterator[ModuleText]:
+        """Yield this module, those that it imports and those that import it."""
+        name = self._module.name
+        for module in self._others.values():
+            is_user = any(f"{imported}.".startswith(f"{name}.") for imported in module.imports)
+            is_used = any(
+                f"{imported}.".startswith(f"{module.name}.") for imported in self._module.imports
+            )
+            if module.name == name or is_user or is_used:
+                yield module
 
     def of_actions(self) -> Iterator[CodeFault]:
         """Yield what is done wrong with actions and transforms."""
@@ -443,11 +450,20 @@ class _Search:
                 goals.append(RegisteredGoal(function, registered.call))
         yield from goals_without_state(self._code, goals)
         text = self._code.source.text
+        if goals and "lookup_transform" in text and not self._may_have_threads():
+            yield from loops_without_transforms(self._code, goals, self._functions)
         if "get_result_async" in text:
             yield from answers_for_results(self._code, self._module.parts, self._functions)
         if "Buffer" in text and "TransformListener" not in text:
             names = imported_names(every_node(self._code.tree))
             yield from buffers_without_listener(self._code, names)
+
+    def _may_have_threads(self) -> bool:
+        """Return whether anything but rclpy.spin() may run callbacks."""
+        texts = [module.code.source.text for module in self._related_modules()]
+        if not any("rclpy.spin(" in text for text in texts):
+            return True
+        return any(word in text for text in texts for word in _OTHER_THREADS)
 
     # --- Programs
 

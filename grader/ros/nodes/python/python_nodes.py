@@ -9,6 +9,7 @@ What is opened under a condition is listed as well; actions and the topics of tf
 import ast
 import re
 import sys
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from functools import cache, cached_property, partial
 from typing import NamedTuple
@@ -340,7 +341,8 @@ def _programs(
     by_key: dict[object, list[NodeFacts]] = {}
     for node in nodes:
         by_key.setdefault(node.location, []).append(node)
-        by_key.setdefault(node.class_name, []).append(node)
+        if node.class_name:
+            by_key.setdefault(node.class_name, []).append(node)
     created_by = partial(_created_by, package.budget, modules, by_key)
     may_guess = _MAX_GUESSED if reads_meant else 0
     for number, written in enumerate(entry_points(package)):
@@ -430,6 +432,8 @@ class _Module:
         self._classes: dict[Location, str] = {}
         self._class_nodes: dict[Location, ast.ClassDef] = {}
         self._facts: dict[Location, list[_Fact]] = {}  # of each node
+        # The nodes that parameters of functions are, by the names of both.
+        self._given_nodes: Mapping[tuple[str, str], Location | None] = {}
         self._parts: list[CodePart] = []
         body = own_nodes(code.tree)
         scope = self._constants.bound(body, Scope({}))
@@ -506,6 +510,7 @@ class _Module:
                 self._facts[self._at(call)] = [
                     _Name(_text(self._argument(part, call, 0, "node_name")))
                 ]
+        self._read_parameters_that_are_nodes(calls)
         for part, call in calls:
             self._read_call(part, call)
             self._read_transforms(part, call)
@@ -514,6 +519,27 @@ class _Module:
                     facts.append(
                         Doubt("another node takes the parameters of the process", self._at(call))
                     )
+
+    def _read_parameters_that_are_nodes(self, calls: Sequence[tuple[CodePart, ast.Call]]) -> None:
+        """Keep which parameters of the module's functions are nodes, as all their calls say.
+
+        A function that is given a node may give it to another one.
+        """
+        functions = {part.name: part for part in self._parts if part.of is None and part.name}
+        given: list[tuple[CodePart, str, str, ast.expr]] = []
+        for part, call in calls if self._facts else ():
+            called = self._called(part, call).removeprefix(f"{self._name}.")
+            if called in functions:
+                for name, argument in _parameters_given(functions[called].node, call):
+                    given.append((part, called, name, argument))
+        for _ in functions if given else ():
+            nodes: dict[tuple[str, str], Location | None] = {}
+            for part, called, name, argument in given:
+                node = self._receiver(part, argument)
+                nodes[called, name] = node if nodes.get((called, name), node) == node else None
+            if nodes == self._given_nodes:
+                break
+            self._given_nodes = nodes
 
     def synchronised_types(self) -> Iterator[SynchronisedType]:
         """Yield the types of the messages that synchronisers compare."""
@@ -679,10 +705,11 @@ class _Module:
                 return part.of
             return None
         value = constant_in(part.scope, name)
+        at: Location | None = None
         if isinstance(value, Call) and value.name in _CREATES:
             at = location_in(self._code.source, value.at)
-        else:
-            at = None
+        elif part.of is None:
+            at = self._given_nodes.get((part.name, name))
         return at if at in self._facts else None
 
     def _read_call(self, part: CodePart, call: ast.Call) -> None:
@@ -731,9 +758,10 @@ class _Module:
         """Add what a call makes of the nodes that it is given."""
         name = function.rpartition(".")[2]
         arguments = [*call.args, *(keyword.value for keyword in call.keywords)]
+        called = self._called(part, call).removeprefix(f"{self._name}.")
         for argument in arguments:
             at = self._receiver(part, argument) if isinstance(argument, ast.Name) else None
-            if at is None:
+            if at is None or at in self._nodes_given_to(called):
                 continue
             if self._called(part, call) == SUBSCRIBER:
                 self._facts[at] += self._filtered(part, call)
@@ -741,6 +769,10 @@ class _Module:
                 self._facts[at] += self._action(part, call, _ACTIONS[name])
             elif name not in _HARMLESS:
                 self._facts[at].append(Doubt(f"{name} is given the node", self._at(call)))
+
+    def _nodes_given_to(self, function: str) -> Collection[Location | None]:
+        """Return the nodes that a function of the module is given by all of its calls."""
+        return [at for (name, _), at in self._given_nodes.items() if name == function]
 
     def _is_buffer(self, part: CodePart, node: ast.expr) -> bool:
         """Return whether an expression is a buffer of tf2."""
@@ -823,6 +855,27 @@ class _Module:
             is_guard=method == "has_parameter",
             is_unset=isinstance(default, QualifiedName) and _default(default) is None,
         )
+
+
+def _parameters_given(function: ast.AST, call: ast.Call) -> Iterator[tuple[str, ast.expr]]:
+    """Yield the parameters of a function with what a call gives them, without what is unpacked.
+
+    A parameter that is bound again, or that an inner function has as well, is not among them.
+    """
+    assert isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef)
+    bound: Counter[str] = Counter()
+    for node in ast.walk(function):
+        if isinstance(node, ast.arg):
+            bound[node.arg] += 1
+        elif isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
+            bound[node.id] += 1
+    arguments = function.args
+    positional = [*arguments.posonlyargs, *arguments.args]
+    for position, parameter in enumerate([*positional, *arguments.kwonlyargs]):
+        behind = position if position < len(positional) else len(call.args)
+        given = given_argument(call, behind, parameter.arg)
+        if given is not None and bound[parameter.arg] == 1:
+            yield parameter.arg, given
 
 
 def _has_alias(tree: ast.Module) -> bool:

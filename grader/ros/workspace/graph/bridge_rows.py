@@ -79,6 +79,21 @@ def rows_of_bridge(workspace: Workspace, node: StartedNode) -> Iterator[BridgeRo
                 yield row
 
 
+def are_rows_known(workspace: Workspace, node: StartedNode) -> bool:
+    """Return whether all rows that a bridge is given are read."""
+    if node.arguments is None or None in node.arguments or node.parameters is None:
+        return False
+    for given in node.parameters:
+        file = given.values.get("config_file")
+        if given.unknown or given.path:
+            return False
+        if file is not None:
+            path = workspace.installed.source_of(file.value) if isinstance(file.value, str) else ""
+            if not isinstance(workspace.installed.yaml.get(path or ""), YamlNode):
+                return False
+    return node.namespace in ("", "/") and node.remaps is not None
+
+
 def _rows_in_arguments(node: StartedNode) -> Iterator[BridgeRow]:
     for word in node.arguments or ():
         match = _ARGUMENT.fullmatch(word or "")

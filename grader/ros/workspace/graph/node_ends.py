@@ -3,7 +3,7 @@
 The nodes are those of own code, controllers, bridges and well-known programs.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 from grader.ros.known.package_rows import CommandRow, ProgramRow, program_row
@@ -11,7 +11,7 @@ from grader.ros.launch.launch_model import StartedNode
 from grader.ros.nodes.node_facts import Endpoint, EndpointKind
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
-from grader.ros.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, are_rows_known, rows_of_bridge
 from grader.ros.workspace.graph.code_ends import End, opened_by
 from grader.ros.workspace.graph.started_controllers import controller_endpoints
 from grader.ros.workspace.model.workspace import Workspace
@@ -59,6 +59,17 @@ def ends_of(
         if topic is not None:
             endpoint = Endpoint(kind, message, topic, node.location)
             yield End(topic, endpoint, launch, node, "program", program)
+
+
+def opened_by_bridge(workspace: Workspace, node: StartedNode) -> tuple[Sequence[End], bool] | None:
+    """Return the topics of ROS that a bridge opens, and whether these are all; None for others."""
+    if node.package != BRIDGE:
+        return None
+    ends = [
+        End(endpoint.name or "", endpoint, -1, node, "bridge", node.executable)
+        for endpoint in _bridged(workspace, node)
+    ]
+    return ends, are_rows_known(workspace, node)
 
 
 def _bridged(workspace: Workspace, node: StartedNode) -> Iterator[Endpoint]:

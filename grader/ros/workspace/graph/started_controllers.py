@@ -3,6 +3,7 @@
 They are controllers of ros2_control.
 """
 
+import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import NamedTuple
@@ -11,12 +12,14 @@ from grader.base.source import Location
 from grader.ros.config.yaml_nodes import YamlNode
 from grader.ros.config.yaml_values import sections_in
 from grader.ros.known.package_rows import controller_row
-from grader.ros.launch.launch_model import StartedNode
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.launch.node_parameters import controllers_of
 from grader.ros.nodes.node_facts import Endpoint, EndpointKind
 from grader.ros.workspace.model.launches import CONTROL_NODE, MANAGER, SPAWNERS
 from grader.ros.workspace.model.workspace import Workspace
 
+# Programs and services that start controllers, besides spawners.
+_OTHER_STARTS = re.compile(r"(load|switch|set)_controller|(Load|Switch)Controller")
 _JOINT_STATE = "sensor_msgs.msg.JointState"
 _LOCAL_TOPICS = "use_local_topics"  # the parameter that puts the broadcaster's name before its own
 
@@ -132,3 +135,29 @@ def spawned_controllers(
             for controller in controllers_of(spawner) or ():
                 remaps[controller.node_name] = controller.remaps or ()
     return remaps
+
+
+class _Spawned(NamedTuple):
+    """The controllers that the spawners of a launch file start."""
+
+    names: tuple[str, ...]
+    is_known: bool  # whether nothing else may start others
+    first: Location | None  # where the first spawner is started
+
+
+def spawned_by(launch: Launch) -> _Spawned:
+    """Return the controllers that spawners start in a launch file and those that it includes."""
+    names: dict[str, None] = {}
+    first: Location | None = None
+    is_known = not launch.unknown and _OTHER_STARTS.search(launch.source.text) is None
+    for node in launch.nodes:
+        if node.package != MANAGER or node.executable not in SPAWNERS:
+            continue
+        started = controllers_of(node)
+        is_known = is_known and started is not None and node.when is not None
+        if node.when:
+            first = first or node.location
+            for controller in started or ():
+                if controller.node_name:
+                    names[controller.node_name] = None
+    return _Spawned((*names,), is_known, first)

@@ -162,13 +162,22 @@ def _meant_program(owner: Package, package: str, name: str) -> str:
 def _program_texts(package: Package) -> tuple[tuple[str, bytes | None], ...]:
     """Return the files of a package, each with its bytes.
 
-    It has None in place of the bytes if its ending says that it has no code.
+    It has None in place of the bytes if its ending says that it has no code, and for a launch file
+    in a folder without modules.
     """
     texts: list[tuple[str, bytes | None]] = []
+    launch_files = frozenset(package.launch_files)
     for path, file in package.tree.files.items():
-        has_code = path == MANIFEST or file.suffix not in _NO_CODE
+        is_launch_file = path in launch_files and _is_beside_no_module(package, path)
+        has_code = path == MANIFEST or (file.suffix not in _NO_CODE and not is_launch_file)
         texts.append((path, package.tree.read(path, MAX_YAML) if has_code else None))
     return tuple(texts)
+
+
+def _is_beside_no_module(package: Package, path: str) -> bool:
+    """Return whether a file is in a folder that is no package of Python."""
+    folder, _, _ = path.rpartition("/")
+    return bool(folder) and f"{folder}/__init__.py" not in package.tree.files
 
 
 def _nodes_of(package: Package, *, reads_meant: bool) -> PackageNodes:

@@ -44,6 +44,7 @@ _FIND = re.compile(
     r"\$\(find(?:-pkg-share)? ([\w-]+)\)/?((?:[^\"'<>\s$,()[\]{}]|,(?=\w))*)(?=[\"'<\s,)\]}])"
 )
 _PACKAGE = re.compile(r"package://([\w-]+)/([\w./-]+)(?=[\"'<\s,\]}])")
+_MAX_TAG = 80  # characters of a tag and the spaces behind it
 _LAUNCH_FOLDER = "launch/"
 _PROPERTY = re.compile(r"<xacro:property\b[^<>]*?\bname\s*=\s*[\"'](\w+)[\"']")
 # Files of text that are read, which no download leaves out for their size; and programs.
@@ -106,10 +107,28 @@ def _named_paths(workspace: Workspace) -> Iterator[_NamedPath]:
                 or not workspace.robots.known
                 or source.path in workspace.robots.files
             ) and source.path not in left_out
-            for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
-                path = f"{SHARE}/{match[1]}/{match[2]}"
-                is_used = is_read and not _is_unused_property(workspace, source, match.start())
-                yield _NamedPath(package, path, source.at(match.start()), is_used)
+            yield from _paths_in_source(workspace, package, source, is_read=is_read)
+
+
+def _paths_in_source(
+    workspace: Workspace, package: Package, source: Source, *, is_read: bool
+) -> Iterator[_NamedPath]:
+    """Yield the paths that a file of a robot or of parameters names."""
+    for match in (*_FIND.finditer(source.text), *_PACKAGE.finditer(source.text)):
+        start = match.start()
+        is_used = is_read and not _is_unused_property(workspace, source, start)
+        yield _NamedPath(
+            package=package,
+            path=f"{SHARE}/{match[1]}/{match[2]}",
+            location=source.at(start),
+            is_read=is_used,
+            is_needed=_is_in_parameters(source, start),
+        )
+
+
+def _is_in_parameters(source: Source, at: int) -> bool:
+    """Return whether a place is the text of <parameters>, which gz_ros2_control reads."""
+    return source.text[max(0, at - _MAX_TAG) : at].rstrip().endswith("<parameters>")
 
 
 def _robots_left_out(workspace: Workspace, package: Package) -> frozenset[str]:
@@ -236,7 +255,9 @@ def _fault_of(workspace: Workspace, named: _NamedPath) -> Iterator[Fact]:
     if inside in owner.tree.folders:
         yield from _no_folder(owner, inside, f"a build installs no {target}", at)
     else:
-        is_absent = named.is_needed and workspace.texts.is_nowhere(owner, target)
+        is_absent = is_surely_absent(owner, target)
+        if named.is_needed and not is_absent:  # the second question costs more
+            is_absent = workspace.texts.is_nowhere(owner, target)
         yield _not_there(owner, target, at, is_output=named.is_output, is_absent=is_absent)
 
 
@@ -295,7 +316,7 @@ def _not_there(
     meant = similar_file(owner, name)
     guess = f"; did you mean {meant!r}?" if meant else ""
     message = f"{missing}: the package has no file {name!r}{guess}"
-    is_certain = (is_absent or is_surely_absent(owner, target)) and not is_output
+    is_certain = is_absent and not is_output
     either = corrections(name, at, meant)
     cause = f"no file in {posixpath.dirname(target)}" if meant is None else ""
     return Mismatch(FILE_INSTALLED, message, at, None, is_certain, either, cause=cause)

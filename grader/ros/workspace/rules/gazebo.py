@@ -15,6 +15,7 @@ from grader.ros.known.package_tables import create_table
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.graph.bridge_rows import BRIDGE
 from grader.ros.workspace.graph.gazebo_topics import roots, system_of
+from grader.ros.workspace.graph.started_worlds import started_worlds
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Fact, Mismatch, corrections, warning
 from grader.ros.workspace.rules.rule_table import (
@@ -24,6 +25,7 @@ from grader.ros.workspace.rules.rule_table import (
     CREATED_TOPIC,
     CREATED_WORLD,
     SENSOR_SYSTEM,
+    SIMULATION_STARTED,
 )
 from grader.ros.xml.parsing import Element, XmlFile
 
@@ -47,7 +49,19 @@ def gazebo_facts(workspace: Workspace) -> Iterator[Fact]:
             yield from _created_in_world(node, worlds)
             yield from _unknown_options(node)
             yield from _created_from_nothing(node)
+    yield from _created_without_gazebo(workspace)
     yield from _bridges(workspace)
+
+
+def _created_without_gazebo(workspace: Workspace) -> Iterator[Mismatch]:
+    """Yield that a robot is created, and that no launch file starts Gazebo with its world.
+
+    Nothing is said where launch files name no world of the workspace: another command may start it.
+    """
+    creators = [node for _, node in workspace.launches.nodes if _is_creator(node) and node.when]
+    if creators and not started_worlds(workspace).may_start:
+        message = "no launch file starts Gazebo, for which create waits"
+        yield warning(SIMULATION_STARTED, message, creators[0].location)
 
 
 def _is_creator(node: StartedNode) -> bool:

@@ -8,6 +8,7 @@ from typing import NamedTuple
 from grader.base.names import near
 from grader.base.source import Source
 from grader.base.text import quoted
+from grader.ros.known.released import is_released
 from grader.ros.package.installed_files import are_installs_known
 from grader.ros.package.package import CMAKE, Package
 from grader.ros.workspace.model.text_files import FILES_A_PART
@@ -27,6 +28,13 @@ _GENERATORS = re.compile(
     r"\b(?:configure_file|generate_export_header|generate_parameter_library|add_custom_command"
     r"|add_subdirectory|FetchContent\w*|ExternalProject\w*|protobuf_generate\w*|execute_process"
     r"|qt\d?_wrap\w*|add_custom_target|include)\s*\(",
+    re.IGNORECASE,
+)
+_FOUND_PACKAGE = re.compile(r"\bfind_package\s*\(\s*([^\s)]+)", re.IGNORECASE)
+# What finds headers without a package.
+_FINDS_OTHERS = re.compile(
+    r"\b(?:find_path|find_file|find_library|pkg_\w+|include_directories|target_include_directories"
+    r"|add_compile_options|target_compile_options)\s*\(",
     re.IGNORECASE,
 )
 _OF_INTERFACES = re.compile(r"/(?:msg|srv|action)/|/rosidl_|visibility_control")
@@ -128,11 +136,24 @@ def _absent(
     is_made = _OF_INTERFACES.search(header.path) or workspace.code.interfaces[owner.name].types
     if setup is None or not setup.is_cmake or setup.doubt is not None or is_made:
         return
-    if _GENERATORS.search(setup.source.text) or "include" not in owner.tree.folders:
+    if _GENERATORS.search(setup.source.text):
+        return
+    if "include" not in owner.tree.folders and not _has_only_ros(workspace, setup.source.text):
         return
     whose = "the package" if owner is package else f"the package {quoted(owner.name)}"
     message = f"{whose} has no header {quoted(header.path)}, so the file does not compile"
     yield _with_guess(workspace, message, header, headers, owner)
+
+
+def _has_only_ros(workspace: Workspace, text: str) -> bool:
+    """Return whether a CMakeLists.txt finds only packages of ROS 2, which have their own headers.
+
+    A library that is none may have the name of the package.
+    """
+    if _FINDS_OTHERS.search(text):
+        return False
+    own_names = {package.name for package in workspace.packages}
+    return all(name in own_names or is_released(name) for name in _FOUND_PACKAGE.findall(text))
 
 
 def _misspelt(

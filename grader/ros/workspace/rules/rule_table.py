@@ -579,6 +579,9 @@ SIMULATED_NODE = Rule(
     _OTHER_TIME,
     "The nodes that a launch file starts beside Gazebo use its time.",
 )
+SIMULATION_STARTED = _companion(
+    "simulation-started", sentence="Something starts the Gazebo in which a robot is created."
+)
 CONTAINER_STARTED = _companion(
     "container-started", sentence="The container of a component is started."
 )
