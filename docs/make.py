@@ -145,6 +145,7 @@ QUESTIONS = {
     "Which values do files and nodes have?": ("entries", "parameters"),
     "Does the package build and install its files?": ("package_build",),
     "What does a launch file start, and what do the nodes do?": ("launch", "simulation", "lookups"),
+    "How do nodes work together?": ("launched_graph",),
     "What does RViz show?": ("rviz",),
     "Does everything fit together?": ("names_agree",),
     "What did the student write or show?": ("manual",),

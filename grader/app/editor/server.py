@@ -264,7 +264,7 @@ def _make_server(rubric: str, limits: ReadingLimits, skipped: Skipped) -> _Grade
         skipped: The texts that take too long to read, by the paths of their files.
     """
     server = _GraderServer(rubric, limits, skipped)
-    _follow_folders(server)
+    _follow_disk(server)
     _follow_texts(server)
     _answer_about_places(server)
     _offer_changes(server)
@@ -272,7 +272,7 @@ def _make_server(rubric: str, limits: ReadingLimits, skipped: Skipped) -> _Grade
 
 
 def _follow_texts(server: _GraderServer) -> None:
-    """Let a server follow what is typed and saved."""
+    """Let a server follow what is typed."""
 
     @server.feature(lsp.TEXT_DOCUMENT_DID_OPEN)
     def opened(ls: _GraderServer, params: lsp.DidOpenTextDocumentParams) -> None:
@@ -289,18 +289,9 @@ def _follow_texts(server: _GraderServer) -> None:
     def closed(ls: _GraderServer, params: lsp.DidCloseTextDocumentParams) -> None:
         ls.change(params.text_document.uri, lambda files, path: files.close(path))
 
-    @server.feature(lsp.TEXT_DOCUMENT_DID_SAVE)
-    def saved(ls: _GraderServer, params: lsp.DidSaveTextDocumentParams) -> None:
-        ls.change(params.text_document.uri, lambda files, _: files.read_again())
 
-    @server.feature(lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES)
-    def written(ls: _GraderServer, params: lsp.DidChangeWatchedFilesParams) -> None:
-        for uri in {change.uri for change in params.changes}:
-            ls.change(uri, lambda files, _: files.read_again())
-
-
-def _follow_folders(server: _GraderServer) -> None:
-    """Let a server follow which folders are open."""
+def _follow_disk(server: _GraderServer) -> None:
+    """Let a server follow which folders are open, and what is saved."""
 
     @server.feature(lsp.INITIALIZED)
     def initialized(ls: _GraderServer, _: lsp.InitializedParams) -> None:
@@ -312,6 +303,15 @@ def _follow_folders(server: _GraderServer) -> None:
             method = lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES
             registration = lsp.Registration("watched-files", method, options)
             ls.client_register_capability(lsp.RegistrationParams([registration]))
+
+    @server.feature(lsp.TEXT_DOCUMENT_DID_SAVE)
+    def saved(ls: _GraderServer, params: lsp.DidSaveTextDocumentParams) -> None:
+        ls.change(params.text_document.uri, lambda files, _: files.read_again())
+
+    @server.feature(lsp.WORKSPACE_DID_CHANGE_WATCHED_FILES)
+    def written(ls: _GraderServer, params: lsp.DidChangeWatchedFilesParams) -> None:
+        for uri in {change.uri for change in params.changes}:
+            ls.change(uri, lambda files, _: files.read_again())
 
     @server.feature(lsp.WORKSPACE_DID_CHANGE_WORKSPACE_FOLDERS)
     def folders_changed(ls: _GraderServer, params: lsp.DidChangeWorkspaceFoldersParams) -> None:

@@ -1,11 +1,11 @@
 """The facts of what a reference connects after a launch: transforms, and ways of messages."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from grader.base.errors import NotDecided
 from grader.lab.authoring.facts import Fact
 from grader.lab.submission.submission import Submission
-from grader.ros.api import GraphNode, GraphTransform, join_launches
+from grader.ros.api import GraphEnd, GraphNode, GraphTransform, join_launches
 from grader.ros.launch.launch_model import Launch
 from grader.ros.package.package import Package
 
@@ -76,22 +76,8 @@ class LaunchConnections:
 
     def _ways(self) -> Iterator[tuple[str, str]]:
         """Yield the topics between which own nodes take messages from other nodes to other ones."""
-        starts, ends = dict[str, None](), dict[str, None]()
         nodes = self._graph.graph.nodes
-        own_nodes = [node for node in nodes if self._is_own(node)]
-        own_ends = [end for node in own_nodes for end in node.ends if not end.doubt]
-        read = {end.name for end in own_ends if end.kind == "subscription"}
-        sent = {end.name for end in own_ends if end.kind == "publisher"}
-        others = [end for node in nodes if not self._is_own(node) for end in node.ends]
-        read_by_others = {end.name for end in others if end.kind == "subscription"}
-        sent_by_others = {end.name for end in others if end.kind == "publisher"}
-        for end in own_ends:
-            is_sensed = end.name in sent_by_others or end.type.startswith(_OF_SENSORS)
-            is_command = end.name in read_by_others or end.type.startswith(_OF_COMMANDS)
-            if end.kind == "subscription" and is_sensed and end.name not in sent:
-                starts[end.name] = None
-            if end.kind == "publisher" and is_command and end.name not in read:
-                ends[end.name] = None
+        starts, ends = self._outer_topics(nodes)
         for start in starts:
             for end_name in ends:
                 way = self._graph.find_way(start, end_name)
@@ -99,5 +85,38 @@ class LaunchConnections:
                 if is_certain and all(self._is_own(nodes[number]) for number in way.nodes):
                     yield start, end_name
 
+    def _outer_topics(self, nodes: Sequence[GraphNode]) -> tuple[list[str], list[str]]:
+        """Return the topics that own nodes read from other nodes, and those that they send these.
+
+        Also those of sensors and commands, whose other nodes may be on the robot.
+        """
+        own_ends = [
+            end for node in nodes if self._is_own(node) for end in node.ends if not end.doubt
+        ]
+        others = [end for node in nodes if not self._is_own(node) for end in node.ends]
+        read, sent = _topics(own_ends, "subscription"), _topics(own_ends, "publisher")
+        read_by_others = _topics(others, "subscription")
+        sent_by_others = _topics(others, "publisher")
+        starts = [
+            name
+            for name, kind in read.items()
+            if name not in sent and (name in sent_by_others or kind.startswith(_OF_SENSORS))
+        ]
+        ends = [
+            name
+            for name, kind in sent.items()
+            if name not in read and (name in read_by_others or kind.startswith(_OF_COMMANDS))
+        ]
+        return starts, ends
+
     def _is_own(self, node: GraphNode) -> bool:
         return node.program.startswith(self._own_packages) and not node.doubt
+
+
+def _topics(ends: Iterable[GraphEnd], kind: str) -> dict[str, str]:
+    """Return the topics of the ends of a kind, each with its first type."""
+    topics: dict[str, str] = {}
+    for end in ends:
+        if end.kind == kind:
+            topics.setdefault(end.name, end.type)
+    return topics

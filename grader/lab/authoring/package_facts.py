@@ -430,7 +430,7 @@ def _odd(submission: Submission, family: Family, fact: Fact) -> Omission | None:
     shown = [f"{each.location.file_and_line}: {message}" for message, each in wrong.items()]
     faults = "; ".join(first_lines(shown, _MAX_ODD))
     more = (
-        f"{text.format(counted(len(wrong), noun))}: {faults}. Correct the reference and draft "
+        f"{text.format(counted(len(wrong), noun))}: {faults}; correct the reference and draft "
         "again, or use the criterion among the comments"
     )
     return Omission(f"{family} names_agree", more, fact)
