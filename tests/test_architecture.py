@@ -161,7 +161,7 @@ WEIGHTS = {
     "ros.cpp": 13_000,  # errors of the grammar that leave open one statement only
     "ros.installation": 32_650,  # the packages that CMake finds, tests, expressions that are not closed; names of program files, targets of tests and of other projects; what stops a build from a release on; functions for what was branches of long ones
     "ros.interfaces": 4_400,  # since and until when there is a type; functions for the checks of one default
-    "ros.known": 10_300,  # keys of libraries, elements of Gazebo Classic; the packages that are released; when each table was read, and the last release that was read for it; rows of what programs open, for graphs
+    "ros.known": 10_400,  # launch arguments that name topics and files of included launch files; keys of libraries, elements of Gazebo Classic; the packages that are released; when each table was read, and the last release that was read for it; rows of what programs open, for graphs
     "ros.launch": 46_000,  # what follows an error, and what may be meant by a function; the words of Lyrical, and which release has each; functions that do one thing; components as nodes
     "ros.log": 3_800,
     "ros.mesh": 4_300,

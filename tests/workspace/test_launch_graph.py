@@ -312,6 +312,65 @@ def test_included_files_of_other_packages_start_their_nodes() -> None:
     assert [each.reason for each in graph.unread] != []
 
 
+_TOPICS = """\
+twist_mux:
+  ros__parameters:
+    topics:
+      joystick: {topic: joy_vel, timeout: 0.5, priority: 99}
+"""
+_LOCKS = """\
+twist_mux:
+  ros__parameters:
+    locks:
+      stop: {topic: safety_stop, timeout: 0.0, priority: 255}
+"""
+_MUX = (
+    "IncludeLaunchDescription(PythonLaunchDescriptionSource(os.path.join("
+    "get_package_share_directory('twist_mux'), 'launch', 'twist_mux_launch.py')),"
+    " launch_arguments={%s}.items())"
+)
+_MUX_FILES = (
+    "'config_topics': os.path.join(share, 'config', 'topics.yaml'),"
+    " 'config_locks': os.path.join(share, 'config', 'locks.yaml')"
+)
+
+
+def mux_graph(arguments: str) -> LaunchGraph:
+    """Return the graph of a launch file that includes that of twist_mux with these arguments."""
+    return graph_of_actions(_MUX % arguments, topics_yaml=_TOPICS, locks_yaml=_LOCKS)
+
+
+def test_arguments_name_files_and_topics_of_an_included_file() -> None:
+    """twist_mux reads two parameter files, and an argument names the topic that it publishes."""
+    graph = mux_graph(f"'cmd_vel_out': 'base/cmd_vel', {_MUX_FILES}")
+    assert labels(graph) == ["/twist_mux", "/twist_marker", "/joystick_relay"]
+    assert connected(graph) == [
+        ("/twist_mux", "/base/cmd_vel", "/twist_marker", ""),
+        ("/joystick_relay", "/joy_vel", "/twist_mux", ""),
+    ]
+    lock = ("subscription", "/safety_stop", "std_msgs/msg/Bool")
+    assert lock in ends_of(graph.nodes[0])
+
+
+def test_without_its_arguments_an_included_file_has_its_defaults() -> None:
+    """Of the topic; what a parameter file that is not known decides is open."""
+    arguments = "'config_topics': os.path.join(share, 'config', 'topics.yaml')"
+    mux, marker, _ = mux_graph(arguments).nodes
+    assert ("subscription", "/twist_mux/cmd_vel", "geometry_msgs/msg/Twist") in ends_of(marker)
+    names = [end.name for end in mux.ends if not end.doubt]
+    assert names == ["/diagnostics"]
+
+
+def test_an_argument_that_is_not_known_leaves_a_topic_open() -> None:
+    """Only of the nodes that it renames."""
+    arguments = f"'cmd_vel_out': os.environ.get('OUT'), {_MUX_FILES}"
+    mux, marker, relay = mux_graph(arguments).nodes
+    for node in (mux, marker):
+        assert [end for end in node.ends if not end.doubt] == []
+    assert ("publisher", "/joy_vel", "geometry_msgs/msg/Twist") in ends_of(relay)
+    assert [end for end in relay.ends if end.doubt] == []
+
+
 def test_parameters_decide_what_a_program_opens() -> None:
     """Names, by one or many parameters, types, and whether something is opened at all."""
     graph = graph_of_actions(

@@ -89,13 +89,14 @@ class OpenedEnds(NamedTuple):
                 yield kind, name, message
 
 
-class _IncludedNode(NamedTuple):
+class IncludedNode(NamedTuple):
     """A node that an installed launch file starts under its default arguments."""
 
     node: str  # package/program
     name: str = ""  # that it is given
     remappings: Mapping[str, str] = {}
-    parameters: str = ""  # the launch argument that names its parameter file; see the package
+    arguments: Mapping[str, str] = {}  # the launch argument with the new name of a remapping
+    parameters: tuple[str, ...] = ()  # launch arguments that name its parameter files
     since: Release = RELEASES[0]
     until: Release = RELEASES[-1]
 
@@ -110,8 +111,8 @@ class _EndsOfPackage(NamedTuple):
 
     source: str = ""  # of programs that name none
     program: Mapping[str, OpenedEnds] = {}  # also classes of components and controllers
-    launch: Mapping[str, tuple[_IncludedNode, ...]] = {}  # the nodes that a launch file starts
-    launch_parameters: str = ""  # the launch argument that names the parameter file of all of them
+    launch: Mapping[str, tuple[IncludedNode, ...]] = {}  # the nodes that a launch file starts
+    launch_parameters: tuple[str, ...] = ()  # launch arguments that name the files of all of them
 
 
 @cache
@@ -143,15 +144,16 @@ def opened_ends(package: str, program: str) -> OpenedEnds | None:
     )
 
 
-def nodes_of_launch_file(package: str, file: str, release: Release) -> list[_IncludedNode]:
+def nodes_of_launch_file(package: str, file: str, release: Release) -> list[IncludedNode]:
     """Return the nodes that an installed launch file starts; none where that is not known."""
     if package not in packages_with_ends():
         return []
     of_package = _ends_of_package(package)
-    nodes: list[_IncludedNode] = []
+    nodes: list[IncludedNode] = []
     for node in of_package.launch.get(file, ()):
         if node.is_in(release):
-            nodes.append(node._replace(parameters=of_package.launch_parameters))
+            parameters = node.parameters or of_package.launch_parameters
+            nodes.append(node._replace(parameters=parameters))
     return nodes
 
 

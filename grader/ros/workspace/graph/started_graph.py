@@ -5,7 +5,12 @@ from typing import NamedTuple
 
 from grader.base.errors import NotDecided
 from grader.base.source import Location
-from grader.ros.known.end_rows import OnlyMore, nodes_of_launch_file, opened_ends
+from grader.ros.known.end_rows import (
+    IncludedNode,
+    OnlyMore,
+    nodes_of_launch_file,
+    opened_ends,
+)
 from grader.ros.known.package_rows import controller_row, program_row
 from grader.ros.known.parameter_rows import row_for
 from grader.ros.known.releases import Release
@@ -407,7 +412,7 @@ def _included_programs(making: _Making, processes: list[EndedProcess]) -> Iterat
                 executable,
                 None if passed.when is None else True,
                 passed.location,
-                remaps=tuple(included.remappings.items()),
+                remaps=_remappings_passed(passed, included),
                 node_name=included.name,
                 parameters=_parameters_passed(passed, included.parameters),
             )
@@ -417,10 +422,30 @@ def _included_programs(making: _Making, processes: list[EndedProcess]) -> Iterat
                 yield from _known_nodes(making, node, "program")
 
 
-def _parameters_passed(passed: PassedArguments, name: str) -> tuple[GivenParameters, ...] | None:
-    """Return the parameter file that an include passes as an argument; None if it is not known."""
-    path = dict(passed.values).get(name) if name else None
-    return (GivenParameters(passed.location, path),) if path else None
+def _remappings_passed(
+    passed: PassedArguments, included: IncludedNode
+) -> tuple[tuple[str, str], ...] | None:
+    """Return the remappings of a node; None if an include passes a name that is not known."""
+    values = dict(passed.values)
+    remaps: list[tuple[str, str]] = []
+    for name, default in included.remappings.items():
+        to = values.get(included.arguments.get(name, ""), default)
+        if to is None:
+            return None
+        remaps.append((name, to))
+    return tuple(remaps)
+
+
+def _parameters_passed(
+    passed: PassedArguments, arguments: Sequence[str]
+) -> tuple[GivenParameters, ...] | None:
+    """Return the parameter files that an include passes; None if not all are known."""
+    values = dict(passed.values)
+    paths = [values.get(name) for name in arguments]
+    known = [path for path in paths if path]
+    if not known or len(known) < len(paths):
+        return None
+    return tuple(GivenParameters(passed.location, path) for path in known)
 
 
 def _plugins(
