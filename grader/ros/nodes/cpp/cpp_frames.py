@@ -1,9 +1,11 @@
 """The frames that functions of a C++ node publish, look up or stamp messages with."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+from itertools import chain
 
 from grader.ros.cpp.cpp_evaluation import CppEvaluation
-from grader.ros.cpp.declarations import CppFunction, declared_in
+from grader.ros.cpp.declarations import CppFunction, declaration_of
 from grader.ros.cpp.syntax import CppNode
 from grader.ros.cpp.unit import CppUnit, arguments_of, called_name
 from grader.ros.nodes.cpp.rclcpp_calls import name_of
@@ -18,38 +20,106 @@ _FIELDS: Mapping[FrameUse, str] = {
     "publishes": "child_frame_id",
 }
 _STATIC = "StaticTransformBroadcaster"
+_SET = ("frame_id", "child_frame_id")
+
+
+class _Variables:
+    """The variables of a function: the type of each, and what its fields are set to."""
+
+    def __init__(self, function: CppFunction, unit: CppUnit) -> None:
+        self.function, self._unit = function, unit
+        self._types: dict[str, str] = {}
+        self._local: dict[str, bool] = {}
+
+    def type_of(self, name: CppNode) -> str:
+        """Return the type of a local variable or a member, as it is written.
+
+        Empty if it is not known.
+        """
+        if name.text not in self._types:
+            self._types[name.text] = self._read_type(name)
+        return self._types[name.text]
+
+    def is_local(self, name: CppNode) -> bool:
+        """Return whether the function declares a variable."""
+        self.type_of(name)
+        return self._local[name.text]
+
+    def _read_type(self, name: CppNode) -> str:
+        self._local[name.text] = False
+        for use in self.uses_of(name.text):
+            declaration = declaration_of(use)
+            if declaration is not None:
+                self._local[name.text] = True
+                kind = declaration.child("type")
+                return kind.text if kind is not None else ""
+        scopes = self._unit.scopes_of(self.function)
+        members = self._unit.variables_named(name.text, scopes)
+        return members[0].type if len(members) == 1 else ""
+
+    def uses_of(self, name: str) -> Iterator[CppNode]:
+        """Yield where a name is written in the function."""
+        start, end = self.function.node.start, self.function.node.end
+        for use in self._unit.uses.get(name, ()):
+            if use.file is self.function.node.file and start <= use.start < end:
+                yield use
+
+    @cached_property
+    def fields(self) -> Mapping[str, Sequence[CppNode]]:
+        """What fields are set to in the function, by their whole text."""
+        return _values_by_field(chain.from_iterable(map(self.uses_of, _SET)))
+
+    @cached_property
+    def fields_of_file(self) -> Mapping[str, Sequence[CppNode]]:
+        """What fields are set to in the file, by their whole text."""
+        uses = chain.from_iterable(self._unit.uses.get(name, ()) for name in _SET)
+        return _values_by_field(use for use in uses if use.file is self.function.node.file)
+
+
+def _values_by_field(uses: Iterable[CppNode]) -> dict[str, list[CppNode]]:
+    """Return what is assigned to members, by the whole text of each."""
+    values: dict[str, list[CppNode]] = {}
+    for use in uses:
+        member = use.parent
+        setting = member.parent if member is not None else None
+        if member is None or setting is None or member.field != "left":
+            continue
+        value = setting.child("right") if setting.kind == "assignment_expression" else None
+        if value is not None:
+            values.setdefault(member.text, []).append(value)
+    return values
 
 
 def frames_in(
     function: CppFunction, unit: CppUnit, evaluation: CppEvaluation
 ) -> Iterator[NodeFrame]:
     """Yield the frames that a function names. One that is published and not known has no name."""
-    yield from _frames_in_calls(function, unit, evaluation)
-    for name in ("frame_id", "child_frame_id"):
-        for use in unit.uses.get(name, ()):
-            is_inside = function.node.start <= use.start < function.node.end
-            if use.file is function.node.file and is_inside:
-                yield from _set_frame(use, function, unit, evaluation)
+    variables = _Variables(function, unit)
+    yield from _frames_in_calls(variables, unit, evaluation)
+    for name in _SET:
+        for use in variables.uses_of(name):
+            yield from _set_frame(use, variables, evaluation)
 
 
 def transforms_in(
     function: CppFunction, unit: CppUnit, evaluation: CppEvaluation
 ) -> Iterator[NodeTransform]:
     """Yield the transforms that a function sends by a broadcaster; frames may be unknown."""
+    variables = _Variables(function, unit)
     for call in unit.calls_in(function):
         if call.kind != "call_expression" or called_name(call).rpartition("::")[2] != _SENDS:
             continue
         given = arguments_of(call)
-        name = given[0].text if len(given) == 1 and given[0].kind == "identifier" else ""
+        is_name = len(given) == 1 and given[0].kind == "identifier"
         frames: list[NodeFrame] = []
         for kind, field in _FIELDS.items():
-            value = _value_set(f"{name}.{field}", function, unit) if name else None
+            value = _value_set(given[0], field, variables) if is_name else None
             if value is not None:
                 frames.append(_frame(kind, value, evaluation))
             else:
                 frames.append(NodeFrame(kind, None, call.location))
         broadcaster = next((each for each in call.walk() if each.kind == "identifier"), None)
-        kind_of_sender = _type_of(broadcaster, function, unit) if broadcaster is not None else ""
+        kind_of_sender = variables.type_of(broadcaster) if broadcaster is not None else ""
         yield NodeTransform(
             frames[0],
             frames[1],
@@ -59,21 +129,14 @@ def transforms_in(
         )
 
 
-def _value_set(field: str, function: CppFunction, unit: CppUnit) -> CppNode | None:
-    """Return what a field of a transform is set to, once in the function, or once elsewhere."""
-    inside: list[CppNode] = []
-    elsewhere: list[CppNode] = []
-    for use in unit.uses.get(field.rpartition(".")[2], ()):
-        member = use.parent
-        setting = member.parent if member is not None and member.text == field else None
-        if member is None or setting is None or member.field != "left":
-            continue
-        value = setting.child("right") if setting.kind == "assignment_expression" else None
-        if value is None or use.file is not function.node.file:
-            continue
-        is_inside = function.node.start <= use.start < function.node.end
-        (inside if is_inside else elsewhere).append(value)
-    values = inside or elsewhere
+def _value_set(name: CppNode, field: str, variables: _Variables) -> CppNode | None:
+    """Return what a field of a transform is set to, once in the function.
+
+    That of a member may be set once in another function of the file.
+    """
+    values = variables.fields.get(f"{name.text}.{field}", ())
+    if not values and not variables.is_local(name):
+        values = variables.fields_of_file.get(f"{name.text}.{field}", ())
     return values[0] if len(values) == 1 else None
 
 
@@ -94,22 +157,22 @@ def _is_decided_by_parameter(
 
 
 def _frames_in_calls(
-    function: CppFunction, unit: CppUnit, evaluation: CppEvaluation
+    variables: _Variables, unit: CppUnit, evaluation: CppEvaluation
 ) -> Iterator[NodeFrame]:
     """Yield the frames between which a function looks up transforms, and unknown published ones."""
-    for call in unit.calls_in(function):
+    for call in unit.calls_in(variables.function):
         short = called_name(call).rpartition("::")[2] if call.kind == "call_expression" else ""
         given = arguments_of(call) if short else []
         if short in _LOOKING_UP and len(given) > 1:
             second = given[2] if len(given) >= _FULL_FORM else given[1]
             for node in (given[0], second):
                 yield _frame("looks up", node, evaluation)._replace(lookup=call.location)
-        elif short == _SENDS and not _is_known_transform(given, function, unit):
+        elif short == _SENDS and not _is_known_transform(given, variables):
             yield NodeFrame("publishes", None, call.location)
 
 
 def _set_frame(
-    use: CppNode, function: CppFunction, unit: CppUnit, evaluation: CppEvaluation
+    use: CppNode, variables: _Variables, evaluation: CppEvaluation
 ) -> Iterator[NodeFrame]:
     """Yield the frame that a member frame_id or child_frame_id is set to."""
     member = use.parent
@@ -118,13 +181,13 @@ def _set_frame(
         return
     value = setting.child("right")
     if member.field == "left" and value is not None:
-        yield _frame(_kind_of_use(use, member, function, unit), value, evaluation)
+        yield _frame(_kind_of_use(use, member, variables), value, evaluation)
 
 
-def _kind_of_use(use: CppNode, member: CppNode, function: CppFunction, unit: CppUnit) -> FrameUse:
+def _kind_of_use(use: CppNode, member: CppNode, variables: _Variables) -> FrameUse:
     """Return what a frame is to the message in which it is set."""
     root = next((inner for inner in member.walk() if inner.kind == "identifier"), None)
-    if root is None or not _type_of(root, function, unit).endswith(_TRANSFORM):
+    if root is None or not variables.type_of(root).endswith(_TRANSFORM):
         return "names"
     return "publishes" if use.text == "child_frame_id" else "is above"
 
@@ -134,33 +197,10 @@ def _frame(kind: FrameUse, node: CppNode, evaluation: CppEvaluation) -> NodeFram
     return NodeFrame(kind, name, node.location, parts)
 
 
-def _type_of(name: CppNode, function: CppFunction, unit: CppUnit) -> str:
-    """Return the type of a local variable or a member, as it is written; empty if not known."""
-    start, end = function.node.start, function.node.end
-    for use in unit.uses.get(name.text, ()):
-        if use.file is not name.file or not start <= use.start < end:
-            continue
-        for around in use.ancestors():
-            is_declared = any(declared is use for declared, _ in declared_in(around))
-            kind = around.child("type")
-            if is_declared and kind is not None:
-                return kind.text
-    members = unit.variables_named(name.text, unit.scopes_of(function))
-    return members[0].type if len(members) == 1 else ""
-
-
-def _is_known_transform(given: list[CppNode], function: CppFunction, unit: CppUnit) -> bool:
+def _is_known_transform(given: list[CppNode], variables: _Variables) -> bool:
     """Return whether what is sent is one transform whose child frame the function itself sets."""
     if len(given) != 1 or given[0].kind != "identifier":
         return False
-    name = given[0].text
-    if not _type_of(given[0], function, unit).endswith(_TRANSFORM):
+    if not variables.type_of(given[0]).endswith(_TRANSFORM):
         return False
-    start, end = function.node.start, function.node.end
-    for use in unit.uses.get("child_frame_id", ()):
-        member = use.parent
-        is_inside = use.file is function.node.file and start <= use.start < end
-        is_set = member is not None and member.field == "left"
-        if is_inside and is_set and member is not None and member.text == f"{name}.child_frame_id":
-            return True
-    return False
+    return f"{given[0].text}.child_frame_id" in variables.fields
