@@ -90,6 +90,7 @@ if TYPE_CHECKING:
     from grader.ros.workspace.graph.manual_ends import manual_ends as manual_ends
     from grader.ros.workspace.graph.node_ends import opened_by_bridge as opened_by_bridge
     from grader.ros.workspace.graph.started_controllers import spawned_by as spawned_by
+    from grader.ros.workspace.graph.started_graph import unread_includes as unread_includes
     from grader.ros.workspace.graph.started_worlds import has_programs as has_programs
     from grader.ros.workspace.graph.started_worlds import started_worlds as started_worlds
     from grader.ros.workspace.graph.used_files import used_file as used_file
@@ -137,6 +138,7 @@ else:
         "workspace.graph.lookups": "looked_up_transforms",
         "workspace.graph.node_ends": "opened_by_bridge",
         "workspace.graph.started_controllers": "spawned_by",
+        "workspace.graph.started_graph": "unread_includes",
         "workspace.graph.started_worlds": "has_programs started_worlds",
         "workspace.graph.used_files": "used_file",
         "workspace.name_places": "NamePlaces",

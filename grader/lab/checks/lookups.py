@@ -30,6 +30,9 @@ def looks_up(submission: Submission, *, target: str, source: str) -> Outcome:
     for lookup in lookups:
         if (lookup.target, lookup.source) == wanted:
             return passed(f"{lookup.node} looks up {quoted(source)} in {quoted(target)}")
+    if may_be_others:
+        cause = "cannot determine statically which transforms are looked up"
+        raise NotDecided(cause)
     for lookup in lookups:
         if (lookup.source, lookup.target) == wanted:
             message = (
@@ -38,9 +41,6 @@ def looks_up(submission: Submission, *, target: str, source: str) -> Outcome:
             )
             detail = ": the frames are exchanged"
             return failed(message, lookup.location, detail=detail, cause="exchanged")
-    if may_be_others:
-        cause = "cannot determine statically which transforms are looked up"
-        raise NotDecided(cause)
     message = f"no node looks up {quoted(source)} in {quoted(target)}"
     known = [f"{quoted(at.source or '')} in {quoted(at.target or '')}" for at in lookups]
     detail = f"; there is {known[0]}" if known else ""

@@ -29,7 +29,7 @@ _VERBS: Mapping[str, str] = {
     "action client": "calls",
 }
 # Faults in the code of a node that do not keep it from opening what it opens.
-_HARMLESS = frozenset({"service-response"})
+_HARMLESS = frozenset({"service-response", "entity-kept"})
 _Topics = Sequence[str] | Mapping[str, str] | None  # a table has their types
 
 
@@ -261,11 +261,11 @@ class _NodeTopics:
     """The topics, services and actions of own nodes and bridges that a launch file starts."""
 
     def __init__(self, launch: "Launch", workspace: "Workspace") -> None:
-        from grader.ros.api import opened_by_bridge  # late: few rubrics ask for it
+        from grader.ros.api import opened_by_bridge, unread_includes  # late: few rubrics ask for it
         from grader.ros.workspace.graph.code_ends import opened_by
 
         self._topics: list[_NodeTopic] = []
-        self._is_open = bool(launch.unknown)
+        self._is_open = bool(launch.unknown) or any(unread_includes(workspace, launch))
         self._unread: list[Fault] = []  # of programs that cannot run, and so open nothing
         self._stopping = stopping_mistakes(workspace)
         for node in launch.nodes:

@@ -157,6 +157,11 @@ def nodes_of_launch_file(package: str, file: str, release: Release) -> list[Incl
     return nodes
 
 
+def launch_file_is_known(package: str, file: str) -> bool:
+    """Return whether it is known what an installed launch file opens, also if that is nothing."""
+    return package in packages_with_ends() and file in _ends_of_package(package).launch
+
+
 @cache
 def manual_programs() -> tuple[tuple[str, OpenedEnds], ...]:
     """Return the programs that a person starts in a terminal, as `package/program`."""

@@ -112,6 +112,7 @@ def unread_transforms(
         if not (transform.parent and transform.child):
             yield Unread(f"a frame of {transform.by} is not known", transform.location)
     own_programs = set()
+    read_at = {node.location for node in launch.nodes}  # others are included, or components
     for node in _launched_nodes(launch, without):
         reason = ""
         if workspace.package_of(node) is not None:
@@ -123,7 +124,10 @@ def unread_transforms(
             yield Unread(reason, node.location)
     for graph_node in graph.nodes:
         is_own = graph_node.program in own_programs or graph_node.kind == "container"
-        if not is_own and _may_publish_others(graph_node):
+        is_read = graph_node.location in read_at
+        if not is_own and (
+            _may_publish_others(graph_node) or not (is_read or _is_still(graph_node))
+        ):
             reason = f"which transforms {graph_node.program} publishes is not known"
             yield Unread(reason, graph_node.location)
 
@@ -144,6 +148,12 @@ def _why_own_is_unread(workspace: Workspace, node: StartedNode) -> str:
         if source.path not in read and any(word in source.text for word in _SENDING):
             return f"what {source.path} publishes is not known"
     return ""
+
+
+def _is_still(node: GraphNode) -> bool:
+    """Return whether a node that no Node of the launch file starts publishes no transform."""
+    package, _, program = node.program.rpartition("/")
+    return node.kind == "controller" or "frames" in package_row(package or program).without
 
 
 def _may_publish_others(node: GraphNode) -> bool:

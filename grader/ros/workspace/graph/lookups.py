@@ -9,7 +9,12 @@ from grader.ros.workspace.graph.code_ends import frames_of
 from grader.ros.workspace.model.workspace import Workspace
 
 _CPP = (".cpp", ".hpp", ".h")
-_LOOKUPS = ("lookup_transform", "lookupTransform", "can_transform", "canTransform", ".transform(")
+# What looks up transforms by other calls than those that are read.
+_OTHER_LOOKUPS = (".transform(", "lookup_transform)", "lookup_transform\n", "lookup_transform,")
+_LOOKUPS = (
+    *("lookup_transform", "lookupTransform", "can_transform", "canTransform"),
+    *_OTHER_LOOKUPS,
+)
 
 
 class _LookedUp(NamedTuple):
@@ -64,4 +69,5 @@ def _may_look_up_others(workspace: Workspace, lookups: Sequence[_LookedUp]) -> b
     texts = [*workspace.texts.python_texts]
     for package in workspace.packages:
         texts += [file.text for file in workspace.texts.sources_of(package, _CPP)]
-    return not lookups and any(word in text for text in texts for word in _LOOKUPS)
+    words = _LOOKUPS if not lookups else _OTHER_LOOKUPS
+    return any(word in text for text in texts for word in words)

@@ -118,7 +118,7 @@ class _WaySearch:
         sent = [
             placed.end
             for placed in self._named("publisher", topic)
-            if not self._nodes[placed.node].doubt
+            if not why_end_is_open(self._nodes[placed.node], placed.end)
         ]
         for placed in self._named("subscription", topic):
             is_met = not sent or any(not fault_between(other, placed.end) for other in sent)

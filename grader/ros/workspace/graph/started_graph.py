@@ -8,10 +8,11 @@ from grader.base.source import Location
 from grader.ros.known.end_rows import (
     IncludedNode,
     OnlyMore,
+    launch_file_is_known,
     nodes_of_launch_file,
     opened_ends,
 )
-from grader.ros.known.package_rows import controller_row, program_row
+from grader.ros.known.package_rows import controller_row, package_row, program_row
 from grader.ros.known.parameter_rows import row_for
 from grader.ros.known.releases import Release
 from grader.ros.launch.launch_model import GivenParameters, Launch, PassedArguments, StartedNode
@@ -19,7 +20,7 @@ from grader.ros.launch.node_parameters import NodeParameters, controllers_of
 from grader.ros.nodes.node_facts import NodeFacts
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
-from grader.ros.workspace.graph.bridge_rows import BRIDGE, rows_of_bridge
+from grader.ros.workspace.graph.bridge_rows import BRIDGE, are_rows_known, rows_of_bridge
 from grader.ros.workspace.graph.code_ends import opened_by_code
 from grader.ros.workspace.graph.launch_graph import (
     EndedProcess,
@@ -149,7 +150,7 @@ def _own_node(
     name = facts.name if node.node_name == "" else node.node_name
     ends: list[GraphEnd] = []
     parameters: list[GivenValue] = []
-    opens_more = facts.doubts[0].reason if facts.doubts else ""
+    opens_more = _doubt_of_code(workspace, node, facts)
     try:
         for end in opened_by_code(workspace, node, facts, making.number):
             doubt = "" if end.is_known else "a part of its name is computed"
@@ -177,6 +178,17 @@ def _own_node(
     made = _graph_node(node, name, kind, inside)
     shown, different = _shown(ends), tuple(parameters)
     return made._replace(ends=shown, opens_more=opens_more, parameters=different)
+
+
+def _doubt_of_code(workspace: Workspace, node: StartedNode, facts: NodeFacts) -> str:
+    """Return why a node may open more than its facts say: a doubt of it, or of its file."""
+    if facts.doubts:
+        return facts.doubts[0].reason
+    code = workspace.code.by_package.get(node.package)
+    for doubt in code.doubts if code is not None else ():
+        if doubt.location.path == facts.location.path:
+            return doubt.reason
+    return ""
 
 
 def _graph_node(node: StartedNode, name: str | None, kind: GraphNodeKind, inside: str) -> GraphNode:
@@ -250,6 +262,8 @@ def _known_node(
     only: OnlyMore = ""
     if row is not None:
         opens_more, only = row.opens_more, row.opens_only
+    if node.package == BRIDGE and not are_rows_known(making.workspace, node):
+        opens_more = "which topics it bridges is not known"
     try:
         given = making.workspace.parameters.read(making.package, given_to or node, name or "")
         if row is not None:
@@ -402,7 +416,7 @@ def _controller(
 def _included_programs(making: _Making, processes: list[EndedProcess]) -> Iterator[GraphNode]:
     """Yield the nodes of included launch files of other packages, and add their processes."""
     for passed in making.launch.passed:
-        package, _, file = passed.path.rpartition("share/")[2].partition("/launch/")
+        package, file = _included_file(passed)
         if passed.when is False or making.package.find(package) is not None:
             continue
         for included in nodes_of_launch_file(package, file, making.release):
@@ -484,3 +498,21 @@ def _unread(making: _Making) -> Iterator[Unread]:
     for unknown in dict.fromkeys(launch.unknown):
         if unknown.location not in places:
             yield Unread(unknown.message, unknown.location)
+    yield from unread_includes(making.workspace, launch)
+
+
+def unread_includes(workspace: Workspace, launch: Launch) -> Iterator[Unread]:
+    """Yield the included launch files of known packages of which it is not known what they open."""
+    own_packages = {package.name for package in workspace.packages}
+    for passed in launch.passed:
+        package, file = _included_file(passed)
+        is_known = launch_file_is_known(package, file) or file not in package_row(package).launch
+        if passed.when is not False and not is_known and package not in own_packages:
+            reason = f"what {file} of {package} starts is not known"
+            yield Unread(reason, passed.location)
+
+
+def _included_file(passed: PassedArguments) -> tuple[str, str]:
+    """Return the package and the name of an included launch file."""
+    package, _, file = passed.path.rpartition("share/")[2].partition("/launch/")
+    return package, file

@@ -24,6 +24,12 @@ _OTHER_PROGRAMS = ("create", "remove", "set_entity_pose")  # of that package
 # The launch files and commands that start Gazebo, which other packages also have.
 _STARTS = re.compile(r"ros_gz_sim/|gz_sim|gz_server|gzserver|gazebo|\bgz sim\b|\bign\b")
 _OF_GAZEBO = re.compile(r"(lib)?(gz-sim|ignition-gazebo)\d*-")
+# Libraries whose systems have other names: CMakeLists.txt in src/systems of gz-sim8.
+_OTHER_NAMES = {
+    "multicopter-control": ("MulticopterVelocityControl",),
+    "log": ("LogRecord", "LogPlayback"),
+    "dvl": ("DopplerVelocityLogSystem", "DopplerVelocityLog"),
+}
 _LIBRARY = re.compile(r"(?:lib)?(?:gz-sim|ignition-gazebo)\d*-([\w-]+)-system(?:\.so)?")
 
 
@@ -116,7 +122,9 @@ def _is_library_of(library: str, system: str) -> bool:
     if not _OF_GAZEBO.match(name):
         return True
     match = _LIBRARY.fullmatch(name)
-    return match is not None and match[1].replace("-", "") == system.lower()
+    if match is None:
+        return False
+    return system in _OTHER_NAMES.get(match[1], ()) or match[1].replace("-", "") == system.lower()
 
 
 def has_programs(workspace: Workspace) -> bool:

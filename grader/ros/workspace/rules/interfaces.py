@@ -416,8 +416,7 @@ def _fits_item(kind: FieldType, item: Value) -> bool:
     """Return whether a list of a type certainly takes an item in all releases."""
     if kind.package or kind.name in _OPEN_ITEMS:
         return True
-    wanted = _type_of(kind)
-    return isinstance(item, wanted) and (wanted is not int or not isinstance(item, bool))
+    return isinstance(item, _type_of(kind))  # a bool is an int for rclpy, too
 
 
 def _is_refused(kind: FieldType, item: Value, releases: tuple[Release, ...]) -> bool:
