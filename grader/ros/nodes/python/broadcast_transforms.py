@@ -71,6 +71,8 @@ def _value_set(method: SendingMethod, call: ast.Call, name: str, field: str) -> 
     for node in ast.walk(around):
         if isinstance(node, ast.Assign) and f"{name}.{field}" in map(dotted, node.targets):
             statements.append(node)
+        elif _may_set(node, name, field):
+            return None
     if not statements:
         return _value_made(method.bindings.values.get(name), field)
     if len(statements) == 1:
@@ -80,6 +82,20 @@ def _value_set(method: SendingMethod, call: ast.Call, name: str, field: str) -> 
     if before and all(each in body for each in statements):
         return max(before, key=lambda each: each.lineno).value
     return None
+
+
+def _may_set(node: ast.AST, name: str, field: str) -> bool:
+    """Return whether code adds to a field of a transform, or gives the transform another name."""
+    match node:
+        case ast.AugAssign(target=target):
+            return dotted(target) == f"{name}.{field}"
+        case ast.Assign(value=value):
+            return dotted(value) == name
+        case ast.Call(func=ast.Name(id="setattr"), args=[first, *_]):
+            return dotted(first) == name
+        case ast.Call(func=ast.Attribute(value=ast.Name(id="self"), attr=called), args=given):
+            return called != SENDS and name in map(dotted, given)
+    return False
 
 
 def _value_made(made: ast.expr | None, field: str) -> ast.expr | None:

@@ -29,6 +29,7 @@ from grader.ros.workspace.model.workspace import Workspace
 _TF = "/tf"
 _SENDING = ("sendTransform", "TFMessage")
 _SIMULATORS = ("gazebo_ros", "gazebo_plugins")  # whose plug-ins publish what their elements say
+_PUBLISHING = ("tf2_ros", "robot_state_publisher")  # also as components
 _PROGRAM_ENDINGS = (".py", *CPP_ENDINGS)
 
 
@@ -153,7 +154,13 @@ def _why_own_is_unread(workspace: Workspace, node: StartedNode) -> str:
 def _is_still(node: GraphNode) -> bool:
     """Return whether a node that no Node of the launch file starts publishes no transform."""
     package, _, program = node.program.rpartition("/")
-    return node.kind == "controller" or "frames" in package_row(package or program).without
+    row = package_row(package or program)
+    if node.kind == "component":
+        programs = row.program.values()
+        publishes = package in _PUBLISHING or any(each.transforms for each in programs)
+    else:
+        publishes = bool(transforms_of(node.program))
+    return node.kind == "controller" or ("frames" in row.without and not publishes)
 
 
 def _may_publish_others(node: GraphNode) -> bool:

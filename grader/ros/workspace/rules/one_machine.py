@@ -86,13 +86,20 @@ def _home_paths(source: Source, said: Collection[str]) -> Iterator[Mismatch]:
     """
     paths = []
     for path in _HOME.finditer(source.text):
-        if not _PLACEHOLDERS.match(path[1]) and not any(path[1] in text for text in said):
+        is_said = _PLACEHOLDERS.match(path[1]) or any(path[1] in text for text in said)
+        if not is_said and not _is_in_comment(source.text, path.start()):
             paths.append(path)
     if paths:
         message = f"the path {quoted(cut(paths[0][1], _MAX_SHOWN))} is of one machine"
         if len(paths) > 1:
             message += f"; the file has {len(paths)} such paths"
         yield warning(HOME_PATH, message, source.at(paths[0].start(1)))
+
+
+def _is_in_comment(text: str, offset: int) -> bool:
+    """Return whether a line is a comment up to a place."""
+    start = text.rfind("\n", 0, offset) + 1
+    return text[start:offset].lstrip().startswith(("#", "//", "*", "<!--", "--"))
 
 
 def _variables(workspace: Workspace) -> Iterator[Mismatch]:

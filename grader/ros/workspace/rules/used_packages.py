@@ -141,13 +141,18 @@ def _asked_for(workspace: Workspace, package: Package) -> Iterator[tuple[str, Lo
             yield from calls_in(source)
 
 
+def _without_long_texts(text: str) -> str:
+    """Return code of Python with spaces in place of docstrings and other texts of several lines."""
+    return _LONG_TEXT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
+
+
 def calls_in(source: Source) -> Iterator[tuple[str, Location]]:
     """Yield the packages for whose folder a text asks; a docstring of Python asks for none."""
     text = source.text
     if not any(word in text for word in _CALL_WORDS):
         return
     if source.path.endswith(".py"):
-        text = _LONG_TEXT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
+        text = _without_long_texts(text)
     for match in _CALL.finditer(text):
         word = "call" if match["call"] is not None else "xml"
         yield match[word], source.at(match.start(word))
@@ -191,7 +196,7 @@ def imported_modules(workspace: Workspace, package: Package) -> Iterator[_Import
         inside = source.path.removeprefix(package.path(""))
         is_part = is_launch or inside in installed or inside.partition("/")[0] in own_folders
         is_part = is_part and not OF_TESTS.search(source.path)
-        for match in _IMPORT.finditer(source.text):
+        for match in _IMPORT.finditer(_without_long_texts(source.text)):
             for name, offset in _modules_of(match):
                 if name not in modules:
                     yield _ImportedModule(name, source.at(offset), is_launch, is_part)
