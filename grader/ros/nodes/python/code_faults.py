@@ -90,6 +90,7 @@ def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
     may_be_more = False
     for module in modules:
         nodes = every_node(module.code.tree)
+        plain_nodes = {*module.nodes.values()}
         may_be_more = may_be_more or binds_unseen(nodes)
         for node in nodes:
             match node:
@@ -99,6 +100,9 @@ def attributes_in(modules: Iterable[ModuleText]) -> _PackageAttributes:
                     stored.add(name)
                 case ast.Constant(value=str(text)):
                     texts.add(text)
+                case ast.ClassDef(bases=[_, *_]) if node not in plain_nodes:
+                    # it may define what a class asks for that it is derived from
+                    stored.update(name for inner in node.body for name in _defined_by(inner))
     return _PackageAttributes(stored, texts, may_be_more)
 
 
