@@ -16,6 +16,8 @@ from grader.ros.workspace.graph.code_ends import End, opened_by
 from grader.ros.workspace.graph.started_controllers import controller_endpoints
 from grader.ros.workspace.model.workspace import Workspace
 
+_IMAGE_BRIDGES = "ros_gz_image"  # whose topics are those of its arguments
+
 
 class KnownProgram(NamedTuple):
     """A well-known program in a launch file of a package, and what is known of its topics."""
@@ -63,6 +65,8 @@ def ends_of(
 
 def opened_by_bridge(workspace: Workspace, node: StartedNode) -> tuple[Sequence[End], bool] | None:
     """Return the topics of ROS that a bridge opens, and whether these are all; None for others."""
+    if node.package == _IMAGE_BRIDGES:
+        return (), False
     if node.package != BRIDGE:
         return None
     ends = [

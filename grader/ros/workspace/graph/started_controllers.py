@@ -149,7 +149,8 @@ def spawned_by(launch: Launch) -> _Spawned:
     """Return the controllers that spawners start in a launch file and those that it includes."""
     names: dict[str, None] = {}
     first: Location | None = None
-    is_known = not launch.unknown and _OTHER_STARTS.search(launch.source.text) is None
+    texts = (launch.source.text, *launch.commands)
+    is_known = not launch.unknown and not any(map(_OTHER_STARTS.search, texts))
     for node in launch.nodes:
         if node.package != MANAGER or node.executable not in SPAWNERS:
             continue
