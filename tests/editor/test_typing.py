@@ -179,7 +179,7 @@ def test_a_folder_that_is_removed_has_no_problems(tmp_path: Path) -> None:
 
 
 def test_hover_has_the_pose_in_the_robots_of_the_file(tmp_path: Path) -> None:
-    """Another robot of the folder with the same link is left out."""
+    """Another robot of the folder with the same link is omitted."""
     root = shutil.copytree(ROOT / "rubrics/lab6/my_robot", tmp_path / "my_robot")
     text = (root / "urdf/my_robot.urdf").read_text()
     (root / "urdf/other.urdf").write_text(text.replace('xyz="0.15 0 0.225"', 'xyz="0.15 0 0.5"'))

@@ -105,7 +105,7 @@ def show_round(
 ) -> None:
     """Show a report, then what changed, below a rule with the time but for the first report.
 
-    A terminal is cleared, and what does not fit is left out before the last rows of the report if
+    A terminal is cleared, and what does not fit is omitted before the last rows of the report if
     it need not be shown whole: the first mistake and what changed are on the screen.
     """
     screen = terminal.screen()

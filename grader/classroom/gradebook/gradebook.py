@@ -342,7 +342,7 @@ def grade_table(
 def points_of(book: Gradebook, grade: StudentGrade) -> dict[str, str]:
     """Return the cells of a student that `mark --import` takes for marks.
 
-    They are by criterion and for the total.
+    They are by criterion and for the grade.
     """
     points = dict.fromkeys((row.id for row in book.rubric.criteria), "")
     if grade.stored is not None and not grade.is_excused:

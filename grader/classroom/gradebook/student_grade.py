@@ -145,7 +145,7 @@ class StudentGrade:
     final: Mark | None = None  # the mark, comment or excuse of the whole submission
     older: tuple[
         str, ...
-    ] = ()  # the criteria (or `total`) that were marked before the submission changed
+    ] = ()  # the criteria (or `grade`) that were marked before the submission changed
     known: frozenset[Reason] = (
         frozenset()
     )  # what the class says: NOT_ON_ROSTER, UNCLEAR, DAMAGED, GONE, OUTDATED
