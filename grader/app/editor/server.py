@@ -94,6 +94,8 @@ class _GraderServer(LanguageServer):
         waiting = self._refreshing.pop(root, None)
         if waiting is not None:
             waiting.cancel()
+        self._changed.pop(root, None)
+        self._unseen.discard(root)
         self._publish(root, {})
         del self._published[root]
 
