@@ -43,10 +43,10 @@ _NAMED_FREELY = ("ros2_control", "transmission")
 _OF_ARGUMENTS = ("urdf_loads", "files names_agree", "arguments names_agree")
 # The paths of values that are details: see `Fact.is_detail`.
 _DETAIL = re.compile(
-    r"gazebo/sensor/(.*/)?(@name|\w*frame_id|always_on|visualize|format|horizontal_fov"
+    r"\A(gazebo/sensor/(.*/)?(@name|\w*frame_id|always_on|visualize|format|horizontal_fov"
     r"|(noise|clip)(/.*)?)"
     r"|ros2_control/joint/\w+/param(/.*)?"
-    r"|gazebo/(?!sensor|plugin).*"
+    r"|gazebo/(?!sensor|plugin).*)"
 )
 # Likewise of a joint that mimics another one.
 _DETAIL_OF_MIMIC = re.compile(r"ros2_control/joint/state_interface(/.*)?")

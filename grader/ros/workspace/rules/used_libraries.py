@@ -13,7 +13,8 @@ from grader.ros.workspace.rules.rule_table import LIBRARY_DECLARED
 from grader.ros.workspace.rules.used_packages import imported_modules
 
 # What differs between the names of one library in keys, in pip and in apt.
-_AROUND = re.compile(r"^(?:python3?-)?(?:py(?=[a-z])|lib)?|(?:-(?:dev|all-dev|pip|python|core))+$")
+_BEFORE = re.compile(r"\A(?:python3?-)?(?:py(?=[a-z])|lib)?")
+_ENDINGS = ("dev", "all", "pip", "python", "core")
 
 
 class _LibraryUse(NamedTuple):
@@ -107,4 +108,7 @@ def _modules_of_workspace(workspace: Workspace) -> set[str]:
 
 def _library_name(name: str) -> str:
     """Return what the names of a library have in common: numpy of python3-numpy."""
-    return _AROUND.sub("", name.lower().replace("_", "-"))
+    parts = _BEFORE.sub("", name.lower().replace("_", "-")).split("-")
+    while len(parts) > 1 and parts[-1] in _ENDINGS:
+        parts.pop()
+    return "-".join(parts)
