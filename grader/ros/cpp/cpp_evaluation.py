@@ -472,7 +472,7 @@ class CppEvaluation:
 
     def _value_of_text(self, text: str) -> CppValue:
         syntax = parse_cpp(f"auto value = {text};".encode(), "", self._budget)
-        for node in syntax.root.walk():
+        for node in syntax.nodes:
             if node.kind == "init_declarator":
                 value = node.child("value")
                 kinds = (*TEXTS, *NUMBERS, "concatenated_string")

@@ -9,6 +9,7 @@ from typing import NamedTuple
 from grader.base.source import Location
 from grader.ros.cpp.syntax import CppNode, CppSyntax
 
+_NOT_PLAIN = re.compile(r"[<>\s]")  # in a name
 CONDITIONS = (
     "preproc_if",
     "preproc_ifdef",
@@ -106,7 +107,7 @@ class CppFile:
     def uses(self) -> Mapping[str, Sequence[CppNode]]:
         """Where each name of a variable, function or member is written."""
         nodes_by_name: dict[str, list[CppNode]] = {}
-        for node in self.syntax.root.walk():
+        for node in self.syntax.nodes:
             if node.kind in ("identifier", "field_identifier") or is_argument(node):
                 nodes_by_name.setdefault(node.text, []).append(node)
         return nodes_by_name
@@ -115,12 +116,11 @@ class CppFile:
     def words(self) -> frozenset[str]:
         """The names in the file, also those of types."""
         kinds = ("identifier", "field_identifier", "type_identifier", "namespace_identifier")
-        nodes = self.syntax.root.walk()
-        return frozenset(node.text for node in nodes if node.kind in kinds)
+        return frozenset(node.text for node in self.syntax.nodes if node.kind in kinds)
 
     def of_kind(self, *kinds: str) -> Iterator[CppNode]:
         """Yield the nodes of these kinds, in the order of the text."""
-        for node in self.syntax.root.walk():
+        for node in self.syntax.nodes:
             if node.kind in kinds:
                 yield node
 
@@ -135,7 +135,7 @@ class CppFile:
     @cached_property
     def calls(self) -> Sequence[CppNode]:
         """The calls and what makes objects, in the order of the text."""
-        return [node for node in self.syntax.root.walk() if node.kind in _CALLS]
+        return [node for node in self.syntax.nodes if node.kind in _CALLS]
 
 
 class _Around(NamedTuple):
@@ -377,6 +377,8 @@ def _function_declarator(function: CppNode) -> CppNode | None:
 
 def plain(name: str) -> str:
     """Return a name without white space, the arguments of templates and :: at its start."""
+    if _NOT_PLAIN.search(name) is None:
+        return name.removeprefix("::")
     depth, kept = 0, []
     for letter in name:
         depth += (letter == "<") - (letter == ">")

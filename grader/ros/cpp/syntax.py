@@ -46,9 +46,22 @@ class CppNode:
     """A node of the syntax: what the grammar calls it, its place, and the nodes in it.
 
     `field` is its role in its parent: `name`, `body`. Of punctuation only what has a role is kept.
+    `index` is its place among the nodes of the file, `behind` the place after the last node in it.
+    `called` is the name of what a call calls, once it is asked for.
     """
 
-    __slots__ = ("children", "end", "field", "file", "kind", "parent", "start")
+    __slots__ = (
+        "behind",
+        "called",
+        "children",
+        "end",
+        "field",
+        "file",
+        "index",
+        "kind",
+        "parent",
+        "start",
+    )
 
     def __init__(
         self,
@@ -62,6 +75,8 @@ class CppNode:
         self.file, self.kind, self.field, self.parent = file, kind, field, parent
         self.start, self.end = span
         self.children: list[CppNode] = []
+        self.index = self.behind = len(file.nodes)
+        self.called: str | None = None
 
     def child(self, field: str) -> "CppNode | None":
         """Return the first child with a role."""
@@ -84,13 +99,9 @@ class CppNode:
         """Where the node begins."""
         return self.file.location(self.start)
 
-    def walk(self) -> "Iterator[CppNode]":
-        """Yield the node and all nodes in it, in the order of the text."""
-        pending = [self]
-        while pending:
-            node = pending.pop()
-            yield node
-            pending += reversed(node.children)
+    def walk(self) -> "list[CppNode]":
+        """Return the node and all nodes in it, in the order of the text."""
+        return self.file.nodes[self.index : self.behind]
 
     def ancestors(self) -> "Iterator[CppNode]":
         """Yield the nodes around it, the innermost first."""
@@ -101,7 +112,7 @@ class CppNode:
 
 
 class CppSyntax:
-    """A C++ file: its text, and the root of its syntax.
+    """A C++ file: its text, the root of its syntax, and its nodes in the order of the text.
 
     `unread` says why it is not read, as part of a sentence. `broken` are the statements, directives
     and members with a text that is no C++, around which nothing is lost; `error` is the place of
@@ -111,10 +122,19 @@ class CppSyntax:
     def __init__(self, path: str, text: str) -> None:
         self.source = Source(path, text)
         self.data = text.encode("utf-8", "replace")
+        self.nodes: list[CppNode] = []
         self.root = CppNode(self, "translation_unit", None, (0, len(self.data)), None)
+        self.add(self.root)
         self.unread = ""
         self.error: Location | None = None
         self.broken: list[CppNode] = []
+
+    def add(self, node: CppNode) -> None:
+        """Add a node to its parent, and behind the nodes that the file has."""
+        if node.parent is not None:
+            node.parent.children.append(node)
+        self.nodes.append(node)
+        node.behind = len(self.nodes)
 
     def location(self, at: int) -> Location:
         """Return the location of a byte."""
@@ -232,7 +252,7 @@ def _copy(cursor: "TreeCursor", syntax: CppSyntax) -> list[CppNode]:
         parent = parents[-1]
         copy = CppNode(syntax, node.type, field, node.byte_range, parent)
         if node.is_named or field is not None:
-            parent.children.append(copy)
+            syntax.add(copy)
         is_broken = node.is_error or (node.is_missing and node.type != ";")
         if is_broken:
             errors.append(copy)
@@ -240,8 +260,6 @@ def _copy(cursor: "TreeCursor", syntax: CppSyntax) -> list[CppNode]:
             parents.append(copy)
             continue
         while not cursor.goto_next_sibling():
-            if not cursor.goto_parent():
-                return errors
-            parents.pop()
-            if not parents:
+            parents.pop().behind = len(syntax.nodes)
+            if not parents or not cursor.goto_parent():
                 return errors

@@ -32,6 +32,7 @@ class CppUnit:
         self.files = tuple(files)
         opened = dict.fromkeys(name for file in files for name in file.opened)
         self.opened = tuple(opened)[:_MAX_OPENED]
+        self._meanings: dict[tuple[str, tuple[str, ...]], tuple[str, ...]] = {}
 
     @cached_property
     def classes(self) -> Mapping[str, Sequence[CppClass]]:
@@ -46,6 +47,14 @@ class CppUnit:
     def functions(self) -> tuple[CppFunction, ...]:
         """The functions that are defined, with methods."""
         return tuple(function for file in self.files for function in file.functions)
+
+    @cached_property
+    def functions_by_name(self) -> Mapping[str, Sequence[CppFunction]]:
+        """The functions that are defined by their names, without the class that they are of."""
+        by_name: dict[str, list[CppFunction]] = {}
+        for function in self.functions:
+            by_name.setdefault(function.name, []).append(function)
+        return by_name
 
     @cached_property
     def _functions_by_file(self) -> Mapping[CppSyntax, Sequence[CppFunction]]:
@@ -99,6 +108,12 @@ class CppUnit:
 
         What is not defined in the files is itself, also in the namespaces that are opened.
         """
+        asked = (name, tuple(scopes))
+        if asked not in self._meanings:
+            self._meanings[asked] = self._search_meanings(name, scopes)
+        return self._meanings[asked]
+
+    def _search_meanings(self, name: str, scopes: Sequence[str]) -> tuple[str, ...]:
         for _ in range(_MAX_ALIASES):
             target = self._target_of(name, scopes)
             if target is None:
@@ -194,6 +209,12 @@ def is_conditional(node: CppNode, until: CppNode) -> bool:
 
 def called_name(call: CppNode) -> str:
     """Return the name of what a call calls, as it is written, without the object before it."""
+    if call.called is None:
+        call.called = _called_name(call)
+    return call.called
+
+
+def _called_name(call: CppNode) -> str:
     function = call.child("function")
     if function is None:
         return ""

@@ -46,6 +46,7 @@ from grader.ros.python.values import (
     iterate,
     unknown_in,
 )
+from grader.ros.python.walking import walk
 
 _MAX_GUESSES = 10
 _ROOT = f"/{PACKAGE_FOLDER}"
@@ -190,7 +191,7 @@ def read_setup(data: bytes, path: str, tree: Tree, budget: Budget | None = None)
     budget = budget or Budget()
     strings = [
         node
-        for node in ast.walk(code.tree)
+        for node in walk(code.tree)
         if isinstance(node, ast.Constant) and isinstance(node.value, str)
     ]
     written = {

@@ -12,6 +12,7 @@ from typing import NamedTuple
 from grader.base import markup
 from grader.base.source import Source
 from grader.ros.python.parse import Code, location_in, parse, position_of
+from grader.ros.python.walking import walk
 from grader.ros.xml.parsing import XmlFault, XmlFile
 
 # The classes of launch whose first argument is the name of a launch configuration, with the keyword
@@ -58,7 +59,7 @@ def argument_names(data: bytes, path: str) -> tuple[Source, list[_ArgumentName]]
 
 
 def _in_python(code: Code) -> Iterator[_ArgumentName]:
-    for node in ast.walk(code.tree):
+    for node in walk(code.tree):
         if not isinstance(node, ast.Call):
             continue
         called = node.func.attr if isinstance(node.func, ast.Attribute) else None

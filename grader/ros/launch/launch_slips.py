@@ -10,6 +10,7 @@ from grader.ros.known.package_files import packages_with_files
 from grader.ros.known.package_rows import lacks_program, package_row, programs_of
 from grader.ros.launch.launch_classes import class_named, exports
 from grader.ros.python.parse import Code, location_in, position_of
+from grader.ros.python.walking import walk
 
 _FUNCTION = "generate_launch_description"
 _GLOBAL = frozenset({*dir(builtins), "__file__", "__name__", "__doc__"})
@@ -33,7 +34,7 @@ class _LaunchNames:
 
     def __init__(self, code: Code) -> None:
         self._code = code
-        self._nodes = [*ast.walk(code.tree)]
+        self._nodes = walk(code.tree)
         self._bound: set[str] = set()
         self._classes: dict[str, str] = {}  # the full names of imported classes
         self._renamed: dict[str, str] = {}  # what an import is read as

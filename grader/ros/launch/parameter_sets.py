@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from grader.base.source import Location, Source
 from grader.ros.python.parse import Code, location_in, parse, position_of
+from grader.ros.python.walking import walk
 
 # A text in braces that a comma follows: only such files are parsed.
 _MAY_BE_SET = re.compile(r"\{\s*+['\"][^'\"\n]*+['\"]\s*+,")
@@ -33,7 +34,7 @@ def parameter_sets(source: Source) -> Iterator[_ParameterSet]:
     code = parse(source.text.encode("utf-8", "replace"), source.path)
     if not isinstance(code, Code):
         return
-    for node in ast.walk(code.tree):
+    for node in walk(code.tree):
         match node:
             case ast.keyword(arg="parameters", value=ast.List(elts=items)):
                 for item in items:

@@ -17,6 +17,7 @@ from grader.ros.nodes.node_facts import FieldUse, TypeImport
 from grader.ros.python.constants import dotted, last_name, offset_of
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
 from grader.ros.python.values import SCALARS, QualifiedName, Scope, Value
+from grader.ros.python.walking import children, walk
 
 _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 _KINDS = ("msg", "srv", "action")
@@ -237,7 +238,7 @@ class _FunctionUses:
         self._evaluate = evaluate
         self._nodes = sorted(certain_nodes(function), key=offset_of)
         self._counts = Counter[str]()
-        for node in ast.walk(function):
+        for node in walk(function):
             match node:
                 case ast.Name(id=name, ctx=ast.Store() | ast.Del()) | ast.arg(arg=name):
                     self._counts[name] += 1
@@ -384,7 +385,7 @@ def certain_nodes(function: ast.AST) -> Iterator[ast.AST]:
             case ast.Module(body=body):
                 pending += [statement for statement in body if not isinstance(statement, _SCOPES)]
             case _:
-                pending += ast.iter_child_nodes(node)
+                pending += children(node)
 
 
 def _catches(handlers: Sequence[ast.ExceptHandler]) -> bool:

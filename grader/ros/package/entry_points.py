@@ -27,6 +27,7 @@ from grader.ros.python.parse import (
     parse,
     position_of,
 )
+from grader.ros.python.walking import walk
 
 _ENTRY = re.compile(
     r"\s*([^=\s]+)\s*=\s*(\w+(?:\.\w+)*)\s*(?::\s*(\w+)(?:\.\w+)*\s*)?(?:\[.*)?", re.ASCII
@@ -329,7 +330,7 @@ def _with_module(fault: _EntryFault, position: int) -> _EntryFault:
 
 def _certain_names(code: Code) -> frozenset[str] | None:
     """Return the names that a module may bind; None if it may bind others."""
-    nodes = [*ast.walk(code.tree)]
+    nodes = walk(code.tree)
     if binds_unseen(nodes) or any(
         isinstance(node, ast.alias) and node.name == "*" for node in nodes
     ):

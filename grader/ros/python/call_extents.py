@@ -5,6 +5,7 @@ from collections.abc import Mapping
 
 from grader.base.source import Source
 from grader.ros.python.parse import Code, Position, location_in, parse, position_of
+from grader.ros.python.walking import walk
 
 
 def ends_of_calls(source: Source) -> Mapping[tuple[int, int], int]:
@@ -15,7 +16,7 @@ def ends_of_calls(source: Source) -> Mapping[tuple[int, int], int]:
     """
     code = parse(source.text.encode("utf-8", "surrogateescape"), source.path)
     ends: dict[tuple[int, int], int] = {}
-    for node in ast.walk(code.tree) if isinstance(code, Code) else ():
+    for node in walk(code.tree) if isinstance(code, Code) else ():
         if isinstance(node, ast.Call):
             place = location_in(source, position_of(node))
             last = Position(node.end_lineno or 0, (node.end_col_offset or 0) + 1)

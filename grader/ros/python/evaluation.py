@@ -19,6 +19,7 @@ from grader.ros.python.library import PYTHON_3_12, USUAL_NAMES, usual_meaning
 from grader.ros.python.operators import method, operate
 from grader.ros.python.parse import START, Position, position_of
 from grader.ros.python.values import call_plain, known, reason_of
+from grader.ros.python.walking import walk
 
 
 class PythonError(NamedTuple):
@@ -128,7 +129,7 @@ class Evaluation(Expressions):
             if error.follows_error:
                 return unknown
             may_change = not isinstance(node, _WHOLE) and any(
-                isinstance(part, _CHANGING) for part in ast.walk(node)
+                isinstance(part, _CHANGING) for part in walk(node)
             )
             if error.is_final or may_change:
                 raise py.Undetermined(unknown.reason, unknown.at, is_final=True) from None
@@ -173,7 +174,7 @@ class Evaluation(Expressions):
         if isinstance(
             value, py.Unknown | py.Call | py.QualifiedName | py.BoundMethod
         ) and not py.is_object(value):
-            nodes = (node for branch in branches for node in ast.walk(branch))
+            nodes = (node for branch in branches for node in walk(branch))
             if any(isinstance(node, _CHANGING) for node in nodes):
                 reason = f"a condition {NOT_EVALUATED}: {reason_of(value)}"
                 raise py.Undetermined(reason, getattr(value, "at", self.at), is_final=True)

@@ -33,6 +33,7 @@ from grader.ros.python.library import (
 from grader.ros.python.operators import has_attribute, operate
 from grader.ros.python.parse import Code, Position, bound_in, own_nodes, position_of
 from grader.ros.python.values import call_plain, known, refuse, str_of
+from grader.ros.python.walking import walk
 
 _PARTS = ("name", "stem", "suffix", "parent", "parents", "parts")  # of a path
 MAX_FILE_STEPS = 100_000  # what the evaluation of one file may use
@@ -232,7 +233,7 @@ class Interpreter(Evaluation):
         """Find the names of an annotation, and stop where it calls something."""
         if node is None:
             return
-        for part in ast.walk(node):
+        for part in walk(node):
             if isinstance(part, ast.Name):
                 self._name(part, scope)
             elif not isinstance(part, _IN_ANNOTATIONS):
@@ -544,7 +545,7 @@ class Interpreter(Evaluation):
 
     def _augassign(self, node: ast.AugAssign, scope: py.Scope) -> None:
         target = node.target
-        if any(isinstance(part, ast.Call | ast.NamedExpr) for part in ast.walk(target)):
+        if any(isinstance(part, ast.Call | ast.NamedExpr) for part in walk(target)):
             raise py.Undetermined("this target is not supported")
         load = copy(target)
         load.ctx = ast.Load()

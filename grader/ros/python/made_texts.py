@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from grader.ros.python.constants import dotted
 from grader.ros.python.parse import Code
+from grader.ros.python.walking import walk
 
 UNKNOWN = "\0"  # in a text, in place of what is not known
 _FORMATTED = re.compile(r"%[sdi]|\{[^{}]*\}")
@@ -14,7 +15,7 @@ _JOINING = ("join", "joinpath", "Path", "PathJoinSubstitution")
 
 def made_texts(code: Code) -> Iterator[str]:
     """Yield the texts that expressions of a file make, with UNKNOWN for what is not known."""
-    nodes = [*ast.walk(code.tree)]
+    nodes = walk(code.tree)
     texts: dict[str, str] = {}  # of the variables that are bound to one text only
     for node in nodes:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):

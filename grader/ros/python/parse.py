@@ -14,6 +14,7 @@ from typing import NamedTuple
 from grader.base.merge_conflicts import resolve_conflicts
 from grader.base.reuse import reuse
 from grader.base.source import Location, Source
+from grader.ros.python.walking import children, walk
 
 _SLOW_ENCODINGS = (
     "idna",
@@ -64,8 +65,8 @@ class Code(NamedTuple):
 
 @lru_cache(maxsize=4)  # the readers of a module follow each other
 def every_node(tree: ast.Module) -> Sequence[ast.AST]:
-    """Return all nodes of a module, in the order of `ast.walk`."""
-    return [*ast.walk(tree)]
+    """Return all nodes of a module, level by level."""
+    return walk(tree)
 
 
 class SyntaxFault(NamedTuple):
@@ -208,15 +209,12 @@ def own_nodes(node: ast.AST) -> list[ast.AST]:
     Those of the functions and classes in it are not among them.
     """
     nodes: list[ast.AST] = []
-    if isinstance(node, ast.FunctionDef | ast.ClassDef):
-        pending = list(ast.iter_child_nodes(node))
-    else:
-        pending = [node]
+    pending = children(node) if isinstance(node, ast.FunctionDef | ast.ClassDef) else [node]
     while pending:
         part = pending.pop()
         nodes.append(part)
         if not isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
-            pending += ast.iter_child_nodes(part)
+            pending += children(part)
     return nodes
 
 
@@ -229,7 +227,7 @@ def bound_in(node: ast.FunctionDef | ast.Module) -> frozenset[str]:
         if isinstance(part, ast.Global | ast.Nonlocal):
             declared.update(part.names)
         elif isinstance(part, ast.comprehension):
-            inner.update(ast.walk(part.target))
+            inner.update(walk(part.target))
     names: set[str] = set()
     for part in nodes:
         match part:

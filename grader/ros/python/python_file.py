@@ -9,6 +9,7 @@ from typing import NamedTuple
 from grader.base.source import Edit, Edits, Source
 from grader.ros.python.library import USUAL_NAMES
 from grader.ros.python.parse import Code, SyntaxFault, parse
+from grader.ros.python.walking import walk
 
 _STRING = re.compile(
     r"""
@@ -62,7 +63,7 @@ class PythonFile:
     def nodes(self) -> list[ast.AST]:
         """All nodes of the syntax tree; nothing where Python cannot read the file."""
         if isinstance(self.parsed, Code):
-            return list(ast.walk(self.parsed.tree))
+            return walk(self.parsed.tree)
         return []
 
     @cached_property
@@ -133,7 +134,7 @@ class PythonFile:
         """Return an expression in which the names that are not `bound` have their values."""
         start, _ = self.span(node)
         text = self.segment(node)
-        names = [inner for inner in ast.walk(node) if isinstance(inner, ast.Name)]
+        names = [inner for inner in walk(node) if isinstance(inner, ast.Name)]
         if not depth:
             return text
         for name in sorted(names, key=lambda inner: self.span(inner)[0], reverse=True):
@@ -157,7 +158,7 @@ class PythonFile:
         """Return the names in an expression."""
         tree = _expression(code)
         if tree:
-            return {node.id for node in ast.walk(tree) if isinstance(node, ast.Name)}
+            return {node.id for node in walk(tree) if isinstance(node, ast.Name)}
         return set()
 
     @cached_property

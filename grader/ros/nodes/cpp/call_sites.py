@@ -72,7 +72,7 @@ class CallSites:
     def _sites_of(self, function: CppFunction) -> Sequence[CppNode]:
         """Return where a function is called, if no other one has its name and its parameters."""
         count = len(function.parameters)
-        same = [each for each in self._unit.functions if each.name == function.name]
+        same = self._unit.functions_by_name[function.name]
         self._budget.charge(1 + len(same))
         if any(each is not function and len(each.parameters) == count for each in same):
             return []

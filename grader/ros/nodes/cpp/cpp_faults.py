@@ -183,7 +183,7 @@ class _CppSearch:
         The class is named otherwise than as the type of a pointer that is a member.
         """
         for file in self._unit.files:
-            for node in file.syntax.root.walk():
+            for node in file.syntax.nodes:
                 if node.kind != "type_identifier" or node.text != name:
                     continue
                 kinds = [around.kind for around in node.ancestors()]

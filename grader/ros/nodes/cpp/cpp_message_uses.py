@@ -56,12 +56,14 @@ def _is_method(member: CppNode) -> bool:
 
 def _unconditional(function: CppNode) -> Iterator[CppNode]:
     """Yield the nodes in a function that the preprocessor never leaves out."""
-    pending = [function]
-    while pending:
-        node = pending.pop()
-        if node.kind not in CONDITIONS:
+    nodes, index = function.file.nodes, function.index
+    while index < function.behind:
+        node = nodes[index]
+        if node.kind in CONDITIONS:
+            index = node.behind
+        else:
             yield node
-            pending += reversed(node.children)
+            index += 1
 
 
 def _types_in(function: CppFunction, unit: CppUnit) -> dict[str, str]:

@@ -485,8 +485,8 @@ class _Target:
             return False
         owner = self._unit.owner_of(function)
         return any(
-            candidate.name == name and self._unit.owner_of(candidate) in ("", owner)
-            for candidate in self._unit.functions
+            self._unit.owner_of(candidate) in ("", owner)
+            for candidate in self._unit.functions_by_name.get(name, ())
         )
 
     def _read_function_of_library(self, call: CppNode, function: CppFunction) -> None:

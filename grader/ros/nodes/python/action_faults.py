@@ -9,6 +9,7 @@ from grader.ros.nodes.message_uses import CodePart
 from grader.ros.nodes.node_facts import CodeFault
 from grader.ros.python.constants import dotted
 from grader.ros.python.parse import Code, every_node, location_in, position_of
+from grader.ros.python.walking import walk
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 # What sets the state of a goal: rclpy/rclpy/action/server.py of jazzy.
@@ -75,12 +76,12 @@ def _attributes_of(name: str, function: _Function) -> set[str] | None:
     """Return the attributes of a variable that a function uses; None where it is used otherwise."""
     used = set[str]()
     owners = set[ast.AST]()
-    for node in ast.walk(function):
+    for node in walk(function):
         if isinstance(node, ast.Attribute):
             owners.add(node.value)
             if isinstance(node.value, ast.Name) and node.value.id == name:
                 used.add(node.attr)
-    for node in ast.walk(function):
+    for node in walk(function):
         if isinstance(node, ast.Name) and node.id == name and node not in owners:
             return None
     return used
@@ -97,7 +98,7 @@ def loops_without_transforms(
         function = goal.function
         if isinstance(function, ast.AsyncFunctionDef):
             continue
-        for node in ast.walk(function):
+        for node in walk(function):
             if isinstance(node, ast.While) and _looks_up(node, own_methods):
                 message = (
                     f"the loop in {function.name}() looks up transforms, and rclpy.spin() has one "
@@ -111,12 +112,12 @@ def loops_without_transforms(
 
 def _looks_up(loop: ast.While, methods: Mapping[str, _Function]) -> bool:
     """Return whether a loop looks up a transform, itself or by a method that it calls."""
-    nodes: list[ast.AST] = [*ast.walk(loop)]
+    nodes: list[ast.AST] = walk(loop)
     for node in [*nodes]:
         match node:
             case ast.Call(func=ast.Attribute(value=ast.Name(id="self"), attr=name)):
                 if name in methods:
-                    nodes += ast.walk(methods[name])
+                    nodes += walk(methods[name])
     for node in nodes:
         match node:
             case ast.Call(func=ast.Attribute(attr="lookup_transform")):
@@ -147,7 +148,7 @@ def answers_for_results(
 def _result_futures(part: CodePart) -> set[str]:
     """Return the variables that a function binds to the future of a result, and to nothing else."""
     made: dict[str, set[bool]] = {}
-    for node in ast.walk(part.node):
+    for node in walk(part.node):
         match node:
             case ast.Assign(targets=[ast.Name() | ast.Attribute() as to], value=value):
                 made.setdefault(dotted(to), set()).add(_asks_for_result(value))
@@ -168,12 +169,12 @@ def _wrong_fields(code: Code, function: _Function) -> Iterator[CodeFault]:
         return
     answers = {f"{names[0]}.result"}
     bound: dict[str, set[bool]] = {}
-    for node in ast.walk(function):
+    for node in walk(function):
         match node:
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
                 bound.setdefault(name, set()).add(_is_answer(value, answers))
     variables = {name for name, kinds in bound.items() if kinds == {True}}
-    for node in ast.walk(function):
+    for node in walk(function):
         match node:
             case ast.Attribute(attr=field, value=value, ctx=ast.Load()):
                 is_variable = isinstance(value, ast.Name) and value.id in variables

@@ -2,6 +2,8 @@
 
 import ast
 
+from grader.ros.python.walking import children
+
 _BRANCHES = (ast.If, ast.IfExp, ast.Match, ast.ExceptHandler)
 
 
@@ -15,7 +17,7 @@ def calls_in_branches(tree: ast.Module) -> frozenset[ast.Call]:
             calls.append(node)
         if isinstance(node, _BRANCHES) and not _asks_for_program(node):
             is_inside = True
-        pending += [(child, is_inside) for child in ast.iter_child_nodes(node)]
+        pending += [(child, is_inside) for child in children(node)]
     return frozenset(calls)
 
 

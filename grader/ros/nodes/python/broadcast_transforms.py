@@ -9,6 +9,7 @@ from grader.ros.nodes.message_uses import given_argument
 from grader.ros.nodes.node_facts import NamePart, NodeFrame, NodeTransform
 from grader.ros.nodes.python.endpoint_names import Bindings
 from grader.ros.python.constants import dotted
+from grader.ros.python.walking import walk
 
 SENDS = "sendTransform"
 _PARENT, _CHILD = "header.frame_id", "child_frame_id"
@@ -68,7 +69,7 @@ def _value_set(method: SendingMethod, call: ast.Call, name: str, field: str) -> 
         return None
     around = method.of_class if name.startswith("self.") else method.node
     statements: list[ast.Assign] = []
-    for node in ast.walk(around):
+    for node in walk(around):
         if isinstance(node, ast.Assign) and f"{name}.{field}" in map(dotted, node.targets):
             statements.append(node)
         elif _may_set(node, name, field):
@@ -111,10 +112,10 @@ def _value_made(made: ast.expr | None, field: str) -> ast.expr | None:
 
 def _is_decided_by_parameter(method: SendingMethod, call: ast.Call) -> bool:
     """Return whether a condition on a parameter decides whether a call is made."""
-    for node in ast.walk(method.node):
-        if isinstance(node, ast.If) and call in ast.walk(node):
+    for node in walk(method.node):
+        if isinstance(node, ast.If) and call in walk(node):
             tested = [node.test]
-            for inner in ast.walk(node.test):
+            for inner in walk(node.test):
                 bound = method.bindings.values.get(dotted(inner))
                 if bound is not None:
                     tested.append(bound)
@@ -125,5 +126,5 @@ def _is_decided_by_parameter(method: SendingMethod, call: ast.Call) -> bool:
 
 def _names_parameter(value: ast.expr) -> bool:
     """Return whether an expression is made from a parameter of the node."""
-    inner = (node.attr for node in ast.walk(value) if isinstance(node, ast.Attribute))
+    inner = (node.attr for node in walk(value) if isinstance(node, ast.Attribute))
     return not set(_PARAMETERS).isdisjoint(inner)

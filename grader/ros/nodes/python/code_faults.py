@@ -29,6 +29,7 @@ from grader.ros.nodes.python.log_calls import wrong_log_calls
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, is_passive
 from grader.ros.python.constants import binds_unseen, dotted, last_name
 from grader.ros.python.parse import Code, Position, every_node, location_in, position_of
+from grader.ros.python.walking import children, walk
 
 # With one of these, callbacks may run while another one waits.
 _OTHER_THREADS = ("xecutor", "hread", "spin_once", "spin_some", "asyncio", "await ")
@@ -183,7 +184,7 @@ def _unevaluated(tree: ast.Module) -> set[Position]:
                 pass
             case _:
                 continue
-        for part in ast.walk(inside) if inside is not None else ():
+        for part in walk(inside) if inside is not None else ():
             if isinstance(part, ast.expr):
                 places.add(position_of(part))
     return places
@@ -353,7 +354,7 @@ class _Search:
 
     def _loops(self, function: ast.FunctionDef | ast.AsyncFunctionDef) -> Iterator[CodeFault]:
         """Yield the loops of a callback that do nothing until another callback has run."""
-        for node in ast.walk(function):
+        for node in walk(function):
             if not isinstance(node, ast.While) or not _only_waits(node.body):
                 continue
             awaited = _awaited(node.test)
@@ -368,7 +369,7 @@ class _Search:
         self, names: Collection[str], function: ast.FunctionDef | ast.AsyncFunctionDef
     ) -> bool:
         """Return whether only other functions set what a function waits for."""
-        inside = {id(node) for node in ast.walk(function)}
+        inside = {id(node) for node in walk(function)}
         places: dict[str, list[bool]] = {name: [] for name in names}
         for node in every_node(self._code.tree):
             is_set = isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store)
@@ -534,7 +535,7 @@ def _defined_by(node: ast.stmt) -> Iterator[str]:
     if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
         yield node.name
         return
-    for part in ast.walk(node):
+    for part in walk(node):
         match part:
             case ast.Name(id=name, ctx=ast.Store()) | ast.FunctionDef(name=name):
                 yield name
@@ -544,14 +545,14 @@ def _defined_by(node: ast.stmt) -> Iterator[str]:
 
 def _calls_in(function: ast.AST) -> Iterator[ast.Call]:
     """Yield the calls in a function, without those of functions in it."""
-    pending = [*ast.iter_child_nodes(function)]
+    pending = children(function)
     while pending:
         node = pending.pop()
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
             continue
         if isinstance(node, ast.Call):
             yield node
-        pending += ast.iter_child_nodes(node)
+        pending += children(node)
 
 
 def _own_statements(body: Sequence[ast.stmt]) -> Iterator[ast.stmt]:
@@ -563,7 +564,7 @@ def _own_statements(body: Sequence[ast.stmt]) -> Iterator[ast.stmt]:
             yield node
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
             continue
-        for inner in reversed([*ast.iter_child_nodes(node)]):
+        for inner in reversed(children(node)):
             if isinstance(inner, ast.stmt | ast.ExceptHandler | ast.match_case):
                 pending.append(inner)
 
@@ -582,7 +583,7 @@ def _lacks_arguments(
 
 
 def _is_generator(function: ast.AST) -> bool:
-    return any(isinstance(node, ast.Yield | ast.YieldFrom) for node in ast.walk(function))
+    return any(isinstance(node, ast.Yield | ast.YieldFrom) for node in walk(function))
 
 
 def _gives_value(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
@@ -639,7 +640,7 @@ def _falls_off_plain(statement: ast.stmt) -> str:
         case ast.Expr(value=ast.Call(func=made)) if dotted(made) in _ENDING:
             ending = "no"
         case ast.While(test=ast.Constant(value=value)) if value:
-            has_break = any(isinstance(inner, ast.Break) for inner in ast.walk(statement))
+            has_break = any(isinstance(inner, ast.Break) for inner in walk(statement))
             ending = "maybe" if has_break else "no"
         case ast.While() | ast.For() | ast.AsyncFor() | ast.Match():
             ending = "maybe"
@@ -666,7 +667,7 @@ def _names_and_loops(modules: Iterable[ModuleText]) -> tuple[set[str], int]:
     """Return the names and attributes in modules, and how many while loops these have."""
     names, loops = set[str](), 0
     for module in modules:
-        for node in ast.walk(module.code.tree):
+        for node in walk(module.code.tree):
             names.add(getattr(node, "attr", "") or getattr(node, "id", ""))
             loops += isinstance(node, ast.While)
     return names, loops
@@ -700,7 +701,7 @@ def _awaited(test: ast.expr) -> list[str]:
     A condition that calls a function, as rclpy.ok(), may become false otherwise.
     """
     names = []
-    for node in ast.walk(test):
+    for node in walk(test):
         match node:
             case ast.Attribute():
                 names.append(dotted(node))

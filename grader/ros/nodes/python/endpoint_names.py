@@ -14,6 +14,7 @@ from typing import NamedTuple, TypeVar
 from grader.ros.nodes.node_facts import NamePart
 from grader.ros.python.constants import dotted, offset_of
 from grader.ros.python.values import Call, Value
+from grader.ros.python.walking import walk
 
 _MAX_DEPTH = 12  # of names that are bound to expressions with names
 _MAX_ITEMS = 20  # of a list that a loop goes through
@@ -113,7 +114,7 @@ class EndpointNames:
 
         A name in a loop through a list in the code is yielded once for each item.
         """
-        names = {name.id for name in ast.walk(node) if isinstance(name, ast.Name)}
+        names = {name.id for name in walk(node) if isinstance(name, ast.Name)}
         for name in sorted(names):
             loop = self._loop(name, node)
             items = self._items(loop.items if loop is not None else None)

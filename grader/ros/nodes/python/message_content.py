@@ -15,6 +15,7 @@ from grader.ros.nodes.python.endpoint_names import Bindings
 from grader.ros.python.constants import dotted, last_name
 from grader.ros.python.parse import location_in, position_of
 from grader.ros.python.values import QualifiedName, Scope, Value
+from grader.ros.python.walking import walk
 
 SUBSCRIBER = "message_filters.Subscriber"
 _SYNCHRONISERS = (
@@ -151,7 +152,7 @@ def _takes_any(call: ast.Call) -> bool:
 
 def _names_encoding(part: CodePart) -> bool:
     """Return whether a function reads or sets the encoding of an image itself."""
-    nodes = ast.walk(part.node)
+    nodes = walk(part.node)
     return any(isinstance(node, ast.Attribute) and node.attr == "encoding" for node in nodes)
 
 
@@ -161,7 +162,7 @@ def _first_argument(part: CodePart) -> str:
         return ""
     names = [argument.arg for argument in part.node.args.args]
     names = names[1:] if names[:1] == ["self"] else names
-    for node in ast.walk(part.node):
+    for node in walk(part.node):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node.id in names:
             return ""
     return names[0] if names else ""

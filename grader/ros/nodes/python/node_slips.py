@@ -26,6 +26,7 @@ from grader.ros.nodes.python.called_functions import (
 from grader.ros.nodes.python.rclpy_names import CALLBACKS, NODE_CLASSES, is_passive
 from grader.ros.python.constants import binds_unseen, dotted
 from grader.ros.python.parse import Code, Position, location_in, position_of
+from grader.ros.python.walking import children, walk
 
 _MAX_NAMES = 20  # that are not defined
 _GLOBAL = frozenset({*dir(builtins), "__file__", "__name__", "__doc__", "__spec__"})
@@ -60,7 +61,7 @@ def node_slips(code: Code, program: Program, releases: Sequence[Release] = ()) -
 
     Calls are those of the given releases, or of any that are known.
     """
-    nodes = [*ast.walk(code.tree)]
+    nodes = walk(code.tree)
     if binds_unseen(nodes):
         return []
     slips = [*_NodeSlips(code, nodes, program, releases or RELEASES).found()]
@@ -170,7 +171,7 @@ class _NodeSlips:
             for block in blocks or ():
                 yield from self._running(block)
             if isinstance(statement, ast.Return | ast.Raise | ast.If) and any(
-                isinstance(part, ast.Return | ast.Raise) for part in ast.walk(statement)
+                isinstance(part, ast.Return | ast.Raise) for part in walk(statement)
             ):
                 return
 
@@ -265,7 +266,7 @@ class _NodeSlips:
     ) -> dict[str, str]:
         """Return the types of the messages in variables that a function binds once."""
         types: dict[str, str] = {}
-        parameters = [node.arg for node in ast.walk(function.node) if isinstance(node, ast.arg)]
+        parameters = [node.arg for node in walk(function.node) if isinstance(node, ast.arg)]
         if function.message and len(parameters) == 2:
             types[parameters[1]] = function.message
         for statement in statements:
@@ -361,7 +362,7 @@ class _NodeSlips:
         for method in owner.body:
             if not isinstance(method, ast.FunctionDef) or method.name != "__init__":
                 continue
-            names = {getattr(inner, "attr", getattr(inner, "id", "")) for inner in ast.walk(method)}
+            names = {getattr(inner, "attr", getattr(inner, "id", "")) for inner in walk(method)}
             if names.isdisjoint(("__init__", "super")):
                 code = f'super().__init__("{self._program.name.removesuffix(".py")}")'
                 reaction = f"super().__init__() is missing in the class {owner.name}"
@@ -389,7 +390,7 @@ class _NodeSlips:
         modules = {full.partition(".")[0] for full in self._imports.values()}
         if "spin" in self._code.source.text or waits or modules & _WAITING:
             return True
-        inside = ast.walk(node_class)
+        inside = walk(node_class)
         called = {getattr(node, "attr", getattr(node, "id", "")) for node in inside}
         return called.isdisjoint(CALLBACKS)
 
@@ -514,7 +515,7 @@ def _runs_on(test: ast.expr) -> bool:
 
 
 def _gives_value(method: ast.FunctionDef) -> bool:
-    for node in ast.walk(method):
+    for node in walk(method):
         if isinstance(node, ast.Yield | ast.YieldFrom) or (
             isinstance(node, ast.Return) and node.value is not None
         ):
@@ -531,7 +532,7 @@ def _certain_parts(statement: ast.AST) -> Iterator[ast.AST]:
         if isinstance(part, ast.AnnAssign):
             pending += [part.target, *([part.value] if part.value is not None else [])]
         elif not isinstance(part, ast.IfExp | ast.BoolOp | ast.Lambda | ast.comprehension):
-            pending += ast.iter_child_nodes(part)
+            pending += children(part)
 
 
 def _calls(statement: ast.stmt) -> Iterator[ast.Call]:
@@ -566,6 +567,6 @@ def _count_stored(function: ast.AST) -> Counter[str]:
     """Return how often a function sets or deletes each variable."""
     return Counter(
         node.id
-        for node in ast.walk(function)
+        for node in walk(function)
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store | ast.Del)
     )

@@ -14,6 +14,7 @@ from grader.ros.installation.installation import Installation
 from grader.ros.launch.launch_slips import launch_slips, name_slips
 from grader.ros.package.package import SETUP, Package
 from grader.ros.python.parse import Code, location_in, parse, position_of
+from grader.ros.python.walking import walk
 
 _LIMIT = 32 * 1024  # bytes of a file, because what may be meant is tried by reading it again
 _MAX_FILES = 20
@@ -97,7 +98,7 @@ def _build_slips(package: Package, installation: Installation) -> Iterator[Slip]
 def _argument_slips(installation: Installation, code: Code) -> Iterator[Slip]:
     """Yield the argument that setup() does not have, near one that it has."""
     ignored = installation.misspelt
-    for node in ast.walk(code.tree) if ignored is not None and ignored.meant else ():
+    for node in walk(code.tree) if ignored is not None and ignored.meant else ():
         if isinstance(node, ast.keyword) and ignored is not None and node.arg == ignored.name:
             yield _slip(
                 code,
@@ -118,7 +119,7 @@ def _name_slips(
     written = installation.name
     if not written or not name or written == name or f"resource/{name}" not in package.tree.files:
         return
-    for node in ast.walk(code.tree):
+    for node in walk(code.tree):
         if isinstance(node, ast.Constant) and node.value == written:
             reaction = f"package.xml names the package {name!r}, setup.py {written!r}"
             yield _slip(code, node, written, name, reaction)

@@ -69,6 +69,7 @@ from grader.ros.python.parse import (
 )
 from grader.ros.python.python_slips import python_slips
 from grader.ros.python.values import SCALARS, Call, QualifiedName, Scope, Unknown, Value
+from grader.ros.python.walking import walk
 
 _MAX_SEARCHED = 32 * 1024  # bytes of a program in which slips are searched
 _MAX_MODULES = 100
@@ -446,7 +447,7 @@ class _Module:
         self._parts.append(CodePart("", code.tree, _find_calls(body), scope))
         for part in body:
             if isinstance(part, ast.FunctionDef | ast.AsyncFunctionDef):
-                inner = [*ast.walk(part)]
+                inner = walk(part)
                 self._parts.append(
                     CodePart(
                         part.name,
@@ -476,7 +477,7 @@ class _Module:
         for method in nodes_of_class:
             if not isinstance(method, ast.FunctionDef | ast.AsyncFunctionDef):
                 continue
-            nodes = [*ast.walk(method)]
+            nodes = walk(method)
             local = self._constants.bound(nodes, Scope({}, attributes))
             for name in [name for name in local.names if name.startswith("self.")]:
                 value = local.names.pop(name)
@@ -864,7 +865,7 @@ def _parameters_given(function: ast.AST, call: ast.Call) -> Iterator[tuple[str, 
     """
     assert isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef)
     bound: Counter[str] = Counter()
-    for node in ast.walk(function):
+    for node in walk(function):
         if isinstance(node, ast.arg):
             bound[node.arg] += 1
         elif isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load):
@@ -891,7 +892,7 @@ def _has_alias(tree: ast.Module) -> bool:
 
 
 def _bindings_of(node: ast.AST) -> Bindings:
-    return bindings(ast.walk(node), of_self=isinstance(node, ast.ClassDef))
+    return bindings(walk(node), of_self=isinstance(node, ast.ClassDef))
 
 
 def _text(value: Value) -> str | None:

@@ -1,0 +1,46 @@
+"""All nodes of Python's syntax in a part of it, as `ast.walk` gives them, in half the time.
+
+The readers of a module walk over it some twenty times. What says only how a name is used or which
+operator is meant (`ast.Load`, `ast.Add`) is no node here: it is an attribute of the node that has
+it.
+"""
+
+import ast
+from ast import AST
+from collections.abc import Mapping
+
+# Attributes in which no other node is.
+_PLAIN = frozenset(
+    (
+        *("arg", "asname", "attr", "conversion", "ctx", "id", "is_async", "kind", "level"),
+        *("module", "op", "ops", "rest", "simple", "tag", "type_comment", "type_ignores"),
+    )
+)
+_FIELDS: Mapping[type[AST], tuple[str, ...]] = {
+    each: tuple(field for field in each._fields if field not in _PLAIN)
+    for each in vars(ast).values()
+    if isinstance(each, type) and issubclass(each, AST)
+} | {ast.Constant: ()}
+
+
+def children(node: AST) -> list[AST]:
+    """Return the nodes right below a node, in the order of the grammar."""
+    nodes: list[AST] = []
+    for field in _FIELDS[node.__class__]:
+        value = getattr(node, field, None)
+        if value.__class__ is list:
+            for inner in value:
+                if isinstance(inner, AST):
+                    nodes.append(inner)
+        elif isinstance(value, AST):
+            nodes.append(value)
+    return nodes
+
+
+def walk(node: AST) -> list[AST]:
+    """Return a node and all nodes in it, level by level."""
+    nodes = [node]
+    for each in nodes:  # which grows
+        if _FIELDS[each.__class__]:
+            nodes += children(each)
+    return nodes
