@@ -21,10 +21,10 @@ def class_written(node: CppNode) -> str:
     """
     if node.kind == "call_expression":
         owner, _, short = called_name(node).rpartition("::")
+        if short not in _MAKERS:
+            return ""
         types = template_arguments(node)
-        if short in _MAKERS:
-            return types[0] if types else owner
-        return ""
+        return types[0] if types else owner
     kind = node.child("type")
     is_object = node.kind == "new_expression" or (
         node.kind == "declaration" and _declares_object(node)

@@ -766,10 +766,10 @@ class _Target:
 
     def _is_of_other_package(self, written: str, node: CppNode) -> bool:
         """Return whether a class that is made is in the namespace of a package that is not read."""
-        function = self._unit.function_around(node)
-        scopes = self._unit.scopes_of(function) if function is not None else ()
         if not written or _MESSAGE_PART.search(written):
             return False
+        function = self._unit.function_around(node)
+        scopes = self._unit.scopes_of(function) if function is not None else ()
         is_known = False
         for meaning in self._unit.meanings(plain(written), scopes):
             is_known = is_known or "::" not in meaning or meaning in self._unit.classes
