@@ -1,7 +1,7 @@
 """What programs of packages that are not submitted open: rows of files in `ends`.
 
-They are for drawing a graph, and no rule reads them: what a rule compares is in `packages`. The
-file of one package is read when it is needed.
+They are for drawing a graph. Rules read only the types of subscriptions here; what else they
+compare is in `packages`. The file of one package is read when it is needed.
 """
 
 import os

@@ -11,12 +11,15 @@ from typing import NamedTuple
 from grader.base.names import near
 from grader.base.source import Location
 from grader.base.text import quoted
+from grader.ros.known.end_rows import opened_ends
 from grader.ros.known.package_rows import ProgramRow
 from grader.ros.known.package_tables import display_types
+from grader.ros.known.releases import RELEASES
 from grader.ros.launch.launch_model import StartedNode
 from grader.ros.workspace.graph.code_ends import End
 from grader.ros.workspace.graph.graph import graph_of, grouped
 from grader.ros.workspace.graph.node_ends import KnownProgram, programs_in
+from grader.ros.workspace.graph.opened_by_programs import ends_of_row
 from grader.ros.workspace.graph.unread_ends import Sought, may_be_opened
 from grader.ros.workspace.model.workspace import Workspace
 from grader.ros.workspace.rules.names import Compared, Fact, Mismatch, warning
@@ -57,7 +60,7 @@ def known_end_facts(workspace: Workspace) -> Iterator[Fact]:
         by_topic = grouped(by_launch.get(program.launch, ()), lambda end: end.name)
         inputs = _inputs(workspace, program)
         yield from (Compared("wiring") for _ in inputs)
-        yield from _other_types(program, inputs, by_topic)
+        yield from _other_types(workspace, program, inputs, by_topic)
         yield from _not_published(workspace, program.node, inputs, by_topic)
         yield from _other_remappings(program.node, program.row)
     yield from _displays(workspace, grouped(published, lambda end: end.name))
@@ -71,7 +74,10 @@ def _other_type(published: Sequence[End], wanted: str) -> End | None:
 
 
 def _other_types(
-    program: KnownProgram, inputs: Sequence[_Input], published: _ByTopic
+    workspace: Workspace,
+    program: KnownProgram,
+    inputs: Sequence[_Input],
+    published: _ByTopic,
 ) -> Iterator[Fact]:
     """Yield the topics that a program reads and that are published with another type only.
 
@@ -84,7 +90,9 @@ def _other_types(
         if topic in published:
             yield Compared("wiring")
         read.append(_Input(node.executable, topic, wanted, node.location))
-    for each in (*read, *inputs):
+    topics = {each.topic for each in (*read, *inputs)}
+    others = [each for each in _opened(workspace, program) if each.topic not in topics]
+    for each in (*read, *inputs, *others):
         other = _other_type(published.get(each.topic, ()), each.type)
         if other is not None:
             message = (
@@ -92,6 +100,28 @@ def _other_types(
                 f"{other.type} ({other.location.file_and_line})"
             )
             yield warning(INPUT_TYPE, message, each.location, other.location)
+
+
+def _opened(workspace: Workspace, program: KnownProgram) -> Sequence[_Input]:
+    """Return what a program certainly subscribes to, in each release that may be meant."""
+    node = program.node
+    row = opened_ends(node.package, node.executable)
+    if row is None:
+        return ()
+    given = workspace.parameters.given_to(program.package, node)
+    opened: list[set[_Input]] = []
+    for release in workspace.releases or RELEASES:
+        ends = ends_of_row(row, node, given, release)
+        subscriptions = [end for end in ends if end.kind == "subscription" and not end.doubt]
+        workspace.charge(1 + len(subscriptions))
+        opened.append(
+            {
+                _Input(node.executable, end.name, end.type.replace("/", "."), end.location)
+                for end in subscriptions
+                if end.type
+            }
+        )
+    return sorted(set.intersection(*opened))
 
 
 def _inputs(workspace: Workspace, program: KnownProgram) -> list[_Input]:
