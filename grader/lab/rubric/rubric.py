@@ -97,7 +97,7 @@ class ReferenceSolution:
         return self._others[key]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)  # without slots, for what is computed once
 class Rubric:
     """A lab as data: which facts are checked, in which order, and what each is worth.
 
@@ -161,7 +161,7 @@ class Rubric:
         """Return whether a check compares submissions with the reference solution."""
         return any("reference" in criterion.check.examined for criterion in self.criteria)
 
-    @property
+    @cached_property
     def base(self) -> str:
         """The link that criteria measure in most often; empty if they name none."""
         names = (
@@ -169,12 +169,12 @@ class Rubric:
         )
         return max(sorted(Counter(names).items()), key=lambda pair: pair[1], default=("", 0))[0]
 
-    @property
+    @cached_property
     def sha256(self) -> str:
         """The hash of the file's bytes."""
         return sha256_of(self.data)
 
-    @property
+    @cached_property
     def points(self) -> Decimal:
         """The maximum, without extra credit."""
         return sum((criterion.maximum for criterion in self.criteria), Decimal(0))

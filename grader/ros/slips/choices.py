@@ -40,13 +40,17 @@ def list_choices(sources: Sequence[Source]) -> Iterator[Choice]:
     names = {"pi"}  # and those of properties and parameters
     macros: dict[str, list[str]] = {}  # their parameters
     named: set[str] = set()  # among them the links, which a macro may make
-    for _, root in roots:
-        names |= list_names(root)
-        macros |= list_macros(root)
-        named |= {node.attributes.get("name", "") for node in walk(root)}
+    has_gazebo = any("<gazebo" in source.text for source, _ in roots)
+    for source, root in roots:
+        if "xacro:" in source.text:
+            names |= list_names(root)
+            macros |= list_macros(root)
+        if has_gazebo:
+            named |= {node.attributes.get("name", "") for node in walk(root)}
     for source, root in roots:
         yield from _alone(element_slips(root))
-        yield from _alone(gazebo_slips(root, named))
+        if has_gazebo:
+            yield from _alone(gazebo_slips(root, named))
         if "xacro:" in source.text:
             yield from _alone(attribute_slips(root))
             yield from _alone(nameless_slips(source, macros))

@@ -73,6 +73,8 @@ def _slips_of(node: XacroNode, around: tuple[XacroNode, ...], parent: str) -> It
 
 def _with_attributes_inside(node: XacroNode) -> Iterator[Slip]:
     """Yield the element whose attributes are its text or its children, as in SDF."""
+    if not node.children:
+        return
     absent = [name for name in TAGS[node.tag].attributes if name not in node.attributes]
     text = "".join(child for child in node.children if isinstance(child, str)).strip()
     values: Mapping[str, str] = {}
@@ -153,8 +155,10 @@ def _values_of_children(
         name = child.tag
         if node.tag in ("parent", "child") and name in ("link", "name"):
             name = "link"
+        if name not in absent or name in values or name in known:
+            continue
         value = _value_of(child)
-        if name in absent and name not in values and name not in known and _fits(name, value):
+        if _fits(name, value):
             values[name] = " ".join(WORD_OF_VALUE.findall(value))
             removed.append(child)
     return values, removed

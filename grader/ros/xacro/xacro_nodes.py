@@ -70,7 +70,8 @@ def walk(node: XacroNode) -> Iterator[XacroNode]:
     while waiting:
         current = waiting.pop()
         yield current
-        waiting += reversed(current.elements)
+        if current.children:
+            waiting += reversed(current.elements)
 
 
 def read_nodes(
