@@ -29,11 +29,7 @@ def list_choices(sources: Sequence[Source]) -> Iterator[Choice]:
     """Yield the slips in the texts of a robot, the first of which is the file that is loaded."""
     roots: list[tuple[Source, XacroNode]] = []
     for source in sources:
-        yield from _alone(root_slips(source))
-        yield from _alone(early_end_slips(source))
-        yield from _alone(loose_tag_slips(source))
-        if "<xacro:macro" in source.text:
-            yield macro_end_slips(source)
+        yield from _choices_of_text(source)
         root = read_elements(source)
         if root is not None:
             roots.append((source, root))
@@ -57,6 +53,15 @@ def list_choices(sources: Sequence[Source]) -> Iterator[Choice]:
             yield from _alone(child_slips(root, macros))
         if "$" in source.text or "{" in source.text or "xacro:" in source.text:
             yield from expression_slips(root, names)
+
+
+def _choices_of_text(source: Source) -> Iterator[Choice]:
+    """Yield the slips by which a text is no tree of elements, or another one."""
+    yield from _alone(root_slips(source))
+    yield from _alone(early_end_slips(source))
+    yield from _alone(loose_tag_slips(source))
+    if "<xacro:macro" in source.text:
+        yield macro_end_slips(source)
 
 
 def _alone(slips: Iterator[Slip]) -> Iterator[Choice]:
