@@ -2,11 +2,13 @@
 
 import json
 import os
+import pty
 import re
 import shutil
 import signal
 import subprocess
 import sys
+import termios
 import time
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -301,6 +303,20 @@ def test_verbose_shows_all_on_a_terminal(robot: Path, watch: Watch) -> None:
     fitting = rows_of(watch([robot]).out[0])
     assert len(fitting) < 23
     assert not any("more rows" in row for row in (*whole, *fitting))
+
+
+@pytest.mark.parametrize(("kind", "is_terminal"), [("xterm", True), ("dumb", False)])
+def test_a_terminal_without_commands_is_written_as_a_pipe(
+    kind: str, is_terminal: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It has its size, and is not cleared."""
+    outer, inner = pty.openpty()
+    termios.tcsetwinsize(inner, (30, 100))
+    with open(outer, "rb"), open(inner, "w") as terminal:
+        monkeypatch.setattr("sys.stdout", terminal)
+        monkeypatch.setenv("TERM", kind)
+        shown = TERMINAL.screen()
+    assert (shown.width, shown.rows, shown.is_terminal) == (100, 30, is_terminal)
 
 
 @pytest.mark.slow

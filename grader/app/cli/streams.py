@@ -34,6 +34,8 @@ def screen(here: str | None = None) -> Screen:
         with suppress(OSError):
             size = os.get_terminal_size(out.fileno())
             width, rows = columns(size.columns), size.lines
+    if os.environ.get("TERM") == "dumb":  # it has lines, and no commands: it cannot be cleared
+        is_terminal = False
     encoding = (out.encoding if out is not None else "") or "utf-8"
     is_forced = bool(os.environ.get("FORCE_HYPERLINK"))
     if here is None or not (is_forced or (is_terminal and _shows_links())):
