@@ -124,12 +124,15 @@ class CppFile:
             if node.kind in kinds:
                 yield node
 
+    @cached_property
+    def _comments(self) -> Sequence[CppNode]:
+        return [*self.of_kind("comment")]
+
     def found(self, pattern: re.Pattern[str]) -> Iterator[tuple[str, Location]]:
         """Yield what the first group of a pattern matches outside of comments, and its place."""
-        comments = [(node.start, node.end) for node in self.of_kind("comment")]
         for match in pattern.finditer(self.syntax.source.text):
             at = len(self.syntax.source.text[: match.start(1)].encode("utf-8", "replace"))
-            if not any(start <= at < end for start, end in comments):
+            if not any(comment.start <= at < comment.end for comment in self._comments):
                 yield match[1], self.syntax.source.at(match.start(1))
 
     @cached_property

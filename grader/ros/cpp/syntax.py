@@ -244,21 +244,23 @@ def _copy(cursor: "TreeCursor", syntax: CppSyntax) -> list[CppNode]:
     """Copy the nodes of tree-sitter that have a name or a role; return those that are no C++."""
     errors: list[CppNode] = []
     parents = [syntax.root]
+    root = cursor.node
+    has_errors = root is not None and root.has_error
     if not cursor.goto_first_child():
         return errors
     while True:
         node, field = cursor.node, cursor.field_name
         assert node is not None
-        parent = parents[-1]
-        copy = CppNode(syntax, node.type, field, node.byte_range, parent)
-        if node.is_named or field is not None:
-            syntax.add(copy)
-        is_broken = node.is_error or (node.is_missing and node.type != ";")
-        if is_broken:
-            errors.append(copy)
-        if cursor.goto_first_child():
-            parents.append(copy)
-            continue
+        is_kept = node.is_named or field is not None
+        if is_kept or has_errors:
+            copy = CppNode(syntax, node.type, field, node.byte_range, parents[-1])
+            if is_kept:
+                syntax.add(copy)
+            if node.is_error or (node.is_missing and node.type != ";"):
+                errors.append(copy)
+            if cursor.goto_first_child():
+                parents.append(copy)
+                continue
         while not cursor.goto_next_sibling():
             parents.pop().behind = len(syntax.nodes)
             if not parents or not cursor.goto_parent():
