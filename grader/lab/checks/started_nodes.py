@@ -291,14 +291,15 @@ class _NodeTopics:
         code = workspace.code.by_package.get(package)
         doubts = list(code.doubts) if code is not None else []
         syntax = fault_of_syntax(workspace, node, package)
-        own_node = workspace.code.own_node(node)
-        mistake = self._stopping.get(own_node.location.path) if own_node is not None else None
-        runs = own_node is not None
+        own_nodes = workspace.code.nodes_of(node)
+        paths = [own_node.location.path for own_node in own_nodes]
+        mistake = next((self._stopping[path] for path in paths if path in self._stopping), None)
+        runs = bool(own_nodes)
         if syntax is not None:
             self._unread.append(syntax)
             at = syntax.at
             doubts = [doubt for doubt in doubts if at is None or doubt.location.path != at.path]
-        elif own_node is None or own_node.doubts:
+        elif not own_nodes or any(own_node.doubts for own_node in own_nodes):
             self._is_open = True
         elif mistake is not None:
             self._unread.append(mistake)

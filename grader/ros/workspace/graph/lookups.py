@@ -38,11 +38,9 @@ def looked_up_transforms(workspace: Workspace) -> tuple[Sequence[_LookedUp], boo
 def _read_lookups(workspace: Workspace) -> Iterator[_LookedUp]:
     started: set[Location] = set()
     for _, node in workspace.launches.nodes:
-        own_node = workspace.code.own_node(node)
-        if own_node is not None:
-            started.add(own_node.location)
-            if node.when is not False:
-                yield from _pairs(frames_of(workspace, node), node.executable)
+        started.update(facts.location for facts in workspace.code.nodes_of(node))
+        if node.when is not False:
+            yield from _pairs(frames_of(workspace, node), node.executable)
     for code in workspace.code.by_package.values():
         for facts in code.nodes:
             if facts.location not in started:
