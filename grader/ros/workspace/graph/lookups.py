@@ -37,7 +37,10 @@ def looked_up_transforms(workspace: Workspace) -> tuple[Sequence[_LookedUp], boo
 
 def _read_lookups(workspace: Workspace) -> Iterator[_LookedUp]:
     started: set[Location] = set()
-    for _, node in workspace.launches.nodes:
+    nodes = [node for _, node in workspace.launches.nodes]
+    for _, launch in workspace.launches.roots:
+        nodes += [component.node for component in launch.components if component.node is not None]
+    for node in nodes:
         started.update(facts.location for facts in workspace.code.nodes_of(node))
         if node.when is not False:
             yield from _pairs(frames_of(workspace, node), node.executable)
