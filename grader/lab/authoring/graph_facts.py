@@ -1,8 +1,11 @@
 """The facts of what a reference connects after a launch: transforms, and ways of messages."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 from grader.base.errors import NotDecided
+from grader.base.quantities import point
+from grader.base.transforms import Vector
 from grader.lab.authoring.facts import Fact
 from grader.lab.submission.submission import Submission
 from grader.ros.api import GraphEnd, GraphNode, GraphTransform, join_launches
@@ -19,6 +22,7 @@ _OF_COMMANDS = (
     "std_msgs/msg/Float64MultiArray",
 )
 _MAX_WAYS, _MAX_TRANSFORMS = 4, 12  # of one launch file
+_DECIMALS = 6  # of metres and radians
 
 
 class LaunchConnections:
@@ -31,9 +35,16 @@ class LaunchConnections:
 
     def facts(self) -> Iterator[Fact]:
         """Yield the transforms and the ways of messages that certainly are there."""
-        for parent, child in list(self._published())[:_MAX_TRANSFORMS]:
+        for transform in list(self._published())[:_MAX_TRANSFORMS]:
+            parent, child = transform.parent, transform.child
             fact = self._fact("publishes_transform", child, parent=parent, child=child)
-            yield fact._replace(title=f"{child!r} is published below {parent!r}")
+            fact = fact._replace(title=f"{child!r} is published below {parent!r}")
+            if transform.is_static and transform.pose is not None:
+                xyz = _rounded(transform.pose.translation)
+                placed = {**fact.arguments, "xyz": xyz, "rpy": _rounded(transform.pose.rpy)}
+                title = f"{child!r} is published at {point((*xyz,))} m in {parent!r}"
+                fact = fact._replace(arguments=placed, title=title, otherwise=(fact,))
+            yield fact
         for start, end in list(self._ways())[:_MAX_WAYS]:
             fact = self._fact("connects", f"{start} {end}", **{"from": start, "to": end})
             yield fact._replace(title=f"messages find a way from {start} to {end}")
@@ -53,7 +64,7 @@ class LaunchConnections:
                 replaced.add(node.name)
         return [name for name in nodes if name not in replaced]
 
-    def _fact(self, check: str, words: str, **arguments: str) -> Fact:
+    def _fact(self, check: str, words: str, **arguments: Any) -> Fact:
         return Fact("", check, arguments, f"{words} {check}", package="")
 
     def _transforms(self) -> list[GraphTransform]:
@@ -67,12 +78,13 @@ class LaunchConnections:
             return []
         return [transform for transform in transforms if transform.child not in of_robots]
 
-    def _published(self) -> Iterator[tuple[str, str]]:
-        pairs: dict[tuple[str, str], None] = {}
+    def _published(self) -> Iterator[GraphTransform]:
+        """Yield the transforms that certainly are published, the first of each pair of frames."""
+        by_frames: dict[tuple[str, str], GraphTransform] = {}
         for transform in self._transforms():
             if transform.is_certain:
-                pairs[transform.parent, transform.child] = None
-        yield from pairs
+                by_frames.setdefault((transform.parent, transform.child), transform)
+        yield from by_frames.values()
 
     def _ways(self) -> Iterator[tuple[str, str]]:
         """Yield the topics between which own nodes take messages from other nodes to other ones."""
@@ -111,6 +123,11 @@ class LaunchConnections:
 
     def _is_own(self, node: GraphNode) -> bool:
         return node.program.startswith(self._own_packages) and not node.doubt
+
+
+def _rounded(values: Vector) -> list[float]:
+    """Return numbers as a rubric writes them."""
+    return [round(value, _DECIMALS) + 0.0 for value in values]
 
 
 def _topics(ends: Iterable[GraphEnd], kind: str) -> dict[str, str]:

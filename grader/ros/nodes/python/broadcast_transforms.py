@@ -2,13 +2,17 @@
 
 import ast
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import NamedTuple
 
 from grader.base.source import Location
+from grader.base.transforms import Transform
 from grader.ros.nodes.message_uses import given_argument
 from grader.ros.nodes.node_facts import NamePart, NodeFrame, NodeTransform
 from grader.ros.nodes.python.endpoint_names import Bindings
+from grader.ros.nodes.transform_poses import pose_set
 from grader.ros.python.constants import dotted
+from grader.ros.python.values import Value
 
 SENDS = "sendTransform"
 _PARENT, _CHILD = "header.frame_id", "child_frame_id"
@@ -25,21 +29,21 @@ class SendingMethod(NamedTuple):
     bindings: Bindings
     names: Callable[[ast.expr], Iterator[_Name]]  # that an expression may be
     place: Callable[[ast.expr], Location]
+    value_of: Callable[[ast.expr], Value]
 
 
 def sent_transforms(method: SendingMethod, call: ast.Call) -> Iterator[NodeTransform]:
     """Yield the transforms that a call of sendTransform() sends; frames may be unknown."""
     given = given_argument(call, 0, "transform")
-    items = given.elts if isinstance(given, ast.List | ast.Tuple) else [given]
     assert isinstance(call.func, ast.Attribute)
     broadcaster = method.bindings.values.get(dotted(call.func.value))
     is_static = isinstance(broadcaster, ast.Call) and dotted(broadcaster.func).endswith(_STATIC)
-    for item in items:
+    for item, added in _items_sent(method, call, given):
         parents = _names_set(method, call, item, _PARENT)
         children = _names_set(method, call, item, _CHILD)
         if len(parents) > 1 and len(children) > 1:  # a loop sets both
             parents, children = [(None, ())], [(None, ())]
-        at = method.place(call)
+        at, pose = method.place(call), _pose_sent(method, call, item)
         for parent, parent_parts in parents:
             for child, child_parts in children:
                 yield NodeTransform(
@@ -47,8 +51,52 @@ def sent_transforms(method: SendingMethod, call: ast.Call) -> Iterator[NodeTrans
                     NodeFrame("publishes", child, at, child_parts),
                     at,
                     is_static=is_static,
-                    is_conditional=_is_decided_by_parameter(method, call),
+                    is_conditional=_is_decided_by_parameter(method, added),
+                    pose=pose,
                 )
+
+
+def _items_sent(
+    method: SendingMethod, call: ast.Call, given: ast.expr | None
+) -> Iterator[tuple[ast.expr | None, ast.Call]]:
+    """Yield each transform that a call sends, with the call that adds it to a list."""
+    name = given.id if isinstance(given, ast.Name) else ""
+    made = method.bindings.values.get(name)
+    listed = made if isinstance(made, ast.List) else given
+    if not isinstance(listed, ast.List | ast.Tuple):
+        yield given, call
+        return
+    for item in listed.elts:
+        yield item, call
+    for node in ast.walk(method.node) if listed is made else ():
+        match node:
+            case ast.Call(func=ast.Attribute(value=ast.Name(id=owner), attr=called)):
+                is_added = called == "append" and len(node.args) == 1
+                if owner == name:
+                    yield (node.args[0], node) if is_added else (None, call)
+            case ast.AugAssign(target=ast.Name(id=owner)) if owner == name:
+                yield None, call
+
+
+def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> Transform | None:
+    """Return T_parent_child of a transform that is sent; None where it is not known."""
+    name = dotted(item) if item is not None else ""
+    made = method.bindings.values.get(name)
+    if not isinstance(made, ast.Call) or made.args or made.keywords:
+        return None
+    around = method.of_class if name.startswith("self.") else method.node
+    targets: set[str] = set()
+    for node in ast.walk(around):
+        if _may_set(node, name, "transform"):
+            return None
+        set_here: Sequence[ast.expr] = []
+        if isinstance(node, ast.Assign):
+            set_here = node.targets
+        elif isinstance(node, ast.AugAssign):
+            set_here = [node.target]
+        targets.update(dotted(target).removeprefix(f"{name}.") for target in set_here)
+    moved = {target for target in targets if target.startswith("transform")}
+    return pose_set(moved, partial(_value_set, method, call, name), method.value_of)
 
 
 def _names_set(
