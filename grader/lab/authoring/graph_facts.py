@@ -9,7 +9,7 @@ from grader.base.transforms import Vector
 from grader.lab.authoring.facts import Fact
 from grader.lab.submission.submission import Submission
 from grader.ros.api import GraphEnd, GraphNode, GraphTransform, join_launches
-from grader.ros.launch.launch_model import Launch
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
 
 # Types of what sensors publish, and of what moves a robot.
@@ -21,6 +21,8 @@ _OF_COMMANDS = (
     "trajectory_msgs/msg/JointTrajectory",
     "std_msgs/msg/Float64MultiArray",
 )
+# The kinds of ends for which `node_runs` asks.
+_SEEN = ("publisher", "service", "action server", "client", "action client")
 _MAX_WAYS, _MAX_TRANSFORMS = 4, 12  # of one launch file
 _DECIMALS = 6  # of metres and radians
 
@@ -49,8 +51,12 @@ class LaunchConnections:
             fact = self._fact("connects", f"{start} {end}", **{"from": start, "to": end})
             yield fact._replace(title=f"messages find a way from {start} to {end}")
 
-    def needed(self, launch: Launch, nodes: Sequence[str]) -> list[str]:
-        """Return the nodes that are needed for more than transforms, which have facts."""
+    def needed(self, launch: Launch, nodes: Sequence[str], *, are_ends_asked: bool) -> list[str]:
+        """Return the nodes that are needed for more than what other facts ask for.
+
+        These are transforms, and what own nodes open, if that is asked: then a solution may divide
+        its nodes over programs as it likes.
+        """
         by_program: dict[str, list[GraphTransform]] = {}
         for transform in self._transforms():
             by_program.setdefault(transform.by, []).append(transform)
@@ -60,9 +66,19 @@ class LaunchConnections:
             is_own = self._workspace.package_of(node) is not None
             # Of another program, what else it may publish is not known.
             is_known = all(sent) if is_own else any(sent)
-            if sent and is_known and self._graph.is_for_transforms(node):
+            is_asked = bool(sent) and is_known and self._graph.is_for_transforms(node)
+            if is_own and are_ends_asked:
+                is_asked = is_asked or (is_known and (bool(sent) or self._is_seen(node)))
+            if is_asked:
                 replaced.add(node.name)
         return [name for name in nodes if name not in replaced]
+
+    def _is_seen(self, node: StartedNode) -> bool:
+        """Return whether all nodes of an own program are read, and one certainly opens an end."""
+        own_nodes = [each for each in self._graph.graph.nodes if each.program == node.name]
+        is_read = not any(each.doubt or each.opens_more for each in own_nodes)
+        seen = [end for each in own_nodes for end in each.ends if end.kind in _SEEN]
+        return is_read and any(not end.doubt and end.type for end in seen)
 
     def _fact(self, check: str, words: str, **arguments: Any) -> Fact:
         return Fact("", check, arguments, f"{words} {check}", package="")

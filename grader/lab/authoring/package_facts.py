@@ -245,9 +245,30 @@ def _facts_of(
     yield from _installs(
         package, path.removeprefix(package.path("")) if package.holds(path) else "", named
     )
+    included = _included_launches(submission)
     for launch in (file for file in package.launch_files if not file.startswith("test/")):
-        yield from _launch_facts(submission, package, launch, prefix)
+        is_part = package.path(launch) in included
+        for fact in _launch_facts(submission, package, launch, prefix):
+            yield fact._replace(is_detail=fact.is_detail or is_part)
     yield from _rviz_facts(package)
+
+
+def _included_launches(submission: Submission) -> set[str]:
+    """Return the paths of the launch files that others of the lab certainly include.
+
+    How a solution divides its launch files is its own matter.
+    """
+    packages = [*submission.lab_packages.values()]
+    included: set[str] = set()
+    for package in packages:
+        for path in package.launch_files:
+            included.update(passed.path for passed in package.launch(path).passed if passed.when)
+    paths = set()
+    for package in packages:
+        for target, path in package.installed.items():
+            if target in included:
+                paths.add(package.path(path))
+    return paths
 
 
 def measure_facts(solution: Solution) -> Iterator[Fact]:
@@ -499,7 +520,9 @@ def _launch_facts(
         carried=(after._replace(causes=(*after.causes, "parameters names_agree")),)
     )
     connections = LaunchConnections(submission, package, path)
-    needed = connections.needed(launch, _nodes_that_start(launch))
+    # Of a lab with a robot, what nodes open may have other names.
+    started, are_ends_asked = _nodes_that_start(launch), not submission.path
+    needed = connections.needed(launch, started, are_ends_asked=are_ends_asked)
     nodes = [node for node in needed if node not in _STATIC]
     if nodes:
         title = _title_of_nodes(_launch_text(package, name), nodes)
