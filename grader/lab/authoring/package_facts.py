@@ -192,6 +192,9 @@ def _lookup_facts(submission: Submission) -> Iterator[Fact]:
             label = f"{target} {source}"
             fact = _package_fact("looks_up", label, target=target, source=source)
             title = f"a node looks up the pose of {source} in {target}"
+            if lookup.inverts != "no":
+                fact = fact._replace(arguments={**fact.arguments, "either_way": True})
+                title += ", or its inverse"
             yield fact._replace(title=title, about=_THE_NAMES, carried=_after_names(submission))
 
 
