@@ -80,10 +80,13 @@ def _items_sent(
 
 def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> Transform | None:
     """Return T_parent_child of a transform that is sent; None where it is not known."""
-    name = dotted(item) if item is not None else ""
-    made = method.bindings.values.get(name)
-    if not isinstance(made, ast.Call) or made.args or made.keywords:
+    made = _resolve(method, item)
+    if not isinstance(made, ast.Call):
         return None
+    given = {f for f in _fields_given(method, made) if f.startswith("transform")}
+    if made is item or given:
+        return pose_set(given, partial(_value_made, method, made), method.value_of)
+    name = dotted(item) if item is not None else ""
     around = method.of_class if name.startswith("self.") else method.node
     targets: set[str] = set()
     for node in ast.walk(around):
@@ -103,7 +106,11 @@ def _names_set(
     method: SendingMethod, call: ast.Call, item: ast.expr | None, field: str
 ) -> list[_Name]:
     """Return the names to which a field of a transform is set before it is sent."""
-    value = _value_set(method, call, dotted(item), field) if item is not None else None
+    value = None
+    if isinstance(item, ast.Call):
+        value = _value_made(method, item, field)
+    elif item is not None:
+        value = _value_set(method, call, dotted(item), field)
     return [*method.names(value)] if value is not None else [(None, ())]
 
 
@@ -122,7 +129,7 @@ def _value_set(method: SendingMethod, call: ast.Call, name: str, field: str) -> 
         elif _may_set(node, name, field):
             return None
     if not statements:
-        return _value_made(method.bindings.values.get(name), field)
+        return _value_made(method, method.bindings.values.get(name), field)
     if len(statements) == 1:
         return statements[0].value
     body: Sequence[ast.stmt] = getattr(method.node, "body", [])
@@ -146,15 +153,38 @@ def _may_set(node: ast.AST, name: str, field: str) -> bool:
     return False
 
 
-def _value_made(made: ast.expr | None, field: str) -> ast.expr | None:
+def _value_made(method: SendingMethod, made: ast.expr | None, field: str) -> ast.expr | None:
     """Return what the call that makes a transform gives a field of it."""
     value = made
     for name in field.split("."):
-        if not isinstance(value, ast.Call):
+        maker = _resolve(method, value)
+        if not isinstance(maker, ast.Call):
             return None
-        given = {keyword.arg: keyword.value for keyword in value.keywords}
+        given = {keyword.arg: keyword.value for keyword in maker.keywords}
         value = given.get(name)
     return value
+
+
+def _resolve(method: SendingMethod, node: ast.expr | None) -> ast.expr | None:
+    """Return the call that a name is bound to; another expression as it is."""
+    name = dotted(node) if isinstance(node, ast.Name | ast.Attribute) else ""
+    made = method.bindings.values.get(name)
+    return made if isinstance(made, ast.Call) else node
+
+
+def _fields_given(method: SendingMethod, made: ast.Call) -> Iterator[str]:
+    """Yield the fields that a call gives to the message that it makes, each in full."""
+    if made.args:
+        yield "transform"  # of which nothing is known
+    for keyword in made.keywords:
+        name, value = keyword.arg or "transform", _resolve(method, keyword.value)
+        if isinstance(value, ast.Call) and value is not keyword.value:
+            value = None  # it may be changed after it is made
+        if isinstance(value, ast.Call) and value.keywords:
+            for inner in _fields_given(method, value):
+                yield f"{name}.{inner}"
+        else:
+            yield name
 
 
 def _is_decided_by_parameter(method: SendingMethod, call: ast.Call) -> bool:
