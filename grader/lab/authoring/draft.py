@@ -85,6 +85,7 @@ _KIND_BY_CHECK: Mapping[str, str] = {
     **dict.fromkeys(("rviz_found", "rviz_fixed_frame", "rviz_shows_robot"), _RVIZ),
     "rviz_display_on": _RVIZ,
     "looks_up": _NODES,
+    "takes_parameters": _NODES,
     "without_problems": _BUILDS,
     "parameter_is": _PARAMETERS,
 }

@@ -26,6 +26,7 @@ from grader.lab.submission.submission import Submission
 from grader.ros.api import (
     looked_up_transforms,
     opened_by_bridge,
+    parameter_callbacks,
     spawned_by,
     started_worlds,
 )
@@ -137,6 +138,7 @@ def package_facts(submission: Submission) -> Facts:
     yield from _warning_facts(submission)
     yield from _simulation_facts(submission)
     yield from _lookup_facts(submission)
+    yield from _callback_facts(submission)
 
 
 def _warning_facts(submission: Submission) -> Iterator[Fact]:
@@ -196,6 +198,20 @@ def _lookup_facts(submission: Submission) -> Iterator[Fact]:
                 fact = fact._replace(arguments={**fact.arguments, "either_way": True})
                 title += ", or its inverse"
             yield fact._replace(title=title, about=_THE_NAMES, carried=_after_names(submission))
+
+
+def _callback_facts(submission: Submission) -> Iterator[Fact]:
+    """Yield that a node is told of its parameters, or refuses values of them."""
+    callbacks = parameter_callbacks(submission.workspace)
+    carried = _after(submission, *_builds(submission), *_OF_CODE)
+    if callbacks.refuses is not None:
+        fact = _package_fact("takes_parameters", "refused", refuses=True)
+        title = "a node refuses values of its parameters"
+        yield fact._replace(title=title, about=_THE_NAMES, carried=carried)
+    elif callbacks.told is not None:
+        fact = _package_fact("takes_parameters", "set")
+        title = "a node is told when its parameters are set"
+        yield fact._replace(title=title, about=_THE_NAMES, carried=carried)
 
 
 def _after_names(submission: Submission) -> tuple[CarriedFact, ...]:
