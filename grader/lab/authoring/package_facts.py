@@ -31,7 +31,7 @@ from grader.ros.api import (
     started_worlds,
 )
 from grader.ros.installation.places import PREFIX, is_of_one_machine
-from grader.ros.launch.launch_model import Launch
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
@@ -139,6 +139,7 @@ def package_facts(submission: Submission) -> Facts:
     yield from _simulation_facts(submission)
     yield from _lookup_facts(submission)
     yield from _callback_facts(submission)
+    yield from _passed_facts(submission)
 
 
 def _warning_facts(submission: Submission) -> Iterator[Fact]:
@@ -212,6 +213,54 @@ def _callback_facts(submission: Submission) -> Iterator[Fact]:
         fact = _package_fact("takes_parameters", "set")
         title = "a node is told when its parameters are set"
         yield fact._replace(title=title, about=_THE_NAMES, carried=carried)
+
+
+def _passed_facts(submission: Submission) -> Iterator[Fact]:
+    """Yield the parameters that nodes get by arguments that launch files pass to others.
+
+    What an argument does is asked, and not its name: a submission may divide its launch files in
+    other ways.
+    """
+    passed: list[tuple[str, Any]] = []
+    for package in submission.lab_packages.values():
+        for path in package.launch_files:
+            passed += _changed_by_passing(submission, package.launch(path))
+    for fact in value_facts(submission):
+        given = fact.arguments["parameter"], fact.arguments["value"]
+        if given in passed:
+            arguments = {**fact.arguments, "where_given": True}
+            arguments.pop("or_default", None)
+            yield fact._replace(about=_THE_NAMES, arguments=arguments)
+
+
+def _changed_by_passing(submission: Submission, launch: Launch) -> Iterator[tuple[str, Any]]:
+    """Yield the parameters of nodes in files that a launch file includes, with their values.
+
+    These are other ones than under the defaults of the arguments of those files.
+    """
+    own_files = {}
+    for package in submission.lab_packages.values():
+        for target, path in package.installed.items():
+            own_files[target] = package, path
+    for passed in launch.passed:
+        if not passed.when or not passed.values or passed.path not in own_files:
+            continue
+        package, path = own_files[passed.path]
+        defaults = [_parameters_of(node) for node in package.launch(path).nodes]
+        for node in launch.nodes:
+            if node.included_by and node.location.path == package.path(path):
+                for name, value in _parameters_of(node).items():
+                    if not any(repr(each.get(name)) == repr(value) for each in defaults):
+                        yield name, value
+
+
+def _parameters_of(node: StartedNode) -> dict[str, Any]:
+    """Return the values that a launch file itself gives the parameters of a node."""
+    values: dict[str, Any] = {}
+    for given in node.parameters or ():
+        for name, parameter in given.values.items():
+            values[name] = parameter.value
+    return values
 
 
 def _after_names(submission: Submission) -> tuple[CarriedFact, ...]:
