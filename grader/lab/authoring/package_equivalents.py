@@ -24,7 +24,7 @@ _LAUNCH_IN_XML, _LAUNCH_IN_YAML = "launch file in XML", "launch file in YAML"
 BUILT_BY_CMAKE = "package built by CMake"
 _UNNAMED, _LATER = "nodes without the name of their program", "spawners after an event"
 _RENAMED, _SYSTEM_RENAMED = "files renamed", "<ros2_control> renamed"
-_Files = Mapping[str, str | None]  # the new texts of files by their paths; None for one that goes
+Files = Mapping[str, str | None]  # the new texts of files by their paths; None for one that goes
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".txt", ".cfg", ".sdf", ".launch")
 _FREE_FILES = re.compile(r"(^|/)(config|params|worlds?|parameters)/[^/]+\.(ya?ml|sdf|world)$")
 _SHARE = re.compile(rf"^{re.escape(PREFIX)}/share/([^/]+)/(.+)$")
@@ -44,29 +44,27 @@ ament_package()
 
 def package_equivalents(
     submission: Submission, named: Collection[str], robot_files: Sequence[str]
-) -> Iterator[tuple[str, _Files]]:
+) -> Iterator[tuple[str, Files]]:
     """Yield each family with the files that it changes; `named` are the texts of the rubric."""
     packages = [*submission.lab_packages.values()]
     for language in (_LAUNCH_IN_XML, _LAUNCH_IN_YAML):
-        yield from _as_family(
+        yield from as_family(
             language, (_in_other_language(submission, package, language) for package in packages)
         )
-    yield from _as_family(
+    yield from as_family(
         BUILT_BY_CMAKE, (_built_by_cmake(submission, package) for package in packages)
     )
-    yield from _as_family(_UNNAMED, (_without_names(submission, package) for package in packages))
-    yield from _as_family(
+    yield from as_family(_UNNAMED, (_without_names(submission, package) for package in packages))
+    yield from as_family(
         _LATER, (_with_later_spawners(submission, package) for package in packages)
     )
-    yield from _as_family(
+    yield from as_family(
         _RENAMED, (_with_renamed_files(submission, package, named) for package in packages)
     )
-    yield from _as_family(_SYSTEM_RENAMED, (_with_renamed_system(submission, named, robot_files),))
+    yield from as_family(_SYSTEM_RENAMED, (_with_renamed_system(submission, named, robot_files),))
 
 
-def _as_family(
-    family: str, changes: Iterator[_Files] | tuple[_Files]
-) -> Iterator[tuple[str, _Files]]:
+def as_family(family: str, changes: Iterator[Files] | tuple[Files]) -> Iterator[tuple[str, Files]]:
     """Yield a family with all its changes, if there are some."""
     files: dict[str, str | None] = {}
     for change in changes:
@@ -75,14 +73,15 @@ def _as_family(
         yield family, files
 
 
-def _text(submission: Submission, path: str) -> str:
+def read_text(submission: Submission, path: str) -> str:
+    """Return the text of a file of the reference."""
     return (content(submission, path) or b"").decode("utf-8", "surrogateescape")
 
 
 # --- Launch files in another language
 
 
-def _in_other_language(submission: Submission, package: Package, language: str) -> _Files:
+def _in_other_language(submission: Submission, package: Package, language: str) -> Files:
     """Return the one launch file of a package in another language.
 
     And the build file that installs it. Nothing where not all of it is known, or where another
@@ -107,7 +106,7 @@ def _in_other_language(submission: Submission, package: Package, language: str) 
     else:  # JSON is YAML
         ending = ".yaml"
         text = json.dumps({"launch": [{"node": node} for node in known]}, indent=2)
-    built = _text(submission, build).replace(".launch.py", f".launch{ending}")
+    built = read_text(submission, build).replace(".launch.py", f".launch{ending}")
     return {path: None, f"{path.removesuffix('.py')}{ending}": text, build: built}
 
 
@@ -116,7 +115,7 @@ def _is_named_elsewhere(submission: Submission, path: str, build: str) -> bool:
     name = posixpath.basename(path)
     for other in submission.whole_tree.files:
         is_text = other.endswith(_TEXTS) and other not in (path, build)
-        if is_text and name in _text(submission, other):
+        if is_text and name in read_text(submission, other):
             return True
     return False
 
@@ -199,7 +198,7 @@ def _launch_xml(nodes: Sequence[Mapping[str, Any]]) -> str:
 # --- Other builds
 
 
-def _built_by_cmake(submission: Submission, package: Package) -> _Files:
+def _built_by_cmake(submission: Submission, package: Package) -> Files:
     """Return the files of a package that CMake builds in place of setup.py.
 
     Nothing where it has programs or modules, or is no package of Python.
@@ -209,10 +208,10 @@ def _built_by_cmake(submission: Submission, package: Package) -> _Files:
     is_python = manifest is not None and manifest.build_type == "ament_python"
     if not is_python or package.is_cmake or package.installation is None:
         return {}
-    if _PROGRAMS.search(_text(submission, setup)) or package.installation.unknown:
+    if _PROGRAMS.search(read_text(submission, setup)) or package.installation.unknown:
         return {}
     text = _CMAKE_TEXT.format(name=package.name, installs="\n".join(_install_commands(package)))
-    described = _text(submission, package.path(MANIFEST)).replace("ament_python", "ament_cmake")
+    described = read_text(submission, package.path(MANIFEST)).replace("ament_python", "ament_cmake")
     depends = "<buildtool_depend>ament_cmake</buildtool_depend>"
     described = re.sub(r"(</license>)", rf"\1\n  {depends}", described, count=1)
     return {setup: None, package.path(CMAKE): text, package.path(MANIFEST): described}
@@ -234,11 +233,12 @@ def _install_commands(package: Package) -> Iterator[str]:
 # --- The same launch files, written differently
 
 
-def _python_launches(submission: Submission, package: Package) -> Iterator[tuple[str, PythonFile]]:
+def python_launches(submission: Submission, package: Package) -> Iterator[tuple[str, PythonFile]]:
+    """Yield the launch files of a package in Python, each with its path."""
     for path in package.launch_files:
         if path.endswith(".py") and not path.startswith("test/"):
             full = package.path(path)
-            file = PythonFile(Source(full, _text(submission, full)))
+            file = PythonFile(Source(full, read_text(submission, full)))
             if file.fault is None:
                 yield full, file
 
@@ -251,10 +251,10 @@ def _constant(call: ast.Call, name: str) -> str:
     return str(given.value.value)
 
 
-def _without_names(submission: Submission, package: Package) -> _Files:
+def _without_names(submission: Submission, package: Package) -> Files:
     """Return launch files without the names of nodes that their programs have anyway."""
     files: dict[str, str | None] = {}
-    for path, file in _python_launches(submission, package):
+    for path, file in python_launches(submission, package):
         nodes = package.launch(path.removeprefix(package.path(""))).nodes
         spans = []
         for call in file.calls("Node"):
@@ -276,10 +276,10 @@ def _without_names(submission: Submission, package: Package) -> _Files:
     return files
 
 
-def _with_later_spawners(submission: Submission, package: Package) -> _Files:
+def _with_later_spawners(submission: Submission, package: Package) -> Files:
     """Return launch files whose spawners start after another node, or after some seconds."""
     files: dict[str, str | None] = {}
-    for path, file in _python_launches(submission, package):
+    for path, file in python_launches(submission, package):
         entries = []
         for call in file.calls("LaunchDescription"):
             if call.args and isinstance(call.args[0], ast.List):
@@ -329,13 +329,13 @@ def _replace_name(
     uses = {}
     for other in submission.whole_tree.files:
         if other.endswith(_TEXTS):
-            text = texts.get(other, _text(submission, other))
+            text = texts.get(other, read_text(submission, other))
             if word.search(text):
                 uses[other] = word.sub(new, text)
     return uses
 
 
-def _with_renamed_files(submission: Submission, package: Package, named: Collection[str]) -> _Files:
+def _with_renamed_files(submission: Submission, package: Package, named: Collection[str]) -> Files:
     """Return the files of parameters and worlds under other names.
 
     And all files that name them.
@@ -353,17 +353,17 @@ def _with_renamed_files(submission: Submission, package: Package, named: Collect
         if uses and old not in uses:
             texts.update(uses)
             files[old] = None
-            files[old.removesuffix(ending) + f"_2x{ending}"] = _text(submission, old)
+            files[old.removesuffix(ending) + f"_2x{ending}"] = read_text(submission, old)
     return {**texts, **files}
 
 
 def _with_renamed_system(
     submission: Submission, named: Collection[str], robot_files: Sequence[str]
-) -> _Files:
+) -> Files:
     """Return the files of a robot in which <ros2_control> has another name, if nothing names it."""
     files: dict[str, str | None] = {}
     for path in robot_files:
-        text = _text(submission, path)
+        text = read_text(submission, path)
         for match in reversed([*_SYSTEM.finditer(text)]):
             if not any(match[2] in text_in_use for text_in_use in named):
                 start, end = match.span(2)
