@@ -87,8 +87,13 @@ def find_faults(
 
 def _with_node_names(launch: "Launch", workspace: "Workspace") -> "Launch":
     """Return a launch file with the nodes that may start, named as their programs name them."""
-    started = [node for node in launch.nodes if node.when is not False]
-    named = [node._replace(node_name=workspace.code.name_of(node)) for node in started]
+    named = []
+    for node in launch.nodes:
+        has_several = len(workspace.code.nodes_of(node)) > 1  # each with a name of its own
+        if node.when is not False and has_several:
+            named.append(node)
+        elif node.when is not False:
+            named.append(node._replace(node_name=workspace.code.name_of(node)))
     return launch._replace(nodes=tuple(named))
 
 
