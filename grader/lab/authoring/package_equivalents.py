@@ -20,14 +20,20 @@ from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
 from grader.ros.python.python_file import PythonFile, argument
 
-_LAUNCH_IN_XML, _LAUNCH_IN_YAML = "launch file in XML", "launch file in YAML"
+_ENDING_BY_LANGUAGE: Mapping[str, str] = {
+    "launch file in XML": ".xml",
+    "launch file in YAML": ".yaml",
+    "launch file in Python": ".py",
+}
 BUILT_BY_CMAKE = "package built by CMake"
+_LAUNCHING = ("launch", "launch_ros")  # the packages that a launch file in Python imports
 _UNNAMED, _LATER = "nodes without the name of their program", "spawners after an event"
 _RENAMED, _SYSTEM_RENAMED = "files renamed", "<ros2_control> renamed"
 Files = Mapping[str, str | None]  # the new texts of files by their paths; None for one that goes
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".txt", ".cfg", ".sdf", ".launch")
 _FREE_FILES = re.compile(r"(^|/)(config|params|worlds?|parameters)/[^/]+\.(ya?ml|sdf|world)$")
 _SHARE = re.compile(rf"^{re.escape(PREFIX)}/share/([^/]+)/(.+)$")
+_FOUND = re.compile(r"\$\(find-pkg-share ([^)]+)\)/(.+)")
 _SYSTEM = re.compile(r"<ros2_control\s[^<>]*?\bname=(['\"])([\w-]+)\1")
 _PROGRAMS = re.compile("console_scripts|scripts *=|gui_scripts")
 _IMPORTS = (
@@ -47,9 +53,9 @@ def package_equivalents(
 ) -> Iterator[tuple[str, Files]]:
     """Yield each family with the files that it changes; `named` are the texts of the rubric."""
     packages = [*submission.lab_packages.values()]
-    for language in (_LAUNCH_IN_XML, _LAUNCH_IN_YAML):
+    for language, ending in _ENDING_BY_LANGUAGE.items():
         yield from as_family(
-            language, (_in_other_language(submission, package, language) for package in packages)
+            language, (_in_other_language(submission, package, ending) for package in packages)
         )
     yield from as_family(
         BUILT_BY_CMAKE, (_built_by_cmake(submission, package) for package in packages)
@@ -81,17 +87,21 @@ def read_text(submission: Submission, path: str) -> str:
 # --- Launch files in another language
 
 
-def _in_other_language(submission: Submission, package: Package, language: str) -> Files:
+def _in_other_language(submission: Submission, package: Package, ending: str) -> Files:
     """Return the one launch file of a package in another language.
 
     And the build file that installs it. Nothing where not all of it is known, or where another
     file names it.
     """
     paths = [path for path in package.launch_files if not path.startswith("test/")]
-    if len(paths) != 1 or not paths[0].endswith(".launch.py"):
+    before = posixpath.splitext(paths[0])[1] if len(paths) == 1 else ""
+    is_named = bool(before) and paths[0].endswith(f".launch{before}")
+    if not is_named or before not in _ENDING_BY_LANGUAGE.values() or before == ending:
         return {}
     launch = package.launch(paths[0])
-    if not _is_plain(launch):
+    manifest = read_text(submission, package.path(MANIFEST))
+    is_declared = ending != ".py" or all(f">{name}<" in manifest for name in _LAUNCHING)
+    if not _is_plain(launch) or not is_declared:
         return {}
     nodes = [_node_table(node) for node in launch.nodes]
     known = [node for node in nodes if node is not None]
@@ -101,13 +111,14 @@ def _in_other_language(submission: Submission, package: Package, language: str) 
     build = package.path(CMAKE if package.is_cmake else SETUP)
     if _is_named_elsewhere(submission, path, build):
         return {}
-    if language == _LAUNCH_IN_XML:
-        ending, text = ".xml", _launch_xml(known)
+    if ending == ".xml":
+        text = _launch_xml(known)
+    elif ending == ".py":
+        text = _launch_python(known)
     else:  # JSON is YAML
-        ending = ".yaml"
         text = json.dumps({"launch": [{"node": node} for node in known]}, indent=2)
-    built = read_text(submission, build).replace(".launch.py", f".launch{ending}")
-    return {path: None, f"{path.removesuffix('.py')}{ending}": text, build: built}
+    built = read_text(submission, build).replace(f".launch{before}", f".launch{ending}")
+    return {path: None, f"{path.removesuffix(before)}{ending}": text, build: built}
 
 
 def _is_named_elsewhere(submission: Submission, path: str, build: str) -> bool:
@@ -193,6 +204,54 @@ def _launch_xml(nodes: Sequence[Mapping[str, Any]]) -> str:
                 lines.append(f"    <{tag}{inner}/>")
         lines.append("  </node>")
     return "\n".join([*lines, "</launch>", ""])
+
+
+def _launch_python(nodes: Sequence[Mapping[str, Any]]) -> str:
+    """Return a launch file in Python that starts nodes."""
+    lines = [
+        "from launch import LaunchDescription",
+        "from launch.substitutions import PathJoinSubstitution",
+        "from launch_ros.actions import Node",
+        "from launch_ros.substitutions import FindPackageShare",
+        "",
+        "",
+        "def generate_launch_description():",
+        "    return LaunchDescription([",
+    ]
+    for node in nodes:
+        given = [f"package={node['pkg']!r}", f"executable={node['exec']!r}"]
+        given += [f"{name}={node[name]!r}" for name in ("name", "namespace") if name in node]
+        if "args" in node:
+            given.append(f"arguments={[_in_python(word) for word in node['args'].split()]}")
+        parameters = []
+        for row in node.get("param", ()):
+            value = _in_python(row["from"]) if "from" in row else {row["name"]: row["value"]}
+            parameters.append(value)
+        if parameters:
+            given.append(f"parameters={parameters}")
+        if "remap" in node:
+            given.append(f"remappings={[(row['from'], row['to']) for row in node['remap']]}")
+        lines.append(f"        Node({', '.join(given)}),")
+    return "\n".join([*lines, "    ])", ""])
+
+
+class _PythonCode(str):
+    """Code of Python whose text in a list is itself."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        """Return the code."""
+        return str(self)
+
+
+def _in_python(word: str) -> str:
+    """Return a word of a launch file, or the code that finds a file of a package."""
+    match = _FOUND.fullmatch(word)
+    if match is None:
+        return word
+    parts = ", ".join(repr(part) for part in match[2].split("/"))
+    return _PythonCode(f"PathJoinSubstitution([FindPackageShare({match[1]!r}), {parts}])")
 
 
 # --- Other builds
