@@ -148,7 +148,10 @@ def test_nodes_are_started_in_other_ways(tmp_path: Path) -> None:
     assert rewritten.keys() == EVERY_FAMILY
     for family, same in rewritten.items():
         assert not [row for row in read_agreement(same.workspace).mismatches if row.is_certain]
-        assert running(same) == running(submission), family
+        # A table of the launch file is given to both nodes of a program.
+        more = running(same) - running(submission)
+        assert running(submission) <= running(same), family
+        assert not more or family == "two nodes in one program"
 
 
 @pytest.mark.parametrize(
