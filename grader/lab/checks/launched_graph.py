@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 from grader.base.errors import NotDecided, RubricError
 from grader.base.names import closest
+from grader.base.quantities import point
 from grader.base.text import MAX_NAMED, enumerated, quoted
 from grader.base.toml_types import NonNegative
-from grader.base.transforms import Transform, Vector
+from grader.base.transforms import Transform, Vector, rotation_from_rpy, turn_between
 from grader.lab.checks.check import About
 from grader.lab.checks.launching import RUNS, Launched, launch_together
-from grader.lab.checks.outcome import Outcome, failed, judged, measured_point
-from grader.lab.checks.placement import with_orientation
+from grader.lab.checks.outcome import Outcome, failed, judged, measured_point, measured_turn
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
 
@@ -185,7 +185,10 @@ def publishes_transform(
             placed = measured_point(what, T_above_below.translation, xyz, tolerance, above, at=at)
         else:
             placed = judged(True, f"{below} is published below {above} by {enumerated(by)}", by)
-        return with_orientation(placed, T_above_below.rotation, rpy, angle, at)
+        if rpy is None:
+            return placed
+        turned = turn_between(T_above_below.rotation, rotation_from_rpy(rpy))
+        return measured_turn(placed, turned, angle, f"rpy = {point(rpy)} (radians)", at)
     doubt = _doubt_of_transform(launched, transforms, above, below)
     if doubt:
         cause = "cannot determine statically which transforms are published"

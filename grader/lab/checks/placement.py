@@ -2,21 +2,12 @@
 
 from math import acos, degrees
 
-from grader.base.quantities import SLACK, in_degrees, point
-from grader.base.source import LazyLocation, Location, place
+from grader.base.quantities import point
+from grader.base.source import LazyLocation, place
 from grader.base.toml_types import Direction, NonNegative
-from grader.base.transforms import (
-    Z_AXIS,
-    Rotation,
-    Vector,
-    dot,
-    minus,
-    rotation_from_rpy,
-    turn_between,
-    unit,
-)
+from grader.base.transforms import Z_AXIS, Vector, dot, minus, rotation_from_rpy, turn_between, unit
 from grader.lab.checks.check import About
-from grader.lab.checks.outcome import Outcome, failed, location_of, measured_point
+from grader.lab.checks.outcome import Outcome, failed, measured_point, measured_turn
 from grader.lab.checks.visuals import ShapeName, main_visual
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Mesh, Visual
@@ -118,16 +109,6 @@ def centre_at(
     )
 
 
-def with_orientation(
-    position: Outcome, rotation: Rotation, rpy: Vector | None, angle: float, at: Location | None
-) -> Outcome:
-    """Return the outcome of a position, or the failure of its orientation, if one is given."""
-    if rpy is None:
-        return position
-    turned = turn_between(rotation, rotation_from_rpy(rpy))
-    return _judge_turn(position, turned, angle, f"rpy = {point(rpy)} (radians)", at)
-
-
 def _with_orientation(
     placed: Outcome, turned: float, angle: float, wanted: str, at: LazyLocation | None
 ) -> Outcome:
@@ -137,17 +118,7 @@ def _with_orientation(
     """
     if placed.status == "passed" and at is not None and at.attribute == "xyz":
         at = at._replace(attribute="rpy")
-    return _judge_turn(placed, turned, angle, wanted, at)
-
-
-def _judge_turn(
-    placed: Outcome, turned: float, angle: float, wanted: str, at: LazyLocation | Location | None
-) -> Outcome:
-    """Return the outcome of a position, or the failure of an orientation that is off."""
-    if turned <= angle + SLACK:
-        return placed
-    message = f"{placed.message}; its orientation is {in_degrees(turned)} off {wanted}"
-    return placed._replace(status="failed", message=message, location=location_of(at))
+    return measured_turn(placed, turned, angle, wanted, at)
 
 
 def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome | None:

@@ -24,19 +24,18 @@ def takes_parameters(submission: Submission, *, refuses: bool = False) -> Outcom
     submission.needed_package()
     callbacks = parameter_callbacks(submission.workspace)
     if refuses:
-        message, at = "no node refuses values of its parameters", callbacks.refuses
+        does, at = "refuses values of its parameters", callbacks.refuses
         reason = "a library may check them" if callbacks.is_generated else ""
     else:
-        message, at = "no node is told when its parameters are set", callbacks.told
+        does, at = "is told when its parameters are set", callbacks.told
         is_open = callbacks.is_generated or callbacks.is_read
         reason = "code may read them again and again" if is_open else ""
     if at is not None:
-        does = "refuses values of its parameters" if refuses else "is told of its parameters"
         return passed(f"a node {does}")
     if reason:
-        cause = f"cannot determine statically whether {message}"
+        cause = f"cannot determine statically whether a node {does}"
         raise NotDecided(f"{cause}: {reason}", cause)
     if callbacks.told is not None:
         detail = ": its callback accepts all"
-        return failed(message, callbacks.told, detail=detail, cause="accepts")
-    return failed(message)
+        return failed(f"no node {does}", callbacks.told, detail=detail, cause="accepts")
+    return failed(f"no node {does}")

@@ -21,7 +21,7 @@ _GENERATES = re.compile(r"\bgenerate_parameter_(?:library|module)\b")
 _READS = re.compile(r"\bget_parameters?\s*+[(<]")
 
 
-class ParameterCallbacks(NamedTuple):
+class _ParameterCallbacks(NamedTuple):
     """Where code is told that parameters are set, and where it can refuse values; None for nowhere.
 
     A library may make more code of a table of parameters.
@@ -33,7 +33,7 @@ class ParameterCallbacks(NamedTuple):
     is_read: bool  # whether code reads the values of parameters, perhaps again and again
 
 
-def parameter_callbacks(workspace: Workspace) -> ParameterCallbacks:
+def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
     """Return where the code of the packages is told of parameters, and can refuse values."""
     first: dict[re.Pattern[str], Location] = {}
     for package in workspace.packages:
@@ -44,7 +44,7 @@ def parameter_callbacks(workspace: Workspace) -> ParameterCallbacks:
                 if match is not None:
                     first.setdefault(pattern, source.at(match.start()))
     can_refuse = first.get(_REFUSING) if _REFUSES in first else None
-    return ParameterCallbacks(
+    return _ParameterCallbacks(
         first.get(_REFUSING) or first.get(_TOLD),
         can_refuse or first.get(_RANGE),
         _GENERATES in first,

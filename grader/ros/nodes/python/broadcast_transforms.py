@@ -97,8 +97,9 @@ def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> 
             set_here = node.targets
         elif isinstance(node, ast.AugAssign):
             set_here = [node.target]
-        targets.update(dotted(target).removeprefix(f"{name}.") for target in set_here)
-    moved = {target for target in targets if target.startswith("transform")}
+        targets.update(map(dotted, set_here))
+    start = f"{name}.transform"
+    moved = {each.removeprefix(f"{name}.") for each in targets if each.startswith(start)}
     return pose_set(moved, partial(_value_set, method, call, name), method.value_of)
 
 
