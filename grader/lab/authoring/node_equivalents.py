@@ -328,26 +328,38 @@ def _join(submission: Submission, first: _NodeCall, second: _NodeCall) -> Files:
     """Return a program with two nodes, in place of the first one, and what starts it."""
     owner = submission.workspace.package_of(first.node)
     entry = _entry_of(second)
-    written = [each.segment_of("parameters") for each in (first, second)]
-    is_listed = all(not text or (text[0] == "[" and text[-1] == "]") for text in written)
-    if owner is None or entry is None or not is_listed:
+    parameters = _joined_lists(first, second)
+    if owner is None or entry is None or parameters is None:
         return {}
-    modules = [_module_of(submission, each) for each in (first, second)]
-    classes = [each.facts.class_name.rpartition(".")[2] for each in (first, second)]
-    imports = [
-        f"from {module} import {name}" for module, name in zip(modules, classes, strict=True)
-    ]
-    made = ", ".join(f"{name}()" for name in classes)
-    folder, module = posixpath.dirname(first.facts.location.path), modules[0].rpartition(".")[0]
+    imports, made = [], []
+    for each in (first, second):
+        name = each.facts.class_name.rpartition(".")[2]
+        imports.append(f"from {_module_of(submission, each)} import {name}")
+        made.append(f"{name}()")
+    program = _PROGRAM_TEXT.format(imports="\n".join(imports), made=", ".join(made))
+    module = _module_of(submission, first)
+    before = f"{first.node.executable} *= *{re.escape(module)}:\\w+"
+    after = f"{_PROGRAM} = {module.rpartition('.')[0]}.{_PROGRAM}:main"
     setup = owner.path(SETUP)
-    before = f"{first.node.executable} *= *{re.escape(modules[0])}:\\w+"
-    built = re.sub(before, f"{_PROGRAM} = {module}.{_PROGRAM}:main", read_text(submission, setup))
-    inner = ", ".join(text[1:-1].strip().rstrip(",") for text in written if text[1:-1].strip())
+    folder = posixpath.dirname(first.facts.location.path)
     return {
-        f"{folder}/{_PROGRAM}.py": _PROGRAM_TEXT.format(imports="\n".join(imports), made=made),
-        setup: built,
-        first.file.source.path: _launch_joined(first, entry, inner),
+        f"{folder}/{_PROGRAM}.py": program,
+        setup: re.sub(before, after, read_text(submission, setup)),
+        first.file.source.path: _launch_joined(first, entry, parameters),
     }
+
+
+def _joined_lists(first: _NodeCall, second: _NodeCall) -> str | None:
+    """Return the items of both lists of parameters; None where one is no plain list."""
+    items = []
+    for each in (first, second):
+        text = each.segment_of("parameters")
+        if text and (text[0] != "[" or text[-1] != "]"):
+            return None
+        inner = text[1:-1].strip().rstrip(",")
+        if inner:
+            items.append(inner)
+    return ", ".join(items)
 
 
 def _entry_of(each: _NodeCall) -> ast.expr | None:

@@ -157,11 +157,9 @@ def with_components(launch: "Launch") -> "Launch":
     actions = [component.loaded_at for component in launch.components]
     actions += [container.location for container in launch.containers]
     known_at = {*actions} - unknown_at
-    return launch._replace(
-        nodes=(*launch.nodes, *nodes),
-        unknown=tuple(row for row in launch.unknown if row.location not in known_at),
-        doubts=tuple(row for row in launch.doubts if row.location not in known_at),
-    )
+    unknown = tuple(row for row in launch.unknown if row.location not in known_at)
+    doubts = tuple(row for row in launch.doubts if row.location not in known_at)
+    return launch._replace(nodes=(*launch.nodes, *nodes), unknown=unknown, doubts=doubts)
 
 
 def check_syntax(path: str, launch: "Launch") -> None:

@@ -39,11 +39,9 @@ def sent_transforms(method: SendingMethod, call: ast.Call) -> Iterator[NodeTrans
     broadcaster = method.bindings.values.get(dotted(call.func.value))
     is_static = isinstance(broadcaster, ast.Call) and dotted(broadcaster.func).endswith(_STATIC)
     for item, added in _items_sent(method, call, given):
-        parents = _names_set(method, call, item, _PARENT)
-        children = _names_set(method, call, item, _CHILD)
-        if len(parents) > 1 and len(children) > 1:  # a loop sets both
-            parents, children = [(None, ())], [(None, ())]
         at, pose = method.place(call), _pose_sent(method, call, item)
+        is_conditional = _is_decided_by_parameter(method, added)
+        parents, children = _frames_set(method, call, item)
         for parent, parent_parts in parents:
             for child, child_parts in children:
                 yield NodeTransform(
@@ -51,9 +49,20 @@ def sent_transforms(method: SendingMethod, call: ast.Call) -> Iterator[NodeTrans
                     NodeFrame("publishes", child, at, child_parts),
                     at,
                     is_static=is_static,
-                    is_conditional=_is_decided_by_parameter(method, added),
+                    is_conditional=is_conditional,
                     pose=pose,
                 )
+
+
+def _frames_set(
+    method: SendingMethod, call: ast.Call, item: ast.expr | None
+) -> tuple[list[_Name], list[_Name]]:
+    """Return the names of the parent and of the child that a transform may have."""
+    parents = _names_set(method, call, item, _PARENT)
+    children = _names_set(method, call, item, _CHILD)
+    if len(parents) > 1 and len(children) > 1:  # a loop sets both
+        return [(None, ())], [(None, ())]
+    return parents, children
 
 
 def _items_sent(
