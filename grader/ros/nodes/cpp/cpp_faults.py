@@ -35,6 +35,9 @@ _HANDLES = dict.fromkeys(
     ),
     "handle of a callback",
 )
+# What sets the state of a goal, if nothing cancels it, and what destroys it otherwise:
+# rclcpp_action/include/rclcpp_action/server_goal_handle.hpp.
+_ENDING_STATES, _ACTIONS = ("succeed", "abort"), "rclcpp_action::"
 _LISTENER, _BUFFER = "TransformListener", "Buffer"
 _LOOKING_UP = ("lookupTransform", "canTransform")
 # What may spin a node, or wait for its messages.
@@ -63,7 +66,7 @@ def cpp_faults(
     search = _CppSearch(unit, nodes)
     rules = [search.destroyed(), search.without_rotation(), search.waiting()]
     if is_read:
-        rules.append(search.without_listener())
+        rules += [search.without_listener(), search.without_goal_state()]
     if is_read and is_program:
         rules.append(search.without_spin())
     for rule in rules:
@@ -92,6 +95,19 @@ class _CppSearch:
         node = function.node
         uses = [use for use in self._unit.uses.get(name, ()) if use.file is node.file]
         return [use for use in uses if node.start <= use.start < node.end]
+
+    def without_goal_state(self) -> Iterator[CodeFault]:
+        """Yield action servers in files in which no goal succeeds or is aborted."""
+        if not self._unit.uses.keys().isdisjoint(_ENDING_STATES):
+            return
+        for function in self._methods:
+            for call in self._calls(function, "create_server"):
+                if called_name(call).startswith(_ACTIONS):
+                    message = (
+                        "nothing sets the state of a goal, so rclcpp_action cancels it; "
+                        "call succeed()"
+                    )
+                    yield CodeFault("no goal state", message, call.location, is_certain=False)
 
     def destroyed(self) -> Iterator[CodeFault]:
         """Yield what a method makes and nothing keeps: it is destroyed when the method ends."""

@@ -163,8 +163,10 @@ def _pose_sent(name: CppNode, variables: _Variables, evaluation: CppEvaluation) 
 def _is_given_away(use: CppNode) -> bool:
     """Return whether a function that may change a variable gets it, or a reference to it."""
     parent = use.parent
-    if parent is None or parent.kind in ("field_expression", "init_declarator", "declaration"):
+    if parent is None or parent.kind in ("field_expression", "declaration"):
         return False
+    if parent.kind == "init_declarator":
+        return use.field == "value"
     if parent.kind == "argument_list" and parent.parent is not None:
         return called_name(parent.parent).rpartition("::")[2] != _SENDS
     return True

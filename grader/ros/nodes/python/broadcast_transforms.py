@@ -83,8 +83,6 @@ def _items_sent(
                 is_added = called == "append" and len(node.args) == 1
                 if owner == name:
                     yield (node.args[0], node) if is_added else (None, call)
-            case ast.AugAssign(target=ast.Name(id=owner)) if owner == name:
-                yield None, call
 
 
 def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> Transform | None:
