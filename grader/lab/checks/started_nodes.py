@@ -296,7 +296,7 @@ class _NodeTopics:
         code = workspace.code.by_package.get(package)
         doubts = list(code.doubts) if code is not None else []
         syntax = fault_of_syntax(workspace, node, package)
-        own_nodes = workspace.code.nodes_of(node)
+        own_nodes = workspace.code.all_nodes_of(node)
         paths = [own_node.location.path for own_node in own_nodes]
         mistake = next((self._stopping[path] for path in paths if path in self._stopping), None)
         runs = bool(own_nodes)

@@ -69,7 +69,7 @@ class End(NamedTuple):
 
 def opened_by(workspace: Workspace, node: StartedNode, launch: int = -1) -> Iterator[End]:
     """Yield what the nodes of a program open as it is started. Raises NotDecided."""
-    for own_node in workspace.code.nodes_of(node):
+    for own_node in workspace.code.all_nodes_of(node):
         yield from opened_by_code(workspace, node, own_node, launch)
 
 
@@ -113,7 +113,7 @@ def frames_of(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str | N
 
     It is None for one that is not known. Raises NotDecided.
     """
-    for own_node in workspace.code.nodes_of(node):
+    for own_node in workspace.code.all_nodes_of(node):
         if not own_node.frames:
             continue
         workspace.charge(len(own_node.frames))
