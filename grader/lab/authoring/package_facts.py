@@ -104,10 +104,16 @@ _OPENING = {
 }
 _COMPARED = {
     "publishes": ("topics names_agree",),
+    "subscribes": ("topics names_agree",),
     "serves": ("services names_agree",),
     "calls": ("services names_agree",),
 }
-_DONE = {"publishes": "publish", "serves": "serve", "calls": "call"}
+_DONE = {
+    "publishes": "publish",
+    "subscribes": "subscribe to",
+    "serves": "serve",
+    "calls": "call",
+}
 # Warnings of `grader inspect` that mean that something does not work: of builds of C++, and of the
 # code of nodes.
 _CPP = (".cpp", ".cc", ".cxx")
@@ -641,7 +647,8 @@ def _launch_text(package: Package, name: str) -> str:
 def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator[Fact]:
     """Yield what nodes and bridges publish, serve and call, and which controllers are spawned.
 
-    Of a lab with a robot, what nodes open may have other names: only bridges are asked.
+    What own nodes subscribe to is asked if none of them publishes it: then others do. Of a lab with
+    a robot, what nodes open may have other names: only bridges are asked.
     """
     asked: dict[str, dict[str, str]] = {verb: {} for verb in _DONE}
     workspace = submission.workspace
@@ -652,8 +659,12 @@ def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator
             ends += opened_by(workspace, node)
         for end in ends if node.when else ():
             verb, kind = _OPENING.get(end.kind), end.type
+            if bridged is None and end.kind == "subscription":
+                verb = "subscribes"
             if verb is not None and kind is not None and end.name and end.is_known:
                 asked[verb][end.name] = kind.replace(".", "/")
+    for topic in asked["publishes"]:
+        asked["subscribes"].pop(topic, None)
     for verb, names in asked.items():
         if names:
             fact = _package_fact("node_runs", f"{name} {verb}", launch=name, **{verb: names})
