@@ -67,7 +67,7 @@ _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
 _ROBOT, _PACKAGE = "robot", "package"
 _WHOLE = 100  # points
 _LEAST_OF_MEAN, _MOST_OF_MEAN = 0.5, 2  # of the mean points, for one criterion
-_USUAL_MEAN = 3  # points of a criterion, if no total is asked for
+_USUAL_MEAN = 2  # points of a criterion, if no total is asked for
 _LEAST_MEAN = 1.5  # units of a criterion, in which weights can count
 _STEPS = tuple(map(Decimal, ("1", "0.5", "0.25", "0.1", "0.05", "0.01")))  # of points
 # The kinds of things that a solution has, which share the points evenly.
@@ -403,7 +403,7 @@ def _shared(kinds: Sequence[str], weights: Sequence[int], total: int | None) -> 
     Half of the points are shared evenly by the criteria, so that one of many joints still costs
     something. The other half is shared evenly by the kinds, in which the weights count.
 
-    Without a total, it is the least multiple of 100 with a mean of three points. With one, points
+    Without a total, it is the least multiple of 100 with a mean of two points. With one, points
     have as few decimals as leave most criteria some. Raises InputError for too few.
     """
     count = len(kinds)
