@@ -261,3 +261,36 @@ def test_goals_without_a_state(library: str, members: str, *, is_ended: bool) ->
         (fault.rule, fault.is_certain) for fault in faults_of(_SERVE.format(library), members)
     ]
     assert faults == ([] if is_ended else [("no goal state", False)])
+
+
+_ACTIVE = """
+#include <rclcpp_lifecycle/lifecycle_node.hpp>
+class Talker : public {} {{
+public:
+  Talker() : LifecycleNode("talker") {{ {} }}
+  CallbackReturn on_activate(const rclcpp_lifecycle::State & state) override {{ {} }}
+  {}
+}};
+"""
+_PUBLISHER = 'publisher_ = create_publisher<std_msgs::msg::Bool>("a", 1);'
+
+
+@pytest.mark.parametrize(
+    ("base", "made", "active", "members", "is_active"),
+    [
+        ("rclcpp_lifecycle::LifecycleNode", _PUBLISHER, "go();", "", False),
+        ("rclcpp_lifecycle::LifecycleNode", "", "go();", "", True),
+        ("rclcpp_lifecycle::LifecycleNode", "", "go();", f"void on() {{ {_PUBLISHER} }}", False),
+        ("rclcpp_lifecycle::LifecycleNode", _PUBLISHER, "publisher_->on_activate();", "", True),
+        ("rclcpp_lifecycle::LifecycleNode", _PUBLISHER, "LifecycleNode::on_activate(state);", "", True),
+        ("nav2_util::LifecycleNode", _PUBLISHER, "go();", "", True),
+        ("rclcpp_lifecycle::LifecycleNode", _PUBLISHER, "", "void at() { publisher_->on_activate(); }", True),
+    ],
+)  # fmt: skip
+def test_publishers_that_stay_inactive(
+    base: str, made: str, active: str, members: str, *, is_active: bool
+) -> None:
+    """Each publisher of a node with a lifecycle is activated, with the node or on its own."""
+    faults = list(nodes_of(_ACTIVE.format(base, made, active, members)).faults)
+    rules = [(fault.rule, fault.is_certain) for fault in faults if fault.rule == "not activated"]
+    assert rules == ([] if is_active else [("not activated", True)])

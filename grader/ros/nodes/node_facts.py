@@ -172,6 +172,7 @@ CodeRule = Literal[
     "no main",
     "no rclcpp::init",
     "no constructor",
+    "not activated",
 ]
 
 
