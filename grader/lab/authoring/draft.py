@@ -93,7 +93,7 @@ _KIND_BY_CHECK: Mapping[str, str] = {
     "parameter_is": _PARAMETERS,
 }
 _OF_NODES = ("topics", "services", "interfaces", "code", "transforms")
-_OPENED = frozenset({"publishes", "subscribes", "serves", "calls"})
+_OF_CODE = frozenset({"publishes", "subscribes", "serves", "calls", "active"})
 _WHEN_CORRECTED = "When the reference is corrected"  # the heading of what is wrong in it
 # Checks of what matters most, and of what matters less, or others are about as well.
 _HEAVY = (
@@ -382,7 +382,7 @@ def _kind_of(row: _DraftCriterion) -> str:
     """Return the kind of thing that a criterion is about, which has its share of the points."""
     if row.fact.check == "names_agree":
         return _NODES if row.fact.arguments["of"] in _OF_NODES else _NAMES
-    if row.fact.check == "node_runs" and not _OPENED.isdisjoint(row.fact.arguments):
+    if row.fact.check == "node_runs" and not _OF_CODE.isdisjoint(row.fact.arguments):
         return _NODES
     return _KIND_BY_CHECK.get(row.fact.check, _JOINTS)
 

@@ -50,7 +50,7 @@ _NAMED_BY: Mapping[str, tuple[str, ...]] = {
 }
 _MAX_MOVED = 20  # links that @moved:1 to @moved:20 name
 _OPENED = ("publishes", "subscribes", "serves", "calls")
-_ASKED = ("nodes", "not", "spawns", *_OPENED)
+_ASKED = ("nodes", "not", "spawns", "active", *_OPENED)
 
 
 class DraftChoice(NamedTuple):

@@ -22,6 +22,8 @@ from grader.lab.authoring.facts import (
 )
 from grader.lab.authoring.graph_facts import LaunchConnections
 from grader.lab.checks.parameters import measures
+from grader.lab.checks.started_nodes import LIFECYCLE_MANAGER, managed_nodes
+from grader.lab.submission.edited import content
 from grader.lab.submission.submission import Submission
 from grader.ros.api import (
     looked_up_transforms,
@@ -598,11 +600,21 @@ def _launch_facts(
     started, are_ends_asked = _nodes_that_start(launch), not submission.path
     needed = connections.needed(launch, started, are_ends_asked=are_ends_asked)
     nodes = [node for node in needed if node not in _STATIC]
+    active = _lifecycle_nodes(submission, launch)
+    managers = [node for node in launch.nodes if node.executable == LIFECYCLE_MANAGER]
+    managed, _ = managed_nodes(submission.workspace, managers)
+    if managed <= {*active}:  # something else may activate own nodes
+        nodes = [node for node in nodes if node not in {each.name for each in managers}]
     if nodes:
         title = _title_of_nodes(_launch_text(package, name), nodes)
         fact = _package_fact("node_runs", name, launch=name, nodes=nodes)
         yield fact._replace(title=title, carried=(there,))
     unrun = after._replace(causes=(*after.causes, *_OF_CODE))
+    if active:
+        fact = _package_fact("node_runs", f"{name} active", launch=name, active=active)
+        nodes_named = "the node" if len(active) == 1 else "each of the nodes"
+        title = f"{nodes_named} {enumerated(active, _MAX_IN_TITLE)} becomes active"
+        yield fact._replace(title=title, carried=(unrun,))
     for fact in _opened_facts(submission, launch, name):
         [compared] = fact.carried  # the names that pay for a mistake in them
         yield fact._replace(carried=(unrun._replace(causes=(*unrun.causes, *compared.causes)),))
@@ -611,6 +623,18 @@ def _launch_facts(
         yield fact._replace(about=_THE_PACKAGE, carried=(misnamed,))
     for fact in _turned_facts(package, path):
         yield fact._replace(carried=(after,))
+
+
+def _lifecycle_nodes(submission: Submission, launch: Launch) -> list[str]:
+    """Return the names of the own nodes with a lifecycle that a launch file starts."""
+    code, names = submission.workspace.code, []
+    for node in launch.nodes:
+        facts = code.own_node(node) if node.when else None
+        data = content(submission, facts.location.path) if facts is not None else None
+        name = code.name_of(node)
+        if data is not None and name and b"LifecycleNode" in data:
+            names.append(name)
+    return names
 
 
 def _complete_fact(launch: Launch, name: str, shown: str) -> Fact:
