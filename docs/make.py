@@ -144,7 +144,12 @@ QUESTIONS = {
     "What do links weigh, and what do they collide with?": ("inertia", "collisions"),
     "Which values do files and nodes have?": ("entries", "parameters"),
     "Does the package build and install its files?": ("package_build",),
-    "What does a launch file start, and what do the nodes do?": ("launch", "simulation", "lookups"),
+    "What does a launch file start, and what do the nodes do?": (
+        "launch",
+        "simulation",
+        "lookups",
+        "set_parameters",
+    ),
     "How do nodes work together?": ("launched_graph",),
     "What does RViz show?": ("rviz",),
     "Does everything fit together?": ("names_agree",),

@@ -103,6 +103,7 @@ if TYPE_CHECKING:
     from grader.ros.workspace.opened import OpenedWorkspace as OpenedWorkspace
     from grader.ros.workspace.opening import STANDARD_INPUT as STANDARD_INPUT
     from grader.ros.workspace.opening import open_workspace as open_workspace
+    from grader.ros.workspace.parameter_callbacks import parameter_callbacks as parameter_callbacks
     from grader.ros.workspace.rules.problem_kinds import EVERY_KIND as EVERY_KIND
     from grader.ros.workspace.rules.rule_table import RULES as RULES
     from grader.ros.workspace.rules.rule_table import Rule as Rule
@@ -144,6 +145,7 @@ else:
         "workspace.name_places": "NamePlaces",
         "workspace.opened": "OpenedWorkspace",
         "workspace.opening": "STANDARD_INPUT open_workspace",
+        "workspace.parameter_callbacks": "parameter_callbacks",
         "workspace.rules.problem_kinds": "EVERY_KIND",
         "workspace.rules.rule_table": "RULES Rule",
         "xml.xml_problems": "RECOVERED",

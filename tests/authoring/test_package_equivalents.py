@@ -132,8 +132,11 @@ def test_a_launch_file_is_rewritten_in_another_language(tmp_path: Path) -> None:
     found = families(submission)
     languages = {"launch file in XML", "launch file in YAML"}
     assert languages <= {*found}
-    for language in languages:
-        same = found[language]
+    rewritten = {language: found[language] for language in languages}
+    for language in languages:  # and back
+        again = families(found[language])["launch file in Python"]
+        rewritten[f"{language}, in Python"] = again
+    for same in rewritten.values():
         assert wrong(same) == []
         assert started(same) == started(submission)
         [before], [after] = (

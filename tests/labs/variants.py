@@ -56,6 +56,7 @@ def apply_edit(edit: dict[str, Any], workspace: Path) -> None:
     file = workspace / edit["file"]
     if edit.get("new_file"):
         assert not file.exists()
+        file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(edit["text"], encoding="utf-8")
         return
     text = file.read_text(encoding="utf-8")

@@ -160,3 +160,70 @@ def test_a_parameter_may_switch_a_transform_of_cpp_off(
         _STAMPED + _CPP_SET + statements % "static_->sendTransform(t);", members=_CPP_MEMBERS
     ).transforms
     assert (sent.is_conditional, sent.is_static) == (is_conditional, True)
+
+
+_AT_1 = "(1.0, 0.0, 0.0)"
+POSES = [
+    (f"{_SET}\nt.transform.translation.x = 1.0\n{_SEND}", _AT_1),
+    (f"{_SET}\n{_SEND}", "(0.0, 0.0, 0.0)"),
+    (f"{_SET}\nt.transform.translation.x = message\n{_SEND}", ""),
+    (f"{_SET}\nt.transform.translation.x += 1.0\n{_SEND}", ""),
+    (f"{_SET}\nt.transform.translation = message\n{_SEND}", ""),
+    (f"{_SET}\nself.fill(t)\n{_SEND}", ""),
+    (f"{_SET}\nt = message\n{_SEND}", ""),
+    (f"u = made(1)\n{_SEND.replace('(t)', '(u)')}", ""),
+    (
+        "self.sender.sendTransform(TransformStamped(transform=Transform(translation=Vector3(x=1.0))))",
+        _AT_1,
+    ),
+    ("self.sender.sendTransform(TransformStamped(transform=message))", ""),
+    ("v = Vector3(x=1.0)\nself.sender.sendTransform(TransformStamped(transform=v))", ""),
+    ("self.sender.sendTransform(TransformStamped(message))", ""),
+    ("u = TransformStamped(transform=Transform())\nself.sender.sendTransform(u)", ""),
+    ("self.sender.sendTransform(message)", ""),
+]
+
+
+@pytest.mark.parametrize(("statements", "place"), POSES)
+def test_poses_of_python(statements: str, place: str) -> None:
+    """Numbers that code sets are known, and nothing else."""
+    [sent] = sent_by(statements)
+    assert (str(sent.pose.translation) if sent.pose is not None else "") == place
+
+
+def test_a_list_of_transforms() -> None:
+    """What is added to it is sent, under the condition of the addition."""
+    start = f"{_SET}\nu = TransformStamped()\nu.header.frame_id = 'base'\nu.child_frame_id = 'arm'"
+    listed = (
+        f"{start}\nall = [t]\nif self.is_on:\n    all.append(u)\nself.sender.sendTransform(all)"
+    )
+    sent = [(each.child.name, each.is_conditional) for each in sent_by(listed)]
+    assert sent == [("base", False), ("arm", True)]
+    for more, names in (("all.extend(message)", ["base", None]), ("all += message", [None])):
+        text = f"{start}\nall = [t]\n{more}\nself.sender.sendTransform(all)"
+        assert [each.child.name for each in sent_by(text)] == names
+
+
+CPP_POSES = [
+    ("t.transform.translation.x = 1.0;", _AT_1),
+    ("t.transform.translation.x = 1; t.transform.rotation.w = 1.0;", _AT_1),
+    ("t.transform.translation.x = 1.0; t.transform.translation.x = 2.0;", ""),
+    ("t.transform.translation.x = reading();", ""),
+    ("t.transform.translation = reading();", ""),
+    ("fill(t); t.transform.translation.x = 1.0;", ""),
+    ("auto & other = t;", ""),
+]
+
+
+@pytest.mark.parametrize(("statements", "place"), CPP_POSES)
+def test_poses_of_cpp(statements: str, place: str) -> None:
+    """Of a local variable that no function gets."""
+    text = _STAMPED + _CPP_SET + statements + _CPP_SEND
+    [sent] = cpp_node_of(text, members=_CPP_MEMBERS).transforms
+    assert (str(sent.pose.translation) if sent.pose is not None else "") == place
+
+
+def test_the_pose_of_a_member_of_cpp_is_not_known() -> None:
+    """Any function may set it."""
+    [sent] = cpp_node_of("sender_->sendTransform(kept_);", members=_CPP_MEMBERS).transforms
+    assert sent.pose is None

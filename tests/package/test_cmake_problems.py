@@ -1,10 +1,14 @@
 """What CMakeLists.txt does not compile or install is a warning, where all of it is known."""
 
+import json
+from pathlib import Path
+
 import pytest
 
 from grader.files.tree import make_tree, overlaid
 from grader.ros.package.finding import read_packages
 from grader.ros.package.found_problems import build_problems
+from tests.command_line import run
 
 pytestmark = pytest.mark.slow
 
@@ -163,3 +167,32 @@ def test_a_generator_expression_without_end(end: str) -> None:
     assert (
         problems(f"{target}if(UNSEEN)\ntarget_compile_options(parts PRIVATE $<a)\nendif()\n") == []
     )
+
+
+def test_an_interface_package_that_a_target_does_not_depend_on(tmp_path: Path) -> None:
+    """No package of ROS 2 exports the headers of one of the workspace."""
+    texts = {
+        "hub_msgs/package.xml": "<package format='3'><name>hub_msgs</name></package>",
+        "hub_msgs/msg/Talk.msg": "string words\n",
+        "hub/package.xml": "<package format='3'><name>hub</name></package>",
+        "hub/src/talk.cpp": f"#include <hub_msgs/msg/talk.hpp>\n{_NODE}",
+    }
+    build = (
+        "cmake_minimum_required(VERSION 3.8)\nproject(hub)\nfind_package(ament_cmake REQUIRED)\n"
+        "find_package(hub_msgs REQUIRED)\nfind_package(rclcpp_action REQUIRED)\n{}"
+        "add_executable(talk src/talk.cpp)\nament_target_dependencies(talk rclcpp_action{})\n"
+        "install(TARGETS talk DESTINATION lib/hub)\nament_package()\n"
+    )
+    messages = []
+    for more, named in (
+        ("", ""),
+        ("", " hub_msgs"),
+        ("include_directories(${hub_msgs_INCLUDE_DIRS})\n", ""),
+    ):
+        for path, text in {**texts, "hub/CMakeLists.txt": build.format(more, named)}.items():
+            (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / path).write_text(text)
+        found = json.loads(run(["inspect", tmp_path, "--format", "json"]).stdout)["problems"]
+        messages.append([each["message"] for each in found if each["code"] == "PKG021"])
+    message = "src/talk.cpp includes headers of hub_msgs, but the target 'talk' does not depend on it: see ament_target_dependencies()"
+    assert messages == [[message], [], []]

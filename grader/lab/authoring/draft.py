@@ -66,7 +66,9 @@ _USUAL: Mapping[str, tuple[Mapping[str, float], str]] = {
 }
 _ROBOT, _PACKAGE = "robot", "package"
 _WHOLE = 100  # points
-_MOST_OF_MEAN = 3  # of the mean points, for one criterion
+_LEAST_OF_MEAN, _MOST_OF_MEAN = 0.5, 2  # of the mean points, for one criterion
+_USUAL_MEAN = 2  # points of a criterion, if no total is asked for
+_LEAST_MEAN = 1.5  # units of a criterion, in which weights can count
 _STEPS = tuple(map(Decimal, ("1", "0.5", "0.25", "0.1", "0.05", "0.01")))  # of points
 # The kinds of things that a solution has, which share the points evenly.
 _JOINTS, _SHAPES, _MASSES, _SIMULATION = "joints", "shapes", "masses", "simulation"
@@ -82,14 +84,16 @@ _KIND_BY_CHECK: Mapping[str, str] = {
     **dict.fromkeys(("package_found", "package_type", "setup_imports"), _BUILDS),
     **dict.fromkeys(("build_installs", "installs_files"), _BUILDS),
     **dict.fromkeys(("node_runs", "launch_complete"), _LAUNCHES),
+    **dict.fromkeys(("connects", "publishes_transform"), _NODES),
     **dict.fromkeys(("rviz_found", "rviz_fixed_frame", "rviz_shows_robot"), _RVIZ),
     "rviz_display_on": _RVIZ,
     "looks_up": _NODES,
+    "takes_parameters": _NODES,
     "without_problems": _BUILDS,
     "parameter_is": _PARAMETERS,
 }
 _OF_NODES = ("topics", "services", "interfaces", "code", "transforms")
-_OPENED = frozenset({"publishes", "subscribes", "serves", "calls"})
+_OF_CODE = frozenset({"publishes", "subscribes", "serves", "calls", "active"})
 _WHEN_CORRECTED = "When the reference is corrected"  # the heading of what is wrong in it
 # Checks of what matters most, and of what matters less, or others are about as well.
 _HEAVY = (
@@ -378,7 +382,7 @@ def _kind_of(row: _DraftCriterion) -> str:
     """Return the kind of thing that a criterion is about, which has its share of the points."""
     if row.fact.check == "names_agree":
         return _NODES if row.fact.arguments["of"] in _OF_NODES else _NAMES
-    if row.fact.check == "node_runs" and not _OPENED.isdisjoint(row.fact.arguments):
+    if row.fact.check == "node_runs" and not _OF_CODE.isdisjoint(row.fact.arguments):
         return _NODES
     return _KIND_BY_CHECK.get(row.fact.check, _JOINTS)
 
@@ -394,41 +398,49 @@ def _weight(row: _DraftCriterion, choice: DraftChoice) -> int:
 
 
 def _shared(kinds: Sequence[str], weights: Sequence[int], total: int | None) -> list[Decimal]:
-    """Return the points of criteria: each kind has an equal share, in which weights count.
+    """Return the points of criteria: at least half the mean, and at most twice the mean.
 
-    A kind of few criteria has less, so that these get at most three times the mean.
+    Half of the points are shared evenly by the criteria, so that one of many joints still costs
+    something. The other half is shared evenly by the kinds, in which the weights count.
 
-    Without a total, it is 100 points, or the least multiple that leaves each criterion one. With
-    one, points have as few decimals as leave each criterion some. Raises InputError for too few.
+    Without a total, it is the least multiple of 100 with a mean of two points. With one, points
+    have as few decimals as leave most criteria some. Raises InputError for too few.
     """
-    counts = Counter(kinds)
-    needed = max(counts.values()) * len(counts)  # so that each has one
+    count = len(kinds)
     unit = Decimal(1)
     if total is None:
-        total = _WHOLE * -(-needed // _WHOLE)
+        total = _WHOLE * -(-_USUAL_MEAN * count // _WHOLE)
     else:
-        if total / _STEPS[-1] < needed:
-            raise InputError(f"{len(kinds)} criteria cannot share {total} points: give more")
-        unit = next(step for step in _STEPS if total / step >= needed)
-    shares = _even_shares(int(total / unit), [*counts.values()])
-    points = [unit] * len(kinds)
+        if total / _STEPS[-1] < count:
+            raise InputError(f"{count} criteria cannot share {total} points: give more")
+        fine = [step for step in _STEPS if total / step >= _LEAST_MEAN * count]
+        unit = fine[0] if fine else _STEPS[-1]
+    units = int(total / unit)
+    least = _LEAST_OF_MEAN * units / count
+    counts = Counter(kinds)
+    shares = _even_shares(units, [*counts.values()])
+    exact = [0.0] * count
     for kind, share in zip(counts, shares, strict=True):
         places = [place for place, name in enumerate(kinds) if name == kind]
-        shared = _apportioned(share, [weights[place] for place in places])
-        for place, number in zip(places, shared, strict=True):
-            points[place] = number * unit
-    return points
+        whole = sum(weights[place] for place in places)
+        for place in places:
+            exact[place] = least + (share - least * len(places)) * weights[place] / whole
+    return [number * unit for number in _apportioned(units, exact)]
 
 
-def _even_shares(units: int, counts: Sequence[int]) -> list[int]:
+def _even_shares(units: int, counts: Sequence[int]) -> list[float]:
     """Return how many units kinds have, by the numbers of their criteria."""
-    most = [_MOST_OF_MEAN * units * count / sum(counts) for count in counts]
-    left = units / len(counts)
+    mean = units / sum(counts)
+    most = [_MOST_OF_MEAN * mean * count for count in counts]
+    fixed = [_LEAST_OF_MEAN * mean * count for count in counts]
+    left = (units - sum(fixed)) / len(counts)
     for _ in counts:
-        capped = [share for share in most if share < left]
+        capped = [
+            share - part for share, part in zip(most, fixed, strict=True) if share - part < left
+        ]
         others = len(counts) - len(capped)
-        left = (units - sum(capped)) / others if others else left
-    return _apportioned(units, [min(share, left) for share in most])
+        left = (units - sum(fixed) - sum(capped)) / others if others else left
+    return [min(share, part + left) for share, part in zip(most, fixed, strict=True)]
 
 
 def _apportioned(points: int, weights: Sequence[float]) -> list[int]:

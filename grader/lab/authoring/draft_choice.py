@@ -26,7 +26,13 @@ _KINDS: Mapping[str, tuple[str, ...]] = {
     "motion": ("kinematics_match_reference",),
     "elements": ("entry_is",),
     "rviz": ("rviz_found", "rviz_fixed_frame", "rviz_shows_robot", "rviz_display_on"),
-    "nodes": ("node_runs", "looks_up", "connects", "publishes_transform"),
+    "nodes": (
+        "node_runs",
+        "looks_up",
+        "takes_parameters",
+        "connects",
+        "publishes_transform",
+    ),
     "worlds": ("world_has",),
     "installs": ("build_installs", "installs_files"),
     "measures": ("parameter_is",),
@@ -44,7 +50,7 @@ _NAMED_BY: Mapping[str, tuple[str, ...]] = {
 }
 _MAX_MOVED = 20  # links that @moved:1 to @moved:20 name
 _OPENED = ("publishes", "subscribes", "serves", "calls")
-_ASKED = ("nodes", "not", "spawns", *_OPENED)
+_ASKED = ("nodes", "not", "spawns", "active", *_OPENED)
 
 
 class DraftChoice(NamedTuple):

@@ -84,8 +84,8 @@ class Fact(NamedTuple):
     otherwise: "Sequence[Fact]" = ()  # tried in its place if the reference does not pass it
     title: str = ""  # default: what the check says
     args: Mapping[str, str | bool] = {}  # launch arguments
-    # of the look or the numbers of a robot, which a lab about controllers, nodes or worlds leaves
-    # free: see `has_programs`
+    # of the look or the numbers of a robot, or of a launch file that another one includes, which a
+    # lab about controllers, nodes or worlds leaves free: see `has_programs`
     is_detail: bool = False
 
 

@@ -1,12 +1,15 @@
 """The facts of what a reference connects after a launch: transforms, and ways of messages."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from typing import Any
 
 from grader.base.errors import NotDecided
+from grader.base.quantities import point
+from grader.base.transforms import Vector
 from grader.lab.authoring.facts import Fact
 from grader.lab.submission.submission import Submission
 from grader.ros.api import GraphEnd, GraphNode, GraphTransform, join_launches
-from grader.ros.launch.launch_model import Launch
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
 
 # Types of what sensors publish, and of what moves a robot.
@@ -18,7 +21,10 @@ _OF_COMMANDS = (
     "trajectory_msgs/msg/JointTrajectory",
     "std_msgs/msg/Float64MultiArray",
 )
+# The kinds of ends for which `node_runs` asks.
+_SEEN = ("publisher", "service", "action server", "client", "action client")
 _MAX_WAYS, _MAX_TRANSFORMS = 4, 12  # of one launch file
+_DECIMALS = 6  # of metres and radians
 
 
 class LaunchConnections:
@@ -31,15 +37,26 @@ class LaunchConnections:
 
     def facts(self) -> Iterator[Fact]:
         """Yield the transforms and the ways of messages that certainly are there."""
-        for parent, child in list(self._published())[:_MAX_TRANSFORMS]:
+        for transform in list(self._published())[:_MAX_TRANSFORMS]:
+            parent, child = transform.parent, transform.child
             fact = self._fact("publishes_transform", child, parent=parent, child=child)
-            yield fact._replace(title=f"{child!r} is published below {parent!r}")
+            fact = fact._replace(title=f"{child!r} is published below {parent!r}")
+            if transform.is_static and transform.pose is not None:
+                xyz = _rounded(transform.pose.translation)
+                placed = {**fact.arguments, "xyz": xyz, "rpy": _rounded(transform.pose.rpy)}
+                title = f"{child!r} is published at {point((*xyz,))} m in {parent!r}"
+                fact = fact._replace(arguments=placed, title=title, otherwise=(fact,))
+            yield fact
         for start, end in list(self._ways())[:_MAX_WAYS]:
             fact = self._fact("connects", f"{start} {end}", **{"from": start, "to": end})
             yield fact._replace(title=f"messages find a way from {start} to {end}")
 
-    def needed(self, launch: Launch, nodes: Sequence[str]) -> list[str]:
-        """Return the nodes that are needed for more than transforms, which have facts."""
+    def needed(self, launch: Launch, nodes: Sequence[str], *, are_ends_asked: bool) -> list[str]:
+        """Return the nodes that are needed for more than what other facts ask for.
+
+        These are transforms, and what own nodes open, if that is asked: then a solution may divide
+        its nodes over programs as it likes.
+        """
         by_program: dict[str, list[GraphTransform]] = {}
         for transform in self._transforms():
             by_program.setdefault(transform.by, []).append(transform)
@@ -49,11 +66,21 @@ class LaunchConnections:
             is_own = self._workspace.package_of(node) is not None
             # Of another program, what else it may publish is not known.
             is_known = all(sent) if is_own else any(sent)
-            if sent and is_known and self._graph.is_for_transforms(node):
+            is_asked = bool(sent) and is_known and self._graph.is_for_transforms(node)
+            if is_own and are_ends_asked:
+                is_asked = is_asked or (is_known and (bool(sent) or self._is_seen(node)))
+            if is_asked:
                 replaced.add(node.name)
         return [name for name in nodes if name not in replaced]
 
-    def _fact(self, check: str, words: str, **arguments: str) -> Fact:
+    def _is_seen(self, node: StartedNode) -> bool:
+        """Return whether all nodes of an own program are read, and one certainly opens an end."""
+        own_nodes = [each for each in self._graph.graph.nodes if each.program == node.name]
+        is_read = not any(each.doubt or each.opens_more for each in own_nodes)
+        seen = [end for each in own_nodes for end in each.ends if end.kind in _SEEN]
+        return is_read and any(not end.doubt and end.type for end in seen)
+
+    def _fact(self, check: str, words: str, **arguments: Any) -> Fact:
         return Fact("", check, arguments, f"{words} {check}", package="")
 
     def _transforms(self) -> list[GraphTransform]:
@@ -67,12 +94,13 @@ class LaunchConnections:
             return []
         return [transform for transform in transforms if transform.child not in of_robots]
 
-    def _published(self) -> Iterator[tuple[str, str]]:
-        pairs: dict[tuple[str, str], None] = {}
+    def _published(self) -> Iterator[GraphTransform]:
+        """Yield the transforms that certainly are published, the first of each pair of frames."""
+        by_frames: dict[tuple[str, str], GraphTransform] = {}
         for transform in self._transforms():
             if transform.is_certain:
-                pairs[transform.parent, transform.child] = None
-        yield from pairs
+                by_frames.setdefault((transform.parent, transform.child), transform)
+        yield from by_frames.values()
 
     def _ways(self) -> Iterator[tuple[str, str]]:
         """Yield the topics between which own nodes take messages from other nodes to other ones."""
@@ -111,6 +139,11 @@ class LaunchConnections:
 
     def _is_own(self, node: GraphNode) -> bool:
         return node.program.startswith(self._own_packages) and not node.doubt
+
+
+def _rounded(values: Vector) -> list[float]:
+    """Return numbers as a rubric writes them."""
+    return [round(value, _DECIMALS) + 0.0 for value in values]
 
 
 def _topics(ends: Iterable[GraphEnd], kind: str) -> dict[str, str]:

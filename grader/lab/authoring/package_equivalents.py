@@ -20,14 +20,20 @@ from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import CMAKE, MANIFEST, SETUP, Package
 from grader.ros.python.python_file import PythonFile, argument
 
-_LAUNCH_IN_XML, _LAUNCH_IN_YAML = "launch file in XML", "launch file in YAML"
+_ENDING_BY_LANGUAGE: Mapping[str, str] = {
+    "launch file in XML": ".xml",
+    "launch file in YAML": ".yaml",
+    "launch file in Python": ".py",
+}
 BUILT_BY_CMAKE = "package built by CMake"
+_LAUNCHING = ("launch", "launch_ros")  # the packages that a launch file in Python imports
 _UNNAMED, _LATER = "nodes without the name of their program", "spawners after an event"
 _RENAMED, _SYSTEM_RENAMED = "files renamed", "<ros2_control> renamed"
-_Files = Mapping[str, str | None]  # the new texts of files by their paths; None for one that goes
+Files = Mapping[str, str | None]  # the new texts of files by their paths; None for one that goes
 _TEXTS = (".py", ".xml", ".yaml", ".yml", ".xacro", ".urdf", ".txt", ".cfg", ".sdf", ".launch")
 _FREE_FILES = re.compile(r"(^|/)(config|params|worlds?|parameters)/[^/]+\.(ya?ml|sdf|world)$")
 _SHARE = re.compile(rf"^{re.escape(PREFIX)}/share/([^/]+)/(.+)$")
+_FOUND = re.compile(r"\$\(find-pkg-share ([^)]+)\)/(.+)")
 _SYSTEM = re.compile(r"<ros2_control\s[^<>]*?\bname=(['\"])([\w-]+)\1")
 _PROGRAMS = re.compile("console_scripts|scripts *=|gui_scripts")
 _IMPORTS = (
@@ -44,29 +50,27 @@ ament_package()
 
 def package_equivalents(
     submission: Submission, named: Collection[str], robot_files: Sequence[str]
-) -> Iterator[tuple[str, _Files]]:
+) -> Iterator[tuple[str, Files]]:
     """Yield each family with the files that it changes; `named` are the texts of the rubric."""
     packages = [*submission.lab_packages.values()]
-    for language in (_LAUNCH_IN_XML, _LAUNCH_IN_YAML):
-        yield from _as_family(
-            language, (_in_other_language(submission, package, language) for package in packages)
+    for language, ending in _ENDING_BY_LANGUAGE.items():
+        yield from as_family(
+            language, (_in_other_language(submission, package, ending) for package in packages)
         )
-    yield from _as_family(
+    yield from as_family(
         BUILT_BY_CMAKE, (_built_by_cmake(submission, package) for package in packages)
     )
-    yield from _as_family(_UNNAMED, (_without_names(submission, package) for package in packages))
-    yield from _as_family(
+    yield from as_family(_UNNAMED, (_without_names(submission, package) for package in packages))
+    yield from as_family(
         _LATER, (_with_later_spawners(submission, package) for package in packages)
     )
-    yield from _as_family(
+    yield from as_family(
         _RENAMED, (_with_renamed_files(submission, package, named) for package in packages)
     )
-    yield from _as_family(_SYSTEM_RENAMED, (_with_renamed_system(submission, named, robot_files),))
+    yield from as_family(_SYSTEM_RENAMED, (_with_renamed_system(submission, named, robot_files),))
 
 
-def _as_family(
-    family: str, changes: Iterator[_Files] | tuple[_Files]
-) -> Iterator[tuple[str, _Files]]:
+def as_family(family: str, changes: Iterator[Files] | tuple[Files]) -> Iterator[tuple[str, Files]]:
     """Yield a family with all its changes, if there are some."""
     files: dict[str, str | None] = {}
     for change in changes:
@@ -75,24 +79,29 @@ def _as_family(
         yield family, files
 
 
-def _text(submission: Submission, path: str) -> str:
+def read_text(submission: Submission, path: str) -> str:
+    """Return the text of a file of the reference."""
     return (content(submission, path) or b"").decode("utf-8", "surrogateescape")
 
 
 # --- Launch files in another language
 
 
-def _in_other_language(submission: Submission, package: Package, language: str) -> _Files:
+def _in_other_language(submission: Submission, package: Package, ending: str) -> Files:
     """Return the one launch file of a package in another language.
 
     And the build file that installs it. Nothing where not all of it is known, or where another
     file names it.
     """
     paths = [path for path in package.launch_files if not path.startswith("test/")]
-    if len(paths) != 1 or not paths[0].endswith(".launch.py"):
+    before = posixpath.splitext(paths[0])[1] if len(paths) == 1 else ""
+    is_named = bool(before) and paths[0].endswith(f".launch{before}")
+    if not is_named or before not in _ENDING_BY_LANGUAGE.values() or before == ending:
         return {}
     launch = package.launch(paths[0])
-    if not _is_plain(launch):
+    manifest = read_text(submission, package.path(MANIFEST))
+    is_declared = ending != ".py" or all(f">{name}<" in manifest for name in _LAUNCHING)
+    if not _is_plain(launch) or not is_declared:
         return {}
     nodes = [_node_table(node) for node in launch.nodes]
     known = [node for node in nodes if node is not None]
@@ -102,13 +111,14 @@ def _in_other_language(submission: Submission, package: Package, language: str) 
     build = package.path(CMAKE if package.is_cmake else SETUP)
     if _is_named_elsewhere(submission, path, build):
         return {}
-    if language == _LAUNCH_IN_XML:
-        ending, text = ".xml", _launch_xml(known)
+    if ending == ".xml":
+        text = _launch_xml(known)
+    elif ending == ".py":
+        text = _launch_python(known)
     else:  # JSON is YAML
-        ending = ".yaml"
         text = json.dumps({"launch": [{"node": node} for node in known]}, indent=2)
-    built = _text(submission, build).replace(".launch.py", f".launch{ending}")
-    return {path: None, f"{path.removesuffix('.py')}{ending}": text, build: built}
+    built = read_text(submission, build).replace(f".launch{before}", f".launch{ending}")
+    return {path: None, f"{path.removesuffix(before)}{ending}": text, build: built}
 
 
 def _is_named_elsewhere(submission: Submission, path: str, build: str) -> bool:
@@ -116,7 +126,7 @@ def _is_named_elsewhere(submission: Submission, path: str, build: str) -> bool:
     name = posixpath.basename(path)
     for other in submission.whole_tree.files:
         is_text = other.endswith(_TEXTS) and other not in (path, build)
-        if is_text and name in _text(submission, other):
+        if is_text and name in read_text(submission, other):
             return True
     return False
 
@@ -196,10 +206,58 @@ def _launch_xml(nodes: Sequence[Mapping[str, Any]]) -> str:
     return "\n".join([*lines, "</launch>", ""])
 
 
+def _launch_python(nodes: Sequence[Mapping[str, Any]]) -> str:
+    """Return a launch file in Python that starts nodes."""
+    lines = [
+        "from launch import LaunchDescription",
+        "from launch.substitutions import PathJoinSubstitution",
+        "from launch_ros.actions import Node",
+        "from launch_ros.substitutions import FindPackageShare",
+        "",
+        "",
+        "def generate_launch_description():",
+        "    return LaunchDescription([",
+    ]
+    for node in nodes:
+        given = [f"package={node['pkg']!r}", f"executable={node['exec']!r}"]
+        given += [f"{name}={node[name]!r}" for name in ("name", "namespace") if name in node]
+        if "args" in node:
+            given.append(f"arguments={[_in_python(word) for word in node['args'].split()]}")
+        parameters = []
+        for row in node.get("param", ()):
+            value = _in_python(row["from"]) if "from" in row else {row["name"]: row["value"]}
+            parameters.append(value)
+        if parameters:
+            given.append(f"parameters={parameters}")
+        if "remap" in node:
+            given.append(f"remappings={[(row['from'], row['to']) for row in node['remap']]}")
+        lines.append(f"        Node({', '.join(given)}),")
+    return "\n".join([*lines, "    ])", ""])
+
+
+class _PythonCode(str):
+    """Code of Python whose text in a list is itself."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        """Return the code."""
+        return str(self)
+
+
+def _in_python(word: str) -> str:
+    """Return a word of a launch file, or the code that finds a file of a package."""
+    match = _FOUND.fullmatch(word)
+    if match is None:
+        return word
+    parts = ", ".join(repr(part) for part in match[2].split("/"))
+    return _PythonCode(f"PathJoinSubstitution([FindPackageShare({match[1]!r}), {parts}])")
+
+
 # --- Other builds
 
 
-def _built_by_cmake(submission: Submission, package: Package) -> _Files:
+def _built_by_cmake(submission: Submission, package: Package) -> Files:
     """Return the files of a package that CMake builds in place of setup.py.
 
     Nothing where it has programs or modules, or is no package of Python.
@@ -209,10 +267,10 @@ def _built_by_cmake(submission: Submission, package: Package) -> _Files:
     is_python = manifest is not None and manifest.build_type == "ament_python"
     if not is_python or package.is_cmake or package.installation is None:
         return {}
-    if _PROGRAMS.search(_text(submission, setup)) or package.installation.unknown:
+    if _PROGRAMS.search(read_text(submission, setup)) or package.installation.unknown:
         return {}
     text = _CMAKE_TEXT.format(name=package.name, installs="\n".join(_install_commands(package)))
-    described = _text(submission, package.path(MANIFEST)).replace("ament_python", "ament_cmake")
+    described = read_text(submission, package.path(MANIFEST)).replace("ament_python", "ament_cmake")
     depends = "<buildtool_depend>ament_cmake</buildtool_depend>"
     described = re.sub(r"(</license>)", rf"\1\n  {depends}", described, count=1)
     return {setup: None, package.path(CMAKE): text, package.path(MANIFEST): described}
@@ -234,11 +292,12 @@ def _install_commands(package: Package) -> Iterator[str]:
 # --- The same launch files, written differently
 
 
-def _python_launches(submission: Submission, package: Package) -> Iterator[tuple[str, PythonFile]]:
+def python_launches(submission: Submission, package: Package) -> Iterator[tuple[str, PythonFile]]:
+    """Yield the launch files of a package in Python, each with its path."""
     for path in package.launch_files:
         if path.endswith(".py") and not path.startswith("test/"):
             full = package.path(path)
-            file = PythonFile(Source(full, _text(submission, full)))
+            file = PythonFile(Source(full, read_text(submission, full)))
             if file.fault is None:
                 yield full, file
 
@@ -251,10 +310,10 @@ def _constant(call: ast.Call, name: str) -> str:
     return str(given.value.value)
 
 
-def _without_names(submission: Submission, package: Package) -> _Files:
+def _without_names(submission: Submission, package: Package) -> Files:
     """Return launch files without the names of nodes that their programs have anyway."""
     files: dict[str, str | None] = {}
-    for path, file in _python_launches(submission, package):
+    for path, file in python_launches(submission, package):
         nodes = package.launch(path.removeprefix(package.path(""))).nodes
         spans = []
         for call in file.calls("Node"):
@@ -276,10 +335,10 @@ def _without_names(submission: Submission, package: Package) -> _Files:
     return files
 
 
-def _with_later_spawners(submission: Submission, package: Package) -> _Files:
+def _with_later_spawners(submission: Submission, package: Package) -> Files:
     """Return launch files whose spawners start after another node, or after some seconds."""
     files: dict[str, str | None] = {}
-    for path, file in _python_launches(submission, package):
+    for path, file in python_launches(submission, package):
         entries = []
         for call in file.calls("LaunchDescription"):
             if call.args and isinstance(call.args[0], ast.List):
@@ -329,13 +388,13 @@ def _replace_name(
     uses = {}
     for other in submission.whole_tree.files:
         if other.endswith(_TEXTS):
-            text = texts.get(other, _text(submission, other))
+            text = texts.get(other, read_text(submission, other))
             if word.search(text):
                 uses[other] = word.sub(new, text)
     return uses
 
 
-def _with_renamed_files(submission: Submission, package: Package, named: Collection[str]) -> _Files:
+def _with_renamed_files(submission: Submission, package: Package, named: Collection[str]) -> Files:
     """Return the files of parameters and worlds under other names.
 
     And all files that name them.
@@ -353,17 +412,17 @@ def _with_renamed_files(submission: Submission, package: Package, named: Collect
         if uses and old not in uses:
             texts.update(uses)
             files[old] = None
-            files[old.removesuffix(ending) + f"_2x{ending}"] = _text(submission, old)
+            files[old.removesuffix(ending) + f"_2x{ending}"] = read_text(submission, old)
     return {**texts, **files}
 
 
 def _with_renamed_system(
     submission: Submission, named: Collection[str], robot_files: Sequence[str]
-) -> _Files:
+) -> Files:
     """Return the files of a robot in which <ros2_control> has another name, if nothing names it."""
     files: dict[str, str | None] = {}
     for path in robot_files:
-        text = _text(submission, path)
+        text = read_text(submission, path)
         for match in reversed([*_SYSTEM.finditer(text)]):
             if not any(match[2] in text_in_use for text_in_use in named):
                 start, end = match.span(2)

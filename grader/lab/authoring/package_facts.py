@@ -22,15 +22,18 @@ from grader.lab.authoring.facts import (
 )
 from grader.lab.authoring.graph_facts import LaunchConnections
 from grader.lab.checks.parameters import measures
+from grader.lab.checks.started_nodes import LIFECYCLE_MANAGER, managed_nodes
+from grader.lab.submission.edited import content
 from grader.lab.submission.submission import Submission
 from grader.ros.api import (
     looked_up_transforms,
     opened_by_bridge,
+    parameter_callbacks,
     spawned_by,
     started_worlds,
 )
 from grader.ros.installation.places import PREFIX, is_of_one_machine
-from grader.ros.launch.launch_model import Launch
+from grader.ros.launch.launch_model import Launch, StartedNode
 from grader.ros.package.package import Package
 from grader.ros.python.values import Unknown
 from grader.ros.urdf.kinematics import Configuration
@@ -103,10 +106,16 @@ _OPENING = {
 }
 _COMPARED = {
     "publishes": ("topics names_agree",),
+    "subscribes": ("topics names_agree",),
     "serves": ("services names_agree",),
     "calls": ("services names_agree",),
 }
-_DONE = {"publishes": "publish", "serves": "serve", "calls": "call"}
+_DONE = {
+    "publishes": "publish",
+    "subscribes": "subscribe to",
+    "serves": "serve",
+    "calls": "call",
+}
 # Warnings of `grader inspect` that mean that something does not work: of builds of C++, and of the
 # code of nodes.
 _CPP = (".cpp", ".cc", ".cxx")
@@ -137,6 +146,8 @@ def package_facts(submission: Submission) -> Facts:
     yield from _warning_facts(submission)
     yield from _simulation_facts(submission)
     yield from _lookup_facts(submission)
+    yield from _callback_facts(submission)
+    yield from _passed_facts(submission)
 
 
 def _warning_facts(submission: Submission) -> Iterator[Fact]:
@@ -192,7 +203,72 @@ def _lookup_facts(submission: Submission) -> Iterator[Fact]:
             label = f"{target} {source}"
             fact = _package_fact("looks_up", label, target=target, source=source)
             title = f"a node looks up the pose of {source} in {target}"
+            if lookup.inverts != "no":
+                fact = fact._replace(arguments={**fact.arguments, "either_way": True})
+                title += ", or its inverse"
             yield fact._replace(title=title, about=_THE_NAMES, carried=_after_names(submission))
+
+
+def _callback_facts(submission: Submission) -> Iterator[Fact]:
+    """Yield that a node is told of its parameters, or refuses values of them."""
+    callbacks = parameter_callbacks(submission.workspace)
+    carried = _after(submission, *_builds(submission), *_OF_CODE)
+    if callbacks.refuses is not None:
+        fact = _package_fact("takes_parameters", "refused", refuses=True)
+        title = "a node refuses values of its parameters"
+        yield fact._replace(title=title, about=_THE_NAMES, carried=carried)
+    elif callbacks.told is not None:
+        fact = _package_fact("takes_parameters", "set")
+        title = "a node is told when its parameters are set"
+        yield fact._replace(title=title, about=_THE_NAMES, carried=carried)
+
+
+def _passed_facts(submission: Submission) -> Iterator[Fact]:
+    """Yield the parameters that nodes get by arguments that launch files pass to others.
+
+    What an argument does is asked, and not its name: a submission may divide its launch files in
+    other ways.
+    """
+    passed: list[tuple[str, Any]] = []
+    for package in submission.lab_packages.values():
+        for path in package.launch_files:
+            passed += _changed_by_passing(submission, package.launch(path))
+    for fact in value_facts(submission):
+        given = fact.arguments["parameter"], fact.arguments["value"]
+        if given in passed:
+            arguments = {**fact.arguments, "where_given": True}
+            arguments.pop("or_default", None)
+            yield fact._replace(about=_THE_NAMES, arguments=arguments)
+
+
+def _changed_by_passing(submission: Submission, launch: Launch) -> Iterator[tuple[str, Any]]:
+    """Yield the parameters of nodes in files that a launch file includes, with their values.
+
+    These are other ones than under the defaults of the arguments of those files.
+    """
+    own_files = {}
+    for package in submission.lab_packages.values():
+        for target, path in package.installed.items():
+            own_files[target] = package, path
+    for passed in launch.passed:
+        if not passed.when or not passed.values or passed.path not in own_files:
+            continue
+        package, path = own_files[passed.path]
+        defaults = [_parameters_of(node) for node in package.launch(path).nodes]
+        for node in launch.nodes:
+            if node.included_by and node.location.path == package.path(path):
+                for name, value in _parameters_of(node).items():
+                    if not any(repr(each.get(name)) == repr(value) for each in defaults):
+                        yield name, value
+
+
+def _parameters_of(node: StartedNode) -> dict[str, Any]:
+    """Return the values that a launch file itself gives the parameters of a node."""
+    values: dict[str, Any] = {}
+    for given in node.parameters or ():
+        for name, parameter in given.values.items():
+            values[name] = parameter.value
+    return values
 
 
 def _after_names(submission: Submission) -> tuple[CarriedFact, ...]:
@@ -245,9 +321,30 @@ def _facts_of(
     yield from _installs(
         package, path.removeprefix(package.path("")) if package.holds(path) else "", named
     )
+    included = _included_launches(submission)
     for launch in (file for file in package.launch_files if not file.startswith("test/")):
-        yield from _launch_facts(submission, package, launch, prefix)
+        is_part = package.path(launch) in included
+        for fact in _launch_facts(submission, package, launch, prefix):
+            yield fact._replace(is_detail=fact.is_detail or is_part)
     yield from _rviz_facts(package)
+
+
+def _included_launches(submission: Submission) -> set[str]:
+    """Return the paths of the launch files that others of the lab certainly include.
+
+    How a solution divides its launch files is its own matter.
+    """
+    packages = [*submission.lab_packages.values()]
+    included: set[str] = set()
+    for package in packages:
+        for path in package.launch_files:
+            included.update(passed.path for passed in package.launch(path).passed if passed.when)
+    paths = set()
+    for package in packages:
+        for target, path in package.installed.items():
+            if target in included:
+                paths.add(package.path(path))
+    return paths
 
 
 def measure_facts(solution: Solution) -> Iterator[Fact]:
@@ -499,13 +596,25 @@ def _launch_facts(
         carried=(after._replace(causes=(*after.causes, "parameters names_agree")),)
     )
     connections = LaunchConnections(submission, package, path)
-    needed = connections.needed(launch, _nodes_that_start(launch))
+    # Of a lab with a robot, what nodes open may have other names.
+    started, are_ends_asked = _nodes_that_start(launch), not submission.path
+    needed = connections.needed(launch, started, are_ends_asked=are_ends_asked)
     nodes = [node for node in needed if node not in _STATIC]
+    active = _lifecycle_nodes(submission, launch)
+    managers = [node for node in launch.nodes if node.executable == LIFECYCLE_MANAGER]
+    managed, _ = managed_nodes(submission.workspace, managers)
+    if managed <= {*active}:  # something else may activate own nodes
+        nodes = [node for node in nodes if node not in {each.name for each in managers}]
     if nodes:
         title = _title_of_nodes(_launch_text(package, name), nodes)
         fact = _package_fact("node_runs", name, launch=name, nodes=nodes)
         yield fact._replace(title=title, carried=(there,))
     unrun = after._replace(causes=(*after.causes, *_OF_CODE))
+    if active:
+        fact = _package_fact("node_runs", f"{name} active", launch=name, active=active)
+        nodes_named = "the node" if len(active) == 1 else "each of the nodes"
+        title = f"{nodes_named} {enumerated(active, _MAX_IN_TITLE)} becomes active"
+        yield fact._replace(title=title, carried=(unrun,))
     for fact in _opened_facts(submission, launch, name):
         [compared] = fact.carried  # the names that pay for a mistake in them
         yield fact._replace(carried=(unrun._replace(causes=(*unrun.causes, *compared.causes)),))
@@ -514,6 +623,18 @@ def _launch_facts(
         yield fact._replace(about=_THE_PACKAGE, carried=(misnamed,))
     for fact in _turned_facts(package, path):
         yield fact._replace(carried=(after,))
+
+
+def _lifecycle_nodes(submission: Submission, launch: Launch) -> list[str]:
+    """Return the names of the own nodes with a lifecycle that a launch file starts."""
+    code, names = submission.workspace.code, []
+    for node in launch.nodes:
+        facts = code.own_node(node) if node.when else None
+        data = content(submission, facts.location.path) if facts is not None else None
+        name = code.name_of(node)
+        if data is not None and name and b"LifecycleNode" in data:
+            names.append(name)
+    return names
 
 
 def _complete_fact(launch: Launch, name: str, shown: str) -> Fact:
@@ -550,7 +671,8 @@ def _launch_text(package: Package, name: str) -> str:
 def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator[Fact]:
     """Yield what nodes and bridges publish, serve and call, and which controllers are spawned.
 
-    Of a lab with a robot, what nodes open may have other names: only bridges are asked.
+    What own nodes subscribe to is asked if none of them publishes it: then others do. Of a lab with
+    a robot, what nodes open may have other names: only bridges are asked.
     """
     asked: dict[str, dict[str, str]] = {verb: {} for verb in _DONE}
     workspace = submission.workspace
@@ -561,8 +683,12 @@ def _opened_facts(submission: Submission, launch: Launch, name: str) -> Iterator
             ends += opened_by(workspace, node)
         for end in ends if node.when else ():
             verb, kind = _OPENING.get(end.kind), end.type
+            if bridged is None and end.kind == "subscription":
+                verb = "subscribes"
             if verb is not None and kind is not None and end.name and end.is_known:
                 asked[verb][end.name] = kind.replace(".", "/")
+    for topic in asked["publishes"]:
+        asked["subscribes"].pop(topic, None)
     for verb, names in asked.items():
         if names:
             fact = _package_fact("node_runs", f"{name} {verb}", launch=name, **{verb: names})

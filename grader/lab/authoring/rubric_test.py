@@ -26,6 +26,7 @@ from grader.lab.authoring.file_equivalents import EVERY_NODE, file_equivalents
 from grader.lab.authoring.mutant_kinds import KindScore, draw, scores_by_kind, why_right
 from grader.lab.authoring.mutants import Mutant, MutantEdit, mutants, package_mutants
 from grader.lab.authoring.name_mutants import compared_names, name_changes
+from grader.lab.authoring.node_equivalents import node_equivalents
 from grader.lab.authoring.node_mutants import node_changes, type_changes
 from grader.lab.authoring.package_equivalents import BUILT_BY_CMAKE, package_equivalents
 from grader.lab.authoring.samples import Loss, Sample, SampleResults, tested_samples
@@ -315,7 +316,8 @@ class Trial:
             yield from self._robot_equivalents(urdf)
         names = set(_names_in(self.rubric))
         rewritten = package_equivalents(self.reference, names, self.robot_files)
-        for family, texts in chain(file_equivalents(self.reference), rewritten):
+        of_nodes = node_equivalents(self.reference, names)
+        for family, texts in chain(file_equivalents(self.reference), rewritten, of_nodes):
             yield self._file_equivalent(family, texts)
 
     def _file_equivalent(self, family: str, texts: Mapping[str, str | None]) -> Loss:

@@ -84,6 +84,7 @@ def node_runs(
     serves: list[str] | Mapping[str, str] | None = None,
     calls: list[str] | Mapping[str, str] | None = None,
     spawns: list[str] | None = None,
+    active: list[str] | None = None,
     built: bool = True,
 ) -> Outcome:
     """The launch file starts these nodes, with the defaults of its arguments or those of the
@@ -111,6 +112,8 @@ def node_runs(
         serves: Services and actions that they serve.
         calls: Services and actions that they call.
         spawns: Controllers that spawners start, by whichever of them.
+        active: Nodes with a lifecycle that become active: by a lifecycle manager, an event of a
+            launch file, or their code.
         built: Whether it must find the files that it reads; if not, only what else stops it counts.
     """
     evaluated = launch_of(package, launch)
@@ -136,6 +139,7 @@ def node_runs(
         serves=serves,
         calls=calls,
         spawns=spawns,
+        active=active,
     )
     faults = find_faults(submission, evaluated, choices, wanted) if any(wanted) else []
     failure = _fail_certainly(package, evaluated, choices, faults)

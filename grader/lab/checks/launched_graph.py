@@ -10,10 +10,13 @@ from typing import TYPE_CHECKING
 
 from grader.base.errors import NotDecided, RubricError
 from grader.base.names import closest
+from grader.base.quantities import point
 from grader.base.text import MAX_NAMED, enumerated, quoted
+from grader.base.toml_types import NonNegative
+from grader.base.transforms import Transform, Vector, rotation_from_rpy, turn_between
 from grader.lab.checks.check import About
 from grader.lab.checks.launching import RUNS, Launched, launch_together
-from grader.lab.checks.outcome import Outcome, failed, judged
+from grader.lab.checks.outcome import Outcome, failed, judged, measured_point, measured_turn
 from grader.lab.submission.submission import Submission
 from grader.ros.package.package import Package
 
@@ -145,14 +148,24 @@ def publishes_transform(
     *,
     parent: str,
     child: str,
+    xyz: Vector | None = None,
+    rpy: Vector | None = None,
+    tolerance: NonNegative = 0.002,
+    angle: NonNegative = 1.0,
     launch: str | None = None,
 ) -> Outcome:
     """A frame is published below another one by what is started: a node, a static publisher, a
     controller, a bridge, or the joints of the robot. There may be frames between them.
 
+    A pose is known of static publishers, of fixed joints, and of code that sets it to numbers.
+
     Args:
         parent: The frame above.
         child: The frame below.
+        xyz: Where the frame is in the one above: x, y and z, in metres.
+        rpy: Its orientation: roll, pitch and yaw about fixed axes, in radians.
+        tolerance: How far each coordinate may be off, in metres.
+        angle: How far the orientation may be off, in degrees.
         launch: The name of the launch file; default: all launch files together.
     """
     launched = launch_together(package, submission, launch)
@@ -162,13 +175,36 @@ def publishes_transform(
     chain = _chain(certain, above, below)
     if chain is not None:
         by = tuple(dict.fromkeys(transform.by for transform in chain))
-        message = f"{below} is published below {above} by {enumerated(by)}"
-        return judged(True, message, by)
+        if xyz is None and rpy is None:
+            message = f"{below} is published below {above} by {enumerated(by)}"
+            return judged(True, message, by)
+        T_above_below = _pose_along(chain, above, below)
+        at = chain[-1].location
+        if xyz is not None:
+            what = f"the frame {quoted(below)}"
+            placed = measured_point(what, T_above_below.translation, xyz, tolerance, above, at=at)
+        else:
+            placed = judged(True, f"{below} is published below {above} by {enumerated(by)}", by)
+        if rpy is None:
+            return placed
+        turned = turn_between(T_above_below.rotation, rotation_from_rpy(rpy))
+        return measured_turn(placed, turned, angle, f"rpy = {point(rpy)} (radians)", at)
     doubt = _doubt_of_transform(launched, transforms, above, below)
     if doubt:
         cause = "cannot determine statically which transforms are published"
         raise NotDecided(f"{cause}: {doubt}", cause)
     return launched.failure or _fail_transform(transforms, above, below)
+
+
+def _pose_along(chain: "Sequence[GraphTransform]", above: str, below: str) -> Transform:
+    """Return T_above_below of a row of transforms, the lowest first."""
+    T_above_below = Transform()
+    for transform in chain:
+        if transform.pose is None:
+            cause = f"cannot determine statically where {below} is in {above}"
+            raise NotDecided(f"{cause}: {transform.by} computes it", cause)
+        T_above_below = transform.pose @ T_above_below
+    return T_above_below
 
 
 def _check_open(

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from math import isfinite
 from typing import Literal, NamedTuple
 
-from grader.base.quantities import SLACK, in_millimetres, point, within
+from grader.base.quantities import SLACK, in_degrees, in_millimetres, point, within
 from grader.base.source import LazyLocation, Location
 from grader.base.transforms import Vector
 
@@ -206,6 +206,24 @@ def measured_point(
             f"({other_unit(actual, expected) or ', '.join(off)})"
         )
     return judged(not off, message, actual, expected, tolerance, "m", at=at)
+
+
+def measured_turn(
+    position: Outcome, turned: float, angle: float, wanted: str, at: _AnyPlace = None
+) -> Outcome:
+    """Return the outcome of a position, or the failure of an orientation that is off.
+
+    Args:
+        position: The outcome of the position.
+        turned: By how many degrees the orientation is off.
+        angle: By how many degrees it may be off.
+        wanted: The orientation, in words.
+        at: Where it is written.
+    """
+    if turned <= angle + SLACK:
+        return position
+    message = f"{position.message}; its orientation is {in_degrees(turned)} off {wanted}"
+    return position._replace(status="failed", message=message, location=location_of(at))
 
 
 def _off_along(axis: int, off: float, frame: str) -> str:

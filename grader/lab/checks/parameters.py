@@ -90,6 +90,10 @@ def parameter_is(
     message = f"{said} {_text(actual)}"
     if measure is not None:
         wanted += f", the {measure} of {enumerated([*map(quoted, links or [])])} in the robot"
+    unknown = submission.workspace.launches.unknown_includes
+    if not fits and unknown:
+        cause = "cannot determine statically which arguments a launch file gets"
+        raise NotDecided(f"{cause}: {unknown}", cause)
     return passed(message) if fits else failed(f"{message}; it {wanted}", parameter_value.location)
 
 

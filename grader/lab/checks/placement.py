@@ -2,12 +2,12 @@
 
 from math import acos, degrees
 
-from grader.base.quantities import SLACK, in_degrees, point
+from grader.base.quantities import point
 from grader.base.source import LazyLocation, place
 from grader.base.toml_types import Direction, NonNegative
 from grader.base.transforms import Z_AXIS, Vector, dot, minus, rotation_from_rpy, turn_between, unit
 from grader.lab.checks.check import About
-from grader.lab.checks.outcome import Outcome, failed, location_of, measured_point
+from grader.lab.checks.outcome import Outcome, failed, measured_point, measured_turn
 from grader.lab.checks.visuals import ShapeName, main_visual
 from grader.ros.urdf.kinematics import Configuration
 from grader.ros.urdf.model import Mesh, Visual
@@ -116,12 +116,9 @@ def _with_orientation(
 
     The orientation may be at most `angle` degrees off.
     """
-    if turned <= angle + SLACK:
-        return placed
-    message = f"{placed.message}; its orientation is {in_degrees(turned)} off {wanted}"
     if placed.status == "passed" and at is not None and at.attribute == "xyz":
         at = at._replace(attribute="rpy")
-    return placed._replace(status="failed", message=message, location=location_of(at))
+    return measured_turn(placed, turned, angle, wanted, at)
 
 
 def _loose_joint(robot: Configuration, link: str, relative_to: str) -> Outcome | None:

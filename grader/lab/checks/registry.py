@@ -76,6 +76,7 @@ CHECKS = (
     "xacro_source.xacro_uses",
     "names_agree.names_agree",
     "parameters.parameter_is",
+    "set_parameters.takes_parameters",
     "manual.answered",
     "manual.evidence_shown",
 )

@@ -13,6 +13,7 @@ from grader.base.names import closest
 from grader.base.source import Location
 from grader.base.text import MAX_NAMED, enumerated, quoted
 from grader.ros.installation.places import PREFIX
+from grader.ros.python.values import Unknown
 from grader.ros.xml.urdf_format import numbers_in
 
 if TYPE_CHECKING:
@@ -30,6 +31,10 @@ _VERBS: Mapping[str, str] = {
 }
 # Faults in the code of a node that do not keep it from opening what it opens.
 _HARMLESS = frozenset({"service-response", "entity-kept"})
+LIFECYCLE_MANAGER = "lifecycle_manager"  # of Nav2
+# What activates a node with a lifecycle: an event of a launch file, its own code, or a process.
+_ACTIVATES = re.compile(r"TRANSITION_ACTIVATE|trigger_activate|[.>]activate\(\)|lifecycle\W+set\b")
+_CODE = (".py", ".cpp", ".hpp", ".h")
 _Topics = Sequence[str] | Mapping[str, str] | None  # a table has their types
 
 
@@ -48,6 +53,7 @@ class Wanted(NamedTuple):
     serves: _Topics = None
     calls: _Topics = None
     spawns: Sequence[str] | None = None
+    active: Sequence[str] | None = None
 
 
 class Fault(NamedTuple):
@@ -82,14 +88,61 @@ def find_faults(
     faults += [_not_included(launch, end) for end in wanted.includes or ()]
     faults += _not_spawned(launch, wanted.spawns or ())
     faults += _not_opened(launch, workspace, wanted)
+    faults += _not_active(launch, workspace, wanted.active or ())
     return [fault for fault in faults if fault is not None]
 
 
 def _with_node_names(launch: "Launch", workspace: "Workspace") -> "Launch":
     """Return a launch file with the nodes that may start, named as their programs name them."""
-    started = [node for node in launch.nodes if node.when is not False]
-    named = [node._replace(node_name=workspace.code.name_of(node)) for node in started]
+    named = []
+    for node in launch.nodes:
+        has_several = len(workspace.code.nodes_of(node)) > 1  # each with a name of its own
+        if node.when is not False and has_several:
+            named.append(node)
+        elif node.when is not False:
+            named.append(node._replace(node_name=workspace.code.name_of(node)))
     return launch._replace(nodes=tuple(named))
+
+
+def _not_active(launch: "Launch", workspace: "Workspace", names: Sequence[str]) -> Iterator[Fault]:
+    """Yield the nodes with a lifecycle that nothing activates."""
+    if not names:
+        return
+    texts = [*workspace.texts.launch_texts]
+    for package in workspace.packages:
+        sources = workspace.texts.sources_of(package, _CODE)
+        texts += [source.text for source in sources]
+    if any(_ACTIVATES.search(text) for text in texts):
+        return
+    managers = [node for node in launch.nodes if node.executable == LIFECYCLE_MANAGER]
+    managed, is_known = managed_nodes(workspace, managers)
+    for name in names:
+        if name in managed:
+            continue
+        at = managers[0].location if managers else None
+        if is_known and not launch.unknown:
+            yield Fault(f"nothing activates the node {quoted(name)}", at)
+        else:
+            yield Fault(f"something activates the node {quoted(name)}", is_certain=False)
+
+
+def managed_nodes(
+    workspace: "Workspace", managers: "Iterable[StartedNode]"
+) -> tuple[set[str], bool]:
+    """Return the nodes that lifecycle managers activate on their own, and whether these are all."""
+    managed: set[str] = set()
+    is_known = True
+    for node in managers:
+        owner = node.node_name or LIFECYCLE_MANAGER
+        for given in workspace.parameters.owners.get(owner, ()):
+            rows = (given.values.get(name) for name in ("node_names", "autostart"))
+            names, starts = (row.value if row is not None else None for row in rows)
+            if isinstance(names, list) and starts is True:
+                managed.update(map(str, names))
+            is_known = is_known and not given.unknown
+            is_known = is_known and not isinstance(names, Unknown)
+            is_known = is_known and not isinstance(starts, Unknown)
+    return managed, is_known
 
 
 def _not_opened(launch: "Launch", workspace: "Workspace", wanted: Wanted) -> Iterator[Fault | None]:
@@ -291,14 +344,15 @@ class _NodeTopics:
         code = workspace.code.by_package.get(package)
         doubts = list(code.doubts) if code is not None else []
         syntax = fault_of_syntax(workspace, node, package)
-        own_node = workspace.code.own_node(node)
-        mistake = self._stopping.get(own_node.location.path) if own_node is not None else None
-        runs = own_node is not None
+        own_nodes = workspace.code.all_nodes_of(node)
+        paths = [own_node.location.path for own_node in own_nodes]
+        mistake = next((self._stopping[path] for path in paths if path in self._stopping), None)
+        runs = bool(own_nodes)
         if syntax is not None:
             self._unread.append(syntax)
             at = syntax.at
             doubts = [doubt for doubt in doubts if at is None or doubt.location.path != at.path]
-        elif own_node is None or own_node.doubts:
+        elif not own_nodes or any(own_node.doubts for own_node in own_nodes):
             self._is_open = True
         elif mistake is not None:
             self._unread.append(mistake)

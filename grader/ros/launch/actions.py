@@ -448,7 +448,11 @@ def _do_nothing(visitor: ActionVisitor, call: Call, context: Context, when: bool
 
 
 def _shut_down(visitor: ActionVisitor, call: Call, context: Context, when: bool | None) -> None:
+    """Refuse what ends the launch; another state of a node with a lifecycle starts nothing."""
     del context, when
+    event = call.kwargs.get("event")
+    if isinstance(event, Call) and event.short == "ChangeState":
+        return
     if not visitor.findings.is_silent:
         raise Undetermined("what a shutdown stops is not evaluated", call.at)
 
@@ -481,6 +485,9 @@ def _register_handler(
 ) -> None:
     handler = call.kwargs["event_handler"]
     kind = handler.short if isinstance(handler, Call) else ""
+    if isinstance(handler, Call) and kind == "OnStateTransition":
+        visitor.perhaps(handler.kwargs["entities"], handler, context, when)
+        return
     if kind not in ("OnProcessExit", "OnProcessStart"):
         visitor.add_form(Undetermined("this event handler is not evaluated"), call.at, when)
         return

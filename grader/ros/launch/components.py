@@ -56,13 +56,16 @@ def _absolute(name: str) -> str:
 def _add_components(
     findings: Findings, call: Call, context: Context, when: bool | None, container: str | None
 ) -> None:
+    loaded_at = findings.locate(call.at)
+    unknown = LoadedComponent(None, None, when, loaded_at, loaded_at, container)
     try:
         described = items_in(call.kwargs.get(_DESCRIPTIONS) or ()) or ()
     except EvaluationSignal:
+        findings.components.append(unknown)
         return
-    loaded_at = findings.locate(call.at)
     for item in described:
         if not isinstance(item, Call) or item.name not in (COMPONENT, LIFECYCLE_COMPONENT):
+            findings.components.append(unknown)
             continue
         is_loaded = _is_loaded(item, context, when)
         package = _text_if_known(item.kwargs["package"], context, item)

@@ -83,6 +83,13 @@ _TEXTS = [
 # A file that is opened to be written, and the modes of open for it.
 _WRITTEN = "io.TextIOWrapper"
 _WRITES = ("w", "wt", "a", "at", "x", "xt")
+# What tells for which nodes an event is meant.
+_MATCHERS = (
+    "launch.events.matches_action",
+    "launch.events.matchers.matches_action",
+    "launch_ros.events.matches_node_name",
+    "launch_ros.events.lifecycle.matches_node_name",
+)
 _ENTRY = "generate_launch_description"
 _NODE = "launch_ros.actions.node.Node"
 _MOVEIT = "moveit_configs_utils"
@@ -446,6 +453,7 @@ class _PythonLaunchFile:
             "subprocess.check_output": self._check_output,
             "subprocess.check_output.decode": lambda _, call: _printed_text(call.owner),
             **dict.fromkeys(("sys.exit", "builtins.exit", "builtins.quit"), _leave),
+            **dict.fromkeys(_MATCHERS, record),
             f"{_WRITTEN}.__enter__": record,
             f"{_WRITTEN}.read": _fail_to_read,
         }

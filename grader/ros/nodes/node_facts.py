@@ -7,6 +7,7 @@ from typing import Literal, NamedTuple
 
 from grader.base.problems import NO_FIXES, Fixes
 from grader.base.source import Location
+from grader.base.transforms import Transform
 from grader.ros.python.parse import SyntaxFault
 from grader.ros.python.values import Value
 
@@ -102,6 +103,7 @@ class NodeTransform(NamedTuple):
     location: Location
     is_static: bool = False
     is_conditional: bool = False  # whether a parameter decides if it is sent
+    pose: Transform | None = None  # T_parent_child, where the code sets it to numbers
 
 
 class Timer(NamedTuple):
@@ -170,6 +172,7 @@ CodeRule = Literal[
     "no main",
     "no rclcpp::init",
     "no constructor",
+    "not activated",
 ]
 
 

@@ -2,7 +2,7 @@
 
 import posixpath
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 
 from grader.base.problems import Problem
 from grader.ros.installation import package_problems as kinds
@@ -11,6 +11,7 @@ from grader.ros.known.cmake_words import cmake_words
 from grader.ros.package.package import Package
 
 _SOURCES = (".cpp", ".cc", ".cxx")
+_INTERFACES = (".msg", ".srv", ".action")
 _MAX_BYTES = 256 * 1024
 _MAX_FILES = 50
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
@@ -85,14 +86,19 @@ def _not_linked(package: Package, setup: Installation, target: CmakeTarget) -> I
     text = setup.source.text  # what it links may be a package, as ${sensor_msgs_TARGETS}
     if _OTHER_WAYS.search(text) or target.name in _LINKED.findall(text):
         return
-    if not target.packages or not {*target.packages} <= exports.keys():
+    if not target.packages:
         return
-    reached = _reachable_packages(target.packages, exports)
     included: dict[str, str] = {}
     for path in target.sources[:_MAX_FILES]:
         for name in _INCLUDE.findall(_text_of(package, path)):
             included.setdefault(name, path)
-    others = (exports.keys() & included.keys()) - reached - {package.name}
+    others: set[str] = set()
+    if {*target.packages} <= exports.keys():
+        reached = _reachable_packages(target.packages, exports)
+        others |= (exports.keys() & included.keys()) - reached - {package.name}
+    if not any(package.find(name) for name in target.packages):
+        # No package of ROS 2 exports one of the workspace.
+        others |= {name for name in included if _is_of_interfaces(package, name, exports)}
     for name, path in included.items():
         if name in others:
             message = (
@@ -100,6 +106,12 @@ def _not_linked(package: Package, setup: Installation, target: CmakeTarget) -> I
                 f"depend on it: see ament_target_dependencies()"
             )
             yield Problem(kinds.NOT_LINKED, message, setup.location(target.at))
+
+
+def _is_of_interfaces(package: Package, name: str, known: Collection[str]) -> bool:
+    """Return whether a package beside another one generates headers of messages."""
+    beside = package.find(name) if name not in known and name != package.name else None
+    return beside is not None and any(path.endswith(_INTERFACES) for path in beside.tree.files)
 
 
 def _reachable_packages(packages: Iterable[str], exports: Mapping[str, str]) -> set[str]:

@@ -119,6 +119,11 @@ _INSTALLED_WITH_ROS = (
     "xacro",
     "yaml",
     "ament_index_python",
+    # What launch_ros depends on: its package.xml.
+    "lifecycle_msgs",
+    "composition_interfaces",
+    "osrf_pycommon",
+    "rclpy",
 )
 # What Python 3.12 has no more, or an older one that runs the grader has not yet.
 _REMOVED = ("asynchat", "asyncore", "imp", "smtpd")

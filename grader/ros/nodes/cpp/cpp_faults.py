@@ -5,6 +5,7 @@ Each rule is about what certainly fails once it runs.
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 
 from grader.ros.cpp.declarations import CppFunction, declared_in, plain
 from grader.ros.cpp.objects import class_written
@@ -35,6 +36,11 @@ _HANDLES = dict.fromkeys(
     ),
     "handle of a callback",
 )
+# What sets the state of a goal, if nothing cancels it, and what destroys it otherwise:
+# rclcpp_action/include/rclcpp_action/server_goal_handle.hpp.
+_ENDING_STATES, _ACTIONS = ("succeed", "abort"), "rclcpp_action::"
+# Publishers of these nodes send nothing before: rclcpp_lifecycle/lifecycle_publisher.hpp.
+_LIFECYCLE, _ACTIVATES = "rclcpp_lifecycle::LifecycleNode", "on_activate"
 _LISTENER, _BUFFER = "TransformListener", "Buffer"
 _LOOKING_UP = ("lookupTransform", "canTransform")
 # What may spin a node, or wait for its messages.
@@ -63,7 +69,8 @@ def cpp_faults(
     search = _CppSearch(unit, nodes)
     rules = [search.destroyed(), search.without_rotation(), search.waiting()]
     if is_read:
-        rules.append(search.without_listener())
+        rules += [search.without_listener(), search.without_goal_state()]
+        rules.append(search.without_activation())
     if is_read and is_program:
         rules.append(search.without_spin())
     for rule in rules:
@@ -92,6 +99,44 @@ class _CppSearch:
         node = function.node
         uses = [use for use in self._unit.uses.get(name, ()) if use.file is node.file]
         return [use for use in uses if node.start <= use.start < node.end]
+
+    def without_activation(self) -> Iterator[CodeFault]:
+        """Yield where a node with a lifecycle becomes active, and its publishers do not."""
+        if any(next(self._calls(each, _ACTIVATES), None) for each in self._unit.functions):
+            return
+        for function in self._methods:
+            owner = function.owner
+            if function.name != _ACTIVATES or function.is_conditional:
+                continue
+            scopes = self._unit.scopes_of(function)
+            bases = chain.from_iterable(
+                written.bases for written in self._unit.classes.get(owner, ())
+            )
+            if not any(_LIFECYCLE in self._unit.meanings(base, scopes) for base in bases):
+                continue
+            for method in self._methods:
+                made = next(self._calls(method, "create_publisher"), None)
+                if made is not None and self._unit.owner_of(method) == owner:
+                    message = (
+                        f"the publishers of {owner.rpartition('::')[2]} stay inactive, and send "
+                        f"nothing: call LifecycleNode::{_ACTIVATES}(state)"
+                    )
+                    at = function.node.location
+                    yield CodeFault("not activated", message, at, made.location)
+                    break
+
+    def without_goal_state(self) -> Iterator[CodeFault]:
+        """Yield action servers in files in which no goal succeeds or is aborted."""
+        if not self._unit.uses.keys().isdisjoint(_ENDING_STATES):
+            return
+        for function in self._methods:
+            for call in self._calls(function, "create_server"):
+                if called_name(call).startswith(_ACTIONS):
+                    message = (
+                        "nothing sets the state of a goal, so rclcpp_action cancels it; "
+                        "call succeed()"
+                    )
+                    yield CodeFault("no goal state", message, call.location, is_certain=False)
 
     def destroyed(self) -> Iterator[CodeFault]:
         """Yield what a method makes and nothing keeps: it is destroyed when the method ends."""

@@ -4,12 +4,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import chain
 
+from grader.base.transforms import Transform
 from grader.ros.cpp.cpp_evaluation import CppEvaluation
 from grader.ros.cpp.declarations import CppFunction, declaration_of
 from grader.ros.cpp.syntax import CppNode
 from grader.ros.cpp.unit import CppUnit, arguments_of, called_name
 from grader.ros.nodes.cpp.rclcpp_calls import name_of
 from grader.ros.nodes.node_facts import FrameUse, NodeFrame, NodeTransform
+from grader.ros.nodes.transform_poses import pose_set
 
 _LOOKING_UP = ("lookupTransform", "canTransform", "waitForTransform")
 _FULL_FORM = 5  # arguments of lookupTransform() with two times and a fixed frame
@@ -21,6 +23,7 @@ _FIELDS: Mapping[FrameUse, str] = {
 }
 _STATIC = "StaticTransformBroadcaster"
 _SET = ("frame_id", "child_frame_id")
+_MOVED = ("x", "y", "z", "w", "translation", "rotation", "transform")  # fields of a transform
 
 
 class _Variables:
@@ -68,6 +71,21 @@ class _Variables:
     def fields(self) -> Mapping[str, Sequence[CppNode]]:
         """What fields are set to in the function, by their whole text."""
         return _values_by_field(chain.from_iterable(map(self.uses_of, _SET)))
+
+    def numbers(self, name: str) -> Mapping[str, Sequence[CppNode]] | None:
+        """Return what is set of the transform in a local variable, by its field.
+
+        The result is None where more may be set.
+        """
+        values = _values_by_field(chain.from_iterable(map(self.uses_of, _MOVED)))
+        if any(map(_is_given_away, self.uses_of(name))):
+            return None
+        start = f"{name}."
+        return {
+            field.removeprefix(start): nodes
+            for field, nodes in values.items()
+            if field.startswith(start)
+        }
 
     @cached_property
     def fields_of_file(self) -> Mapping[str, Sequence[CppNode]]:
@@ -126,7 +144,32 @@ def transforms_in(
             call.location,
             is_static=_STATIC in kind_of_sender,
             is_conditional=_is_decided_by_parameter(call, function, evaluation),
+            pose=_pose_sent(given[0], variables, evaluation) if is_name else None,
         )
+
+
+def _pose_sent(name: CppNode, variables: _Variables, evaluation: CppEvaluation) -> Transform | None:
+    """Return T_parent_child of a transform that is sent; None where it is not known."""
+    values = variables.numbers(name.text) if variables.is_local(name) else None
+    if values is None:
+        return None
+
+    def value_set(field: str) -> CppNode | None:
+        return values[field][0] if len(values[field]) == 1 else None
+
+    return pose_set(values.keys(), value_set, evaluation.value_of)
+
+
+def _is_given_away(use: CppNode) -> bool:
+    """Return whether a function that may change a variable gets it, or a reference to it."""
+    parent = use.parent
+    if parent is None or parent.kind in ("field_expression", "declaration"):
+        return False
+    if parent.kind == "init_declarator":
+        return use.field == "value"
+    if parent.kind == "argument_list" and parent.parent is not None:
+        return called_name(parent.parent).rpartition("::")[2] != _SENDS
+    return True
 
 
 def _value_set(name: CppNode, field: str, variables: _Variables) -> CppNode | None:

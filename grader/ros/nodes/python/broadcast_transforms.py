@@ -2,13 +2,17 @@
 
 import ast
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import NamedTuple
 
 from grader.base.source import Location
+from grader.base.transforms import Transform
 from grader.ros.nodes.message_uses import given_argument
 from grader.ros.nodes.node_facts import NamePart, NodeFrame, NodeTransform
 from grader.ros.nodes.python.endpoint_names import Bindings
+from grader.ros.nodes.transform_poses import pose_set
 from grader.ros.python.constants import dotted
+from grader.ros.python.values import Value
 from grader.ros.python.walking import walk
 
 SENDS = "sendTransform"
@@ -26,21 +30,19 @@ class SendingMethod(NamedTuple):
     bindings: Bindings
     names: Callable[[ast.expr], Iterator[_Name]]  # that an expression may be
     place: Callable[[ast.expr], Location]
+    value_of: Callable[[ast.expr], Value]
 
 
 def sent_transforms(method: SendingMethod, call: ast.Call) -> Iterator[NodeTransform]:
     """Yield the transforms that a call of sendTransform() sends; frames may be unknown."""
     given = given_argument(call, 0, "transform")
-    items = given.elts if isinstance(given, ast.List | ast.Tuple) else [given]
     assert isinstance(call.func, ast.Attribute)
     broadcaster = method.bindings.values.get(dotted(call.func.value))
     is_static = isinstance(broadcaster, ast.Call) and dotted(broadcaster.func).endswith(_STATIC)
-    for item in items:
-        parents = _names_set(method, call, item, _PARENT)
-        children = _names_set(method, call, item, _CHILD)
-        if len(parents) > 1 and len(children) > 1:  # a loop sets both
-            parents, children = [(None, ())], [(None, ())]
-        at = method.place(call)
+    for item, added in _items_sent(method, call, given):
+        at, pose = method.place(call), _pose_sent(method, call, item)
+        is_conditional = _is_decided_by_parameter(method, added)
+        parents, children = _frames_set(method, call, item)
         for parent, parent_parts in parents:
             for child, child_parts in children:
                 yield NodeTransform(
@@ -48,15 +50,76 @@ def sent_transforms(method: SendingMethod, call: ast.Call) -> Iterator[NodeTrans
                     NodeFrame("publishes", child, at, child_parts),
                     at,
                     is_static=is_static,
-                    is_conditional=_is_decided_by_parameter(method, call),
+                    is_conditional=is_conditional,
+                    pose=pose,
                 )
+
+
+def _frames_set(
+    method: SendingMethod, call: ast.Call, item: ast.expr | None
+) -> tuple[list[_Name], list[_Name]]:
+    """Return the names of the parent and of the child that a transform may have."""
+    parents = _names_set(method, call, item, _PARENT)
+    children = _names_set(method, call, item, _CHILD)
+    if len(parents) > 1 and len(children) > 1:  # a loop sets both
+        return [(None, ())], [(None, ())]
+    return parents, children
+
+
+def _items_sent(
+    method: SendingMethod, call: ast.Call, given: ast.expr | None
+) -> Iterator[tuple[ast.expr | None, ast.Call]]:
+    """Yield each transform that a call sends, with the call that adds it to a list."""
+    name = given.id if isinstance(given, ast.Name) else ""
+    made = method.bindings.values.get(name)
+    listed = made if isinstance(made, ast.List) else given
+    if not isinstance(listed, ast.List | ast.Tuple):
+        yield given, call
+        return
+    for item in listed.elts:
+        yield item, call
+    for node in walk(method.node) if listed is made else ():
+        match node:
+            case ast.Call(func=ast.Attribute(value=ast.Name(id=owner), attr=called)):
+                is_added = called == "append" and len(node.args) == 1
+                if owner == name:
+                    yield (node.args[0], node) if is_added else (None, call)
+
+
+def _pose_sent(method: SendingMethod, call: ast.Call, item: ast.expr | None) -> Transform | None:
+    """Return T_parent_child of a transform that is sent; None where it is not known."""
+    made = _resolve(method, item)
+    if not isinstance(made, ast.Call):
+        return None
+    given = {f for f in _fields_given(method, made) if f.startswith("transform")}
+    if made is item or given:
+        return pose_set(given, partial(_value_made, method, made), method.value_of)
+    name = dotted(item) if item is not None else ""
+    around = method.of_class if name.startswith("self.") else method.node
+    targets: set[str] = set()
+    for node in walk(around):
+        if _may_set(node, name, "transform"):
+            return None
+        set_here: Sequence[ast.expr] = []
+        if isinstance(node, ast.Assign):
+            set_here = node.targets
+        elif isinstance(node, ast.AugAssign):
+            set_here = [node.target]
+        targets.update(map(dotted, set_here))
+    start = f"{name}.transform"
+    moved = {each.removeprefix(f"{name}.") for each in targets if each.startswith(start)}
+    return pose_set(moved, partial(_value_set, method, call, name), method.value_of)
 
 
 def _names_set(
     method: SendingMethod, call: ast.Call, item: ast.expr | None, field: str
 ) -> list[_Name]:
     """Return the names to which a field of a transform is set before it is sent."""
-    value = _value_set(method, call, dotted(item), field) if item is not None else None
+    value = None
+    if isinstance(item, ast.Call):
+        value = _value_made(method, item, field)
+    elif item is not None:
+        value = _value_set(method, call, dotted(item), field)
     return [*method.names(value)] if value is not None else [(None, ())]
 
 
@@ -75,7 +138,7 @@ def _value_set(method: SendingMethod, call: ast.Call, name: str, field: str) -> 
         elif _may_set(node, name, field):
             return None
     if not statements:
-        return _value_made(method.bindings.values.get(name), field)
+        return _value_made(method, method.bindings.values.get(name), field)
     if len(statements) == 1:
         return statements[0].value
     body: Sequence[ast.stmt] = getattr(method.node, "body", [])
@@ -99,15 +162,38 @@ def _may_set(node: ast.AST, name: str, field: str) -> bool:
     return False
 
 
-def _value_made(made: ast.expr | None, field: str) -> ast.expr | None:
+def _value_made(method: SendingMethod, made: ast.expr | None, field: str) -> ast.expr | None:
     """Return what the call that makes a transform gives a field of it."""
     value = made
     for name in field.split("."):
-        if not isinstance(value, ast.Call):
+        maker = _resolve(method, value)
+        if not isinstance(maker, ast.Call):
             return None
-        given = {keyword.arg: keyword.value for keyword in value.keywords}
+        given = {keyword.arg: keyword.value for keyword in maker.keywords}
         value = given.get(name)
     return value
+
+
+def _resolve(method: SendingMethod, node: ast.expr | None) -> ast.expr | None:
+    """Return the call that a name is bound to; another expression as it is."""
+    name = dotted(node) if isinstance(node, ast.Name | ast.Attribute) else ""
+    made = method.bindings.values.get(name)
+    return made if isinstance(made, ast.Call) else node
+
+
+def _fields_given(method: SendingMethod, made: ast.Call) -> Iterator[str]:
+    """Yield the fields that a call gives to the message that it makes, each in full."""
+    if made.args:
+        yield "transform"  # of which nothing is known
+    for keyword in made.keywords:
+        name, value = keyword.arg or "transform", _resolve(method, keyword.value)
+        if isinstance(value, ast.Call) and value is not keyword.value:
+            value = None  # it may be changed after it is made
+        if isinstance(value, ast.Call) and value.keywords:
+            for inner in _fields_given(method, value):
+                yield f"{name}.{inner}"
+        else:
+            yield name
 
 
 def _is_decided_by_parameter(method: SendingMethod, call: ast.Call) -> bool:

@@ -740,6 +740,7 @@ class _Module:
             self._bindings_around(part),
             partial(self._names_written, part),
             self._at,
+            partial(self._value_in, part.scope),
         )
         self._facts[part.of] += sent_transforms(method, call)
 

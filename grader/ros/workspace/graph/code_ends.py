@@ -68,9 +68,8 @@ class End(NamedTuple):
 
 
 def opened_by(workspace: Workspace, node: StartedNode, launch: int = -1) -> Iterator[End]:
-    """Yield what the code of a node opens as it is started. Raises NotDecided."""
-    own_node = workspace.code.own_node(node)
-    if own_node is not None:
+    """Yield what the nodes of a program open as it is started. Raises NotDecided."""
+    for own_node in workspace.code.all_nodes_of(node):
         yield from opened_by_code(workspace, node, own_node, launch)
 
 
@@ -110,20 +109,20 @@ def _full_name(node: StartedNode, name: str | None) -> str:
 
 
 def frames_of(workspace: Workspace, node: StartedNode) -> Iterator[tuple[str | None, NodeFrame]]:
-    """Yield the frames that an own node names as it is started, each with its name.
+    """Yield the frames that the nodes of a program name as it is started, each with its name.
 
     It is None for one that is not known. Raises NotDecided.
     """
-    own_node = workspace.code.own_node(node)
-    if own_node is None or not own_node.frames:
-        return
-    workspace.charge(len(own_node.frames))
-    values = _values_given(workspace, node, own_node)
-    named = node._replace(node_name=workspace.code.name_of(node))
-    for frame in own_node.frames:
-        for name in _names(frame, named, values):
-            is_known = name is not None and _ANY not in name
-            yield name if is_known else None, frame
+    for own_node in workspace.code.all_nodes_of(node):
+        if not own_node.frames:
+            continue
+        workspace.charge(len(own_node.frames))
+        values = _values_given(workspace, node, own_node)
+        named = node if node.node_name != "" else node._replace(node_name=own_node.name)
+        for frame in own_node.frames:
+            for name in _names(frame, named, values):
+                is_known = name is not None and _ANY not in name
+                yield name if is_known else None, frame
 
 
 def transforms_sent(

@@ -9,6 +9,7 @@ from itertools import islice
 from typing import Any, Literal, NamedTuple, get_args
 
 from grader.base.source import Location
+from grader.base.transforms import Transform
 from grader.ros.known.end_rows import OnlyMore
 from grader.ros.nodes.node_facts import EndpointKind, Qos
 
@@ -112,6 +113,7 @@ class GraphTransform(NamedTuple):
     location: Location
     is_static: bool = False
     is_certain: bool = True
+    pose: Transform | None = None  # T_parent_child, where it never changes and is known
 
 
 class Unread(NamedTuple):

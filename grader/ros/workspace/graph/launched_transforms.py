@@ -46,7 +46,13 @@ def transforms_in(
     for edge in edges_in(workspace, number):
         if edge.source != "code" and edge.location not in not_started:
             yield GraphTransform(
-                edge.parent, edge.child, edge.by, edge.location, edge.is_static, edge.is_certain
+                edge.parent,
+                edge.child,
+                edge.by,
+                edge.location,
+                edge.is_static,
+                edge.is_certain,
+                edge.pose,
             )
     for node in _launched_nodes(launch, without):
         yield from _bridged_by_default(workspace, node)
@@ -55,7 +61,13 @@ def transforms_in(
                 is_certain = publishes_as_named(node) and not sent.is_conditional
                 is_certain = is_certain and bool(parent and child)
                 yield GraphTransform(
-                    parent, child, node.executable, sent.location, sent.is_static, is_certain
+                    parent,
+                    child,
+                    node.executable,
+                    sent.location,
+                    sent.is_static,
+                    is_certain,
+                    sent.pose,
                 )
 
 

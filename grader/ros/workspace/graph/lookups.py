@@ -1,7 +1,8 @@
 """The transforms that the nodes of own code look up."""
 
-from collections.abc import Iterable, Iterator, Sequence
-from typing import NamedTuple
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Literal, NamedTuple
 
 from grader.base.source import Location
 from grader.ros.nodes.node_facts import NodeFrame
@@ -17,6 +18,19 @@ _LOOKUPS = (
 )
 
 
+_COMMENT = re.compile(r"(?:#|//)[^\n]*")
+_INVERTS = re.compile(r"[Ii]nver(?:se|t)|conjugate|transpose|\.inv\(|\.T\b")
+# A rotation of coordinates by hand: what a sine and a cosine are multiplied with or assigned to.
+# Half an angle is a quaternion's.
+_ROTATES = {
+    name: re.compile(rf"(?:\*|[=,])\s*+(?:[a-z]++(?:\.|::))?{name}\(([^()\n]*+)\)")
+    for name in ("sin", "cos")
+}
+_FACTOR = {name: re.compile(rf"\b{name}\(([^()\n]*+)\)\s*+\*") for name in ("sin", "cos")}
+_HALF = re.compile(r"/\s*+2|0\.5|half")
+_Inverting = Literal["no", "perhaps", "yes"]
+
+
 class _LookedUp(NamedTuple):
     """The frames of a transform that a node looks up; None for one that is not known."""
 
@@ -24,6 +38,7 @@ class _LookedUp(NamedTuple):
     source: str | None
     node: str
     location: Location
+    inverts: _Inverting = "no"  # whether the code around inverts a transform
 
 
 def looked_up_transforms(workspace: Workspace) -> tuple[Sequence[_LookedUp], bool]:
@@ -32,17 +47,44 @@ def looked_up_transforms(workspace: Workspace) -> tuple[Sequence[_LookedUp], boo
     Nodes that launch files start, or may start, come first.
     """
     lookups = [*_read_lookups(workspace)]
-    return lookups, _may_look_up_others(workspace, lookups)
+    texts = _texts_with_lookups(workspace) if lookups else {}
+    inverting = {path: _inverts(text) for path, text in texts.items()}
+    known = [
+        lookup._replace(inverts=inverting.get(lookup.location.path, "no")) for lookup in lookups
+    ]
+    return known, _may_look_up_others(workspace, lookups)
+
+
+def _texts_with_lookups(workspace: Workspace) -> Mapping[str, str]:
+    """Return the texts of code by the paths of the files."""
+    texts = {}
+    for package in workspace.packages:
+        for source in workspace.texts.sources_of(package, (".py", *_CPP)):
+            texts[source.path] = source.text
+    return texts
+
+
+def _inverts(text: str) -> _Inverting:
+    """Return whether code inverts a transform: by a function, or perhaps number by number."""
+    code = _COMMENT.sub("", text)
+    if _INVERTS.search(code):
+        return "yes"
+    for name in ("sin", "cos"):
+        angles = [*_ROTATES[name].findall(code), *_FACTOR[name].findall(code)]
+        if all(_HALF.search(angle) for angle in angles):
+            return "no"
+    return "perhaps"
 
 
 def _read_lookups(workspace: Workspace) -> Iterator[_LookedUp]:
     started: set[Location] = set()
-    for _, node in workspace.launches.nodes:
-        own_node = workspace.code.own_node(node)
-        if own_node is not None:
-            started.add(own_node.location)
-            if node.when is not False:
-                yield from _pairs(frames_of(workspace, node), node.executable)
+    nodes = [node for _, node in workspace.launches.nodes]
+    for _, launch in workspace.launches.roots:
+        nodes += [component.node for component in launch.components if component.node is not None]
+    for node in nodes:
+        started.update(facts.location for facts in workspace.code.nodes_of(node))
+        if node.when is not False:
+            yield from _pairs(frames_of(workspace, node), node.executable)
     for code in workspace.code.by_package.values():
         for facts in code.nodes:
             if facts.location not in started:

@@ -71,7 +71,8 @@ class GivenFiles:
                 if self.code.name_of(node) == MANAGER:
                     shared += node.parameters or ()
             shared += self.robots.given_in_gazebo
-            for node in launch.nodes:
+            loaded = (component.node for component in launch.components)
+            for node in (*launch.nodes, *filter(None, loaded)):
                 for name, given in _given_by(self, package, node, shared):
                     owners.setdefault(name, []).append(given)
         return owners
@@ -175,6 +176,10 @@ def _given_by(
     name = files.code.name_of(node)
     if name == MANAGER or (name is not None and node.package != MANAGER):
         yield name, files.read_given(package, node, name)
+    own_nodes = files.code.nodes_of(node) if name is None and node.node_name == "" else ()
+    for facts in own_nodes:  # several in one program
+        if facts.name:
+            yield facts.name, files.read_given(package, node, facts.name)
     for controller in _spawned_by(node):
         given = (*shared, *(controller.parameters or ()))
         started = controller._replace(parameters=given)

@@ -1,5 +1,6 @@
 """The launch files of a workspace, and the nodes that they start."""
 
+import posixpath
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
@@ -107,6 +108,17 @@ class Launches:
     def has_more_nodes(self) -> bool:
         """Whether launch files may start more than is known."""
         return any(launch.more for _, _, launch in self.files)
+
+    @cached_property
+    def unknown_includes(self) -> str:
+        """Why a launch file may include another one, with other arguments; empty if none does."""
+        names = {posixpath.basename(launch.source.path) for _, launch in self.roots}
+        for _, launch in self.roots:
+            others = names - {posixpath.basename(launch.source.path)}
+            for unknown in launch.unknown:
+                if any(name in launch.source.text for name in others):
+                    return unknown.message
+        return ""
 
     @cached_property
     def unknown_nodes(self) -> str:

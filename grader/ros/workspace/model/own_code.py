@@ -116,6 +116,11 @@ class OwnCode:
         named = [program.nodes for program in programs if program.name == node.executable]
         return named[0] if len(named) == 1 else ()
 
+    def all_nodes_of(self, node: StartedNode) -> Sequence[NodeFacts]:
+        """Return the same, but none of several nodes of a program that may have more."""
+        nodes = self.nodes_of(node)
+        return () if len(nodes) > 1 and self.has_other_nodes(node) else nodes
+
     def has_other_nodes(self, node: StartedNode) -> bool:
         """Return whether the program of a node may have others, which are not known.
 

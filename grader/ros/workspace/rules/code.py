@@ -21,6 +21,7 @@ from grader.ros.workspace.rules.rule_table import (
     NAME_BINDING,
     NODE_SPINS,
     PROGRAM_MAIN,
+    PUBLISHER_ACTIVATED,
     RCLCPP_INIT,
     RCLPY_INIT,
     ROTATION_SET,
@@ -46,6 +47,7 @@ _RULES: Mapping[CodeRule, Rule] = {
     "no main": PROGRAM_MAIN,
     "no rclcpp::init": RCLCPP_INIT,
     "no constructor": COMPONENT_CONSTRUCTOR,
+    "not activated": PUBLISHER_ACTIVATED,
 }
 
 

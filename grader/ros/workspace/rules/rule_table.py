@@ -485,6 +485,9 @@ RCLPY_INIT = _code("rclpy-init", sentence="A node is made after rclpy.init().")
 CALLBACK_WAIT = _code("callback-wait", sentence="A callback waits for no other callback.")
 CALLBACK_SLEEP = _slow_code("callback-sleep", sentence="A callback does not sleep.")
 ENTITY_KEPT = _code("entity-kept", sentence="A node keeps what it makes.")
+PUBLISHER_ACTIVATED = _code(
+    "publisher-activated", sentence="A node with a lifecycle activates its publishers."
+)
 BUFFER_LISTENER = _code("buffer-listener", sentence="A buffer of transforms has a listener.")
 ROTATION_SET = _code("rotation-set", sentence="A transform that is sent has a rotation.")
 COMPONENT_MACRO = _code(

@@ -1,0 +1,52 @@
+"""What code does when the parameters of its nodes are set at run time."""
+
+import re
+from typing import NamedTuple
+
+from grader.base.source import Location
+from grader.ros.workspace.model.workspace import Workspace
+
+_ENDINGS = (".py", ".cpp", ".cc", ".cxx", ".hpp", ".h")
+_BUILDS = ("CMakeLists.txt", "setup.py")
+_COMMENT = re.compile(r"(?:#(?!include)|//)[^\n]*")
+# Callbacks that can refuse values, and those that are told of values that were set.
+_REFUSING = re.compile(r"\badd_(?:on|pre)_set_parameters_callback\s*+\(")
+_TOLD = re.compile(
+    r"\b(?:add_post_set_parameters_callback|add_parameter_callback"
+    r"|add_parameter_event_callback|on_parameter_event)\s*+\("
+)
+_REFUSES = re.compile(r"\bsuccessful\s*+=(?!=)\s*+(?!True\b|true\b)")
+_RANGE = re.compile(r"\b(?:floating_point_range|integer_range)\b")
+_GENERATES = re.compile(r"\bgenerate_parameter_(?:library|module)\b")
+_READS = re.compile(r"\bget_parameters?\s*+[(<]")
+
+
+class _ParameterCallbacks(NamedTuple):
+    """Where code is told that parameters are set, and where it can refuse values; None for nowhere.
+
+    A library may make more code of a table of parameters.
+    """
+
+    told: Location | None
+    refuses: Location | None
+    is_generated: bool  # whether a library makes code for parameters
+    is_read: bool  # whether code reads the values of parameters, perhaps again and again
+
+
+def parameter_callbacks(workspace: Workspace) -> _ParameterCallbacks:
+    """Return where the code of the packages is told of parameters, and can refuse values."""
+    first: dict[re.Pattern[str], Location] = {}
+    for package in workspace.packages:
+        for source in workspace.texts.sources_of(package, (*_ENDINGS, *_BUILDS)):
+            code = _COMMENT.sub(lambda match: " " * len(match[0]), source.text)
+            for pattern in (_REFUSING, _TOLD, _REFUSES, _RANGE, _GENERATES, _READS):
+                match = pattern.search(code)
+                if match is not None:
+                    first.setdefault(pattern, source.at(match.start()))
+    can_refuse = first.get(_REFUSING) if _REFUSES in first else None
+    return _ParameterCallbacks(
+        first.get(_REFUSING) or first.get(_TOLD),
+        can_refuse or first.get(_RANGE),
+        _GENERATES in first,
+        _READS in first,
+    )
