@@ -191,6 +191,7 @@ USUAL_NAMES = {
 CONSTANTS = {
     "os.sep": "/",
     "os.path.sep": "/",
+    "os.pathsep": ":",
     "os.linesep": "\n",
     "os.curdir": ".",
     "os.pardir": "..",

@@ -83,6 +83,7 @@ class GraphNode(NamedTuple):
     parameters: tuple[GivenValue, ...] = ()
     inside: str = ""  # the full name of the container or manager whose process it is in
     opens_only: OnlyMore = ""
+    process: int | None = None  # the number of the Node that starts its process, if that is known
 
     @property
     def label(self) -> str:
